@@ -53,10 +53,15 @@ impl CellFlags {
         }
     }
 
+    /// The corner from which multiples of lengths count.
+    pub(super) fn anchor(&self) -> [f64; 2] {
+        self.align.unwrap_or([0.0; 2])
+    }
+
     /// The size of the cells.
     fn cells(&self) -> Cells {
         match (self.step, self.columns, self.rows) {
-            (Some(step), ..) => Cells::Step { step, anchor: self.align.unwrap_or([0.0; 2]) },
+            (Some(step), ..) => Cells::Step { step, anchor: self.anchor() },
             (_, Some(columns), _) => Cells::Columns(columns),
             (_, _, Some(rows)) => Cells::Rows(rows),
             _ => Cells::Default,

@@ -16,7 +16,7 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
-use spmesh_dd4::{Options, Quantum};
+use spmesh_dd4::{Made, Options, Quantum, TimeScale};
 use spmesh_geometry::diagram4::Route;
 
 pub use product::{EXAMPLES as PRODUCT_EXAMPLES, ProductFlags};
@@ -27,6 +27,8 @@ Examples:
   The diagram of lines of x y z t, and an exact proof that it is right:
     dd4 points.txt -o points.spm
     spinfo --audit points.spm
+  The same where things move about 3 units of space in a unit of time:
+    dd4 points.txt --time-scale 3 -o points.spm
 ";
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -57,6 +59,18 @@ pub struct Flags {
     /// Without this, coordinates are rounded to f64, so that points of a grid are not exactly cospherical
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quantum: Option<Quantum>,
+
+    /// Multiply times by S, so that a unit of time counts as S units of space, as in --time-scale 2.5.
+    /// --where,
+    /// --at and --slice still take times of the input; streams hold the products
+    #[arg(
+        long,
+        value_name = "S",
+        default_value = "1",
+        hide_default_value = true,
+        allow_negative_numbers = true
+    )]
+    time_scale: TimeScale,
 
     /// How cells are found: by way of simplices, or directly in integers as by the first dd4 (2008), which is
     /// slower and needs a build with experiments. The result is the same
@@ -121,7 +135,8 @@ impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
         system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
-        let options = Options { quantum: self.quantum, route: self.route.route()? };
+        let (quantum, time_scale) = (self.quantum, self.time_scale);
+        let options = Options { quantum, time_scale, route: self.route.route()? };
         if self.source.is_stdin() && self.product.reads_stdin() {
             return Err(Error::usage("points and sites cannot both come from stdin"));
         }
@@ -142,9 +157,9 @@ impl Flags {
             self.notice(&format!("{}: {warning}", points.name));
         }
         let progress = Progress::waiting(&self.common, "triangulating");
-        let (diagram, mut report) = spmesh_dd4::make(points, &product, &options)?;
+        let Made { diagram, placement, mut report } = spmesh_dd4::make(points, &product, &options)?;
         let write_started = Instant::now();
-        let notices = product.write(&diagram, compress, &mut output)?;
+        let notices = product.write(&diagram, &placement, compress, &mut output)?;
         report.output_bytes = output.bytes_written();
         output.commit()?;
         report.write_time = write_started.elapsed();

@@ -12,6 +12,7 @@ mod point_filters;
 pub mod progress;
 mod reduction;
 mod rows;
+mod sheets;
 pub mod spcanopy;
 pub mod spconvert;
 pub mod spdelaunay2d;
@@ -42,6 +43,7 @@ use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
 use spmesh_core::parallel::available_threads;
 use spmesh_core::system;
+use spmesh_core::temporary::remove_names_at_signals;
 use spmesh_io::detect::BYTE_ORDER_MARK;
 use spmesh_io::source::{Plain, name_of, open_file, open_stdin};
 use spmesh_model::bounds::Bounds;
@@ -52,6 +54,7 @@ use spmesh_model::bounds::Bounds;
 pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> ExitCode {
     system::save_address_space();
     system::report_large_files();
+    remove_names_at_signals();
     system::exit_at_abort("not enough memory\n", ErrorKind::Memory.exit_code());
     let arguments = join_stats_format(std::env::args_os());
     let flags: Flags = match messages::parse(&arguments) {

@@ -14,6 +14,7 @@ use super::outline::{OutlineFlags, length};
 use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
+use super::sheets::SheetFlags;
 use super::{Common, StatsFormat, notice, parse_size, peak_memory, read_list, threads};
 use crate::endings;
 use layers::{Layers, Settings};
@@ -94,6 +95,9 @@ pub struct Flags {
     #[command(flatten)]
     cells: CellFlags,
 
+    #[command(flatten)]
+    sheets: SheetFlags,
+
     /// Heights from which a surface of its own is made [default: 0,2,5,10,15 and so on]
     #[arg(long, value_name = "HEIGHTS", value_delimiter = ',', allow_negative_numbers = true)]
     layers: Vec<f64>,
@@ -151,11 +155,12 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if paths.is_empty() {
         anyhow::bail!(Error::usage("no input: give LAS or LAZ files (see --help)"));
     }
-    let inputs = paths.iter().chain([&flags.ground]).chain(flags.cells.like()).map(PathBuf::as_path);
-    check_apart(inputs.chain(flags.outline.mask_path()), &[("--output", &flags.output)])?;
+    let files = paths.iter().chain([&flags.ground]).chain(flags.cells.like()).map(PathBuf::as_path);
+    let files = || files.clone().chain(flags.outline.mask_path());
+    check_apart(files(), &[("--output", &flags.output)])?;
     endings::check(&flags.output, &[endings::RASTER])?;
     let format = cells::format_of(&flags.output).unwrap_or_default();
-    let mut output = cells::create(&flags.output, format)?;
+    let mut output = flags.sheets.create(&flags.output, format, &flags.cells, files())?;
     let input = Input::open(&paths, &flags.source_options()?)?;
     input.notices().iter().for_each(|text| flags.notice(text));
     let grid = flags.cells.grid(|| window(&input))?;
@@ -177,14 +182,14 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut progress = Progress::counting("layers", &flags.common, "drawing", Some(thresholds.len() as u64));
     let highest = layers.draw(&thresholds, |done| progress.set(done))?;
     drop(progress);
-    let (known, notices) = highest.write(&mut output, &bottom, &input.description().crs)?;
-    let output_bytes = output.bytes_written();
-    output.commit()?;
+    let (known, notices) = highest.write(output.destination(), &bottom, &input.description().crs)?;
+    let committed = output.commit()?;
     notices.iter().for_each(|text| flags.notice(text));
     if points.outside() > 0 {
         flags.notice(&format!("{} points outside of the ground were left out", points.outside()));
     }
     flags.notice(&cells::summary(&grid, grid.cells() - known));
+    committed.notice().iter().for_each(|text| flags.notice(text));
     if let Some(format) = flags.stats {
         let rows: [Row<u64>; 8] = [
             ("points", "points", points.points()),
@@ -193,7 +198,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             ("triangles of all layers", "triangles", layers.triangles.get()),
             ("cells", "cells", grid.cells()),
             ("cells with data", "known", known),
-            ("output (bytes)", "output_bytes", output_bytes),
+            ("output (bytes)", "output_bytes", committed.bytes),
             ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
         ];
         rows::print(format, started.elapsed(), rows);

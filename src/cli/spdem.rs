@@ -5,7 +5,7 @@ mod points;
 mod quantity;
 
 use std::iter;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
@@ -16,6 +16,7 @@ use super::outline::OutlineFlags;
 use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
+use super::sheets::SheetFlags;
 use super::{Common, StatsFormat, notice, parse_size, peak_memory};
 use crate::endings;
 use contours::{ContourFlags, Job};
@@ -56,6 +57,8 @@ Examples:
     spdem --step 1 --attribute classification --interpolation nearest all.spm -o classes.tif
   For the web, with overviews, and gaps of up to 20 cells filled:
     spdem --step 1 --fill 20 --cog ground.spm -o terrain.tif
+  Many rasters of 1000 by 1000 metres, each with a margin of 20 metres: dtm/ground_650000_4820000.tif and so on
+    spdem --step 1 --tiles 1000 --buffer 20 ground.spm -o dtm/ground.tif
   A part as a text grid:
     spdem --step 1 --bounds 4000,7000,5000,8000 ground.spm -o part.asc
   Contour lines every five metres; then a raster and lines from one pipe:
@@ -94,6 +97,10 @@ shaded relief has the colours of elevations in that light, and is transparent wh
 --method triangle takes the slope of one triangle instead. Where the coordinate reference system states the unit of elevations, slopes take it \
 into account; otherwise it must be that of x and y.
 
+--tiles writes many rasters in one pass. A cell belongs to the raster that has its centre; with --buffer, rasters \
+overlap. They have the same values as one raster: slopes have no seams. A raster gets its name when its cells are \
+complete. One without data is not written, and a file of its name is removed.
+
 --points draws points without a mesh: how many are in each cell, how dense they are, or the least, the \
 greatest, the range, the mean and the standard deviation of their elevations or of an attribute. A point on a \
 border is in the right or upper cell. Sums are exact.
@@ -131,6 +138,9 @@ pub struct Flags {
 
     #[command(flatten)]
     cells: CellFlags,
+
+    #[command(flatten)]
+    sheets: SheetFlags,
 
     #[command(flatten)]
     contours: ContourFlags,
@@ -186,9 +196,7 @@ enum FormatFlag {
 /// opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
-    let inputs = iter::once(flags.input.as_path());
-    let inputs = inputs.chain(flags.cells.like().map(PathBuf::as_path)).chain(flags.outline.mask_path());
-    check_apart(inputs, &[("--output", &flags.output)])?;
+    check_apart(flags.inputs(), &[("--output", &flags.output)])?;
     if flags.format.is_none() {
         endings::check(&flags.output, &[endings::RASTER, endings::LINES])?;
     }
@@ -209,6 +217,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             input: &flags.input,
             output: &flags.output,
             cells: &flags.cells,
+            sheets: &flags.sheets,
             stats: flags.stats,
             common: &flags.common,
         };
@@ -216,25 +225,33 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let options = flags.options()?;
-    let mut output = cells::create(&flags.output, options.raster.format)?;
+    let mut output =
+        flags.sheets.create(&flags.output, options.raster.format, &flags.cells, flags.inputs())?;
     let mut reader = open_stream(&flags.input)?;
     dem::check(reader.header(), &options.quantity).map_err(|e| e.of_input(reader.name()))?;
     let grid = flags.cells.grid(|| dem::window(reader.header()).map_err(|e| e.of_input(reader.name())))?;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
     let done = |vertices| progress.set(vertices);
-    let stats = dem::rasterize(&mut reader, &mut output, &grid, &options, done)?;
+    let stats = dem::rasterize(&mut reader, output.destination(), &grid, &options, done)?;
     drop(progress);
-    let output_bytes = output.bytes_written();
-    output.commit()?;
-    stats.notices.iter().for_each(|message| notice(TOOL, &flags.common, message));
-    notice(TOOL, &flags.common, &cells::summary(&grid, stats.cells - stats.known));
+    let committed = output.commit()?;
+    let messages = stats.notices.iter().cloned();
+    let messages =
+        messages.chain([cells::summary(&grid, stats.cells - stats.known)]).chain(committed.notice());
+    messages.for_each(|message| notice(TOOL, &flags.common, &message));
     if let Some(format) = flags.stats {
-        rows::print(format, started.elapsed(), counts(&stats, output_bytes));
+        rows::print(format, started.elapsed(), counts(&stats, committed.bytes));
     }
     Ok(())
 }
 
 impl Flags {
+    /// The files that are read.
+    fn inputs(&self) -> impl Iterator<Item = &Path> {
+        let inputs = iter::once(self.input.as_path());
+        inputs.chain(self.cells.like().map(PathBuf::as_path)).chain(self.outline.mask_path())
+    }
+
     fn point_options(&self) -> Result<PointOptions, Error> {
         Ok(PointOptions {
             statistic: self.quantity.statistic()?,

@@ -48,6 +48,8 @@ Examples:
   The centroid triangulation of configurations, and the link of a pair of knots:
     spview --order 2 knots.spm -o order2.svg
     spview --set 3,7 knots.spm -o link.svg
+  Knots that were pulled apart, as two each, in their triangulation:
+    configgen --pull-apart all knots.txt | spview --apart --order 1 -o pulled.svg
 ";
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -175,6 +177,10 @@ pub struct Flags {
     #[arg(long, value_name = "KNOT,KNOT,...", value_delimiter = ',')]
     set: Option<Vec<u32>>,
 
+    /// For configurations: draw the copies of a knot around their place, instead of on each other
+    #[arg(long)]
+    apart: bool,
+
     #[command(flatten)]
     common: Common,
 }
@@ -292,6 +298,7 @@ impl Flags {
             crs: self.crs.system()?,
             order: self.order.map(usize::from),
             set: self.set.clone(),
+            apart: self.apart,
             ..defaults
         })
     }

@@ -79,6 +79,9 @@ pub const VTK_BLOCK_MAX: u64 = 1 << 26;
 /// Most tiles of a raster of triangles, of 65,536 cells each: their index takes 100 MB.
 pub const RASTER_TILES_MAX: u64 = 1 << 22;
 
+/// Most files of one raster.
+pub const SHEETS_MAX: u64 = 1 << 20;
+
 /// Most levels of contour lines that pass through one triangle: their open ends take about 40 MB.
 pub const CONTOURS_PER_TRIANGLE_MAX: u64 = 1 << 17;
 

@@ -4,7 +4,7 @@ use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, IsTerminal, Seek, SeekFrom, Write};
 use std::os::fd::{AsFd, AsRawFd};
 use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
 
 use rustix::fs::{AtFlags, CWD};
@@ -13,7 +13,7 @@ use rustix::fs::{Mode, OFlags};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::system;
-use crate::temporary::without_path;
+use crate::temporary::{Name, without_path};
 use crate::upstream;
 
 /// Bytes of the write buffer.
@@ -38,7 +38,8 @@ const TEMPORARY_PREFIX: &str = ".spmesh-";
 ///
 /// Invariant: the final name exists only after [`Output::commit`]. The data go to an unnamed file
 /// (`O_TMPFILE`) in the same folder, so that even a killed process leaves nothing behind. If the system has
-/// no unnamed files, the data go to a temporary name, which is removed on every exit except a kill.
+/// no unnamed files, the data go to a temporary name, which is removed on every exit except a kill that
+/// cannot be caught, if the program has called [`crate::temporary::remove_names_at_signals`].
 pub struct Output {
     name: String,
     sink: Sink,
@@ -57,6 +58,8 @@ enum Sink {
     Named {
         file: BufWriter<tempfile::NamedTempFile>,
         target: PathBuf,
+        /// Removes the file at a signal.
+        _name: Name,
     },
 }
 
@@ -96,8 +99,8 @@ impl Output {
         self.written
     }
 
-    /// Flushes, waits until the data of a file are on the disk, gives it its final name, and waits until that is
-    /// on the disk too. An existing file of that name is replaced.
+    /// Flushes, waits until the data of a file are on the disk, gives it its final name, and waits until that
+    /// is on the disk too. An existing file of that name is replaced.
     ///
     /// # Errors
     /// If the last bytes cannot be written, or the file cannot get its name. Nothing is left behind then.
@@ -105,7 +108,7 @@ impl Output {
         let committed = match self.sink {
             Sink::InPlace(mut file) => file.flush(),
             Sink::Unnamed { file, target } => commit_unnamed(file, &target),
-            Sink::Named { file, target } => commit_named(file, &target),
+            Sink::Named { file, target, _name } => commit_named(file, &target),
         };
         committed.map_err(|e| Error::io("finishing the output", e).of_input(self.name))
     }
@@ -192,12 +195,35 @@ fn create_file(path: &Path) -> io::Result<Sink> {
         keep_permissions(&file, replaced.as_ref());
         return Ok(Sink::Unnamed { file: BufWriter::with_capacity(BUFFER_LEN, file), target });
     }
-    let mode = replaced.as_ref().map_or(FILE_MODE, |replaced| replaced.mode() & FILE_MODE);
+    create_named(target, replaced.as_ref())
+}
+
+/// A file with a temporary name beside its target.
+fn create_named(target: PathBuf, replaced: Option<&Metadata>) -> io::Result<Sink> {
+    let mode = replaced.map_or(FILE_MODE, |replaced| replaced.mode() & FILE_MODE);
+    let (file, name) = with_temporary_name(&target, |path| {
+        fs::OpenOptions::new().write(true).create_new(true).mode(mode).open(path)
+    })?;
+    keep_permissions(file.as_file(), replaced);
+    Ok(Sink::Named { file: BufWriter::with_capacity(BUFFER_LEN, file), target, _name: name })
+}
+
+/// Makes a file with a temporary name beside its target. The name is known to the handler of signals before
+/// the file exists, so that no moment is left in which a signal would leave it behind.
+fn with_temporary_name<F>(
+    target: &Path,
+    mut make: impl FnMut(&Path) -> io::Result<F>,
+) -> io::Result<(tempfile::NamedTempFile<F>, Name)> {
+    let mut name = None;
     let mut builder = tempfile::Builder::new();
-    builder.prefix(TEMPORARY_PREFIX).permissions(fs::Permissions::from_mode(mode));
-    let file = builder.tempfile_in(folder_of(&target)).map_err(without_path)?;
-    keep_permissions(file.as_file(), replaced.as_ref());
-    Ok(Sink::Named { file: BufWriter::with_capacity(BUFFER_LEN, file), target })
+    let file = builder.prefix(TEMPORARY_PREFIX).make_in(folder_of(target), |path| {
+        // The name of an earlier attempt belongs to another file.
+        drop(name.take());
+        name = Some(Name::new(path));
+        make(path).inspect_err(|_| drop(name.take()))
+    });
+    let file = file.map_err(without_path)?;
+    Ok((file, name.unwrap_or_else(|| Name::new(Path::new("")))))
 }
 
 /// Gives a file the owner and the permissions of the file that it will replace, as far as the system allows.
@@ -253,9 +279,7 @@ fn commit_unnamed(file: BufWriter<File>, target: &Path) -> io::Result<()> {
     file.sync_all()?;
     match link(&file, target) {
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
-            let mut builder = tempfile::Builder::new();
-            let linked =
-                builder.prefix(TEMPORARY_PREFIX).make_in(folder_of(target), |name| link(&file, name))?;
+            let (linked, _name) = with_temporary_name(target, |name| link(&file, name))?;
             linked.into_temp_path().persist(target).map_err(|e| e.error)?;
         }
         other => other?,
@@ -282,5 +306,61 @@ fn sync_folder(folder: &Path) -> io::Result<()> {
     match folder.sync_all() {
         Err(e) if matches!(e.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => Ok(()),
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{BufRead, BufReader};
+    use std::os::unix::process::ExitStatusExt;
+    use std::process::{Command, Stdio};
+
+    use super::*;
+    use crate::temporary::remove_names_at_signals;
+
+    /// The folder of the child process, which is this program again.
+    const FOLDER: &str = "SPMESH_TEST_INTERRUPTED_FOLDER";
+
+    /// The child: it writes to a file with a temporary name, says so, and waits for its end.
+    fn write_and_wait(folder: &Path) {
+        remove_names_at_signals();
+        let sink = create_named(folder.join("mesh.spm"), None).unwrap();
+        let mut output = Output { name: "mesh.spm".into(), sink, written: 0, write_back_end: 0 };
+        output.write_all(b"half").unwrap();
+        output.flush().unwrap();
+        println!("ready");
+        let _ = io::stdin().read_line(&mut String::new());
+        output.commit().unwrap();
+    }
+
+    #[test]
+    fn signals_remove_files_with_temporary_names() {
+        if let Some(folder) = std::env::var_os(FOLDER) {
+            return write_and_wait(Path::new(&folder));
+        }
+        for signal in [Some(libc::SIGINT), Some(libc::SIGTERM), Some(libc::SIGHUP), None] {
+            let folder = tempfile::tempdir().unwrap();
+            let mut child = Command::new(std::env::current_exe().unwrap());
+            child.args([
+                "--exact",
+                "--nocapture",
+                "output::tests::signals_remove_files_with_temporary_names",
+            ]);
+            child.env(FOLDER, folder.path()).stdin(Stdio::piped()).stdout(Stdio::piped());
+            let mut child = child.spawn().unwrap();
+            let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+            assert!(lines.any(|line| line.unwrap().ends_with("ready")));
+            let names = || fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+            assert!(names().next().unwrap().to_string_lossy().starts_with(TEMPORARY_PREFIX));
+            match signal {
+                // SAFETY: the call takes integers.
+                Some(signal) => drop(unsafe { libc::kill(child.id() as i32, signal) }),
+                None => child.stdin.take().unwrap().write_all(b"go on\n").unwrap(),
+            }
+            // The output of the test program goes on to its end.
+            lines.for_each(drop);
+            assert_eq!(child.wait().unwrap().signal(), signal);
+            assert_eq!(names().collect::<Vec<_>>(), if signal.is_some() { vec![] } else { vec!["mesh.spm"] });
+        }
     }
 }

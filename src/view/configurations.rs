@@ -1,6 +1,7 @@
 //! Pictures of configurations: knots, centroid triangulations, and the link of a set of knots (thesis, figure
 //! 7.3).
 
+use super::copies;
 use super::options::Options;
 use super::picture::Picture;
 use super::points;
@@ -13,7 +14,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::{self, CentroidMesh, Configurations, FARAWAY, Knots};
 use spmesh_io::raster::colour_map::{Colour, hex};
 use spmesh_model::bounds::{Bounds, Point};
-use spmesh_stream::{ConfigurationSet, Coordinates, Header};
+use spmesh_stream::{ConfigurationSet, Header};
 
 /// Triangles of the lower degree, the link, its inside, the chosen set, the knots, and triangles of the upper
 /// degree.
@@ -37,7 +38,6 @@ const EDGES_MAX: usize = 40_000;
 struct Diagram<'a> {
     set: &'a ConfigurationSet,
     knots: &'a Knots,
-    coordinates: Coordinates,
     scene: Scene,
     units: Units,
     options: &'a Options,
@@ -57,10 +57,15 @@ pub(super) fn picture(
     let coordinates = header.coordinates;
     let units = Units::of(options.crs.as_ref().unwrap_or(&header.crs));
     let places = knots.points().iter().map(|&[x, y]| coordinates.to_world([x, y, 0.0]));
-    let places: Vec<Point> = places.collect();
+    let mut places: Vec<Point> = places.collect();
+    if options.apart {
+        places =
+            copies::apart(&places, set.degrees.iter().find(|configurations| configurations.degree() == 0));
+    }
+    let places = places;
     let bounds = Bounds::of_points(&places).unwrap_or(Bounds::of_point([0.0; 3]));
     let scene = Scene::plan(&bounds, options.bounds, PAD, options.width)?;
-    let diagram = Diagram { set, knots, coordinates, scene, units, options };
+    let diagram = Diagram { set, knots, scene, units, options };
     match &options.set {
         Some(chosen) => diagram.link(chosen, &places),
         None => diagram.centroids(&places),
@@ -78,9 +83,10 @@ impl Diagram<'_> {
         // A stream may have a single degree; then the triangles of the lower degree stay blank.
         let missing = (order > 1).then(|| Configurations::new(order - 2, upper.claim()));
         let lower = self.find(order.wrapping_sub(2)).or(missing.as_ref());
-        let mesh = CentroidMesh::of(self.knots, lower, upper)?;
-        let places: Vec<Point> =
-            mesh.vertices.iter().map(|&[x, y]| self.coordinates.to_world([x, y, 0.0])).collect();
+        // Centroids in the world: copies that are drawn apart are apart there only.
+        let drawn = Knots::new(knots.iter().map(|&[x, y, _]| [x, y]).collect())?;
+        let mesh = CentroidMesh::of(&drawn, lower, upper)?;
+        let places: Vec<Point> = mesh.vertices.iter().map(|&[x, y]| [x, y, 0.0]).collect();
         let corners = |triangle: &[u32; 3]| triangle.map(|vertex| places[vertex as usize]);
         let (upper, lower) = mesh.triangles.split_at(mesh.from_upper);
         let map = self.rings("upper", UPPER, upper.iter().map(corners))

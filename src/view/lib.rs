@@ -17,6 +17,7 @@
 mod canvas;
 mod cells;
 mod configurations;
+mod copies;
 mod depth_sort;
 mod drawing;
 mod extent;

@@ -95,6 +95,8 @@ pub struct Options {
     pub order: Option<usize>,
     /// The set of knots of configurations whose link is drawn.
     pub set: Option<Vec<u32>>,
+    /// Draws copies of a knot in configurations around their place instead of on each other.
+    pub apart: bool,
 }
 
 impl Options {
@@ -123,6 +125,7 @@ impl Options {
             crs: None,
             order: None,
             set: None,
+            apart: false,
         }
     }
 }

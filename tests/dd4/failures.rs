@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use std::process::{Command, Stdio};
 
 use super::diagram;
-use crate::programs::{assert_silent_without_reader, outcome, run, start, tool};
+use crate::programs::{Folder, assert_silent_without_reader, outcome, run, start, tool};
 
 #[test]
 fn points_without_a_volume_say_their_dimension() {
@@ -131,5 +131,26 @@ fn too_little_memory_has_its_exit_code() {
         // Other systems do not tell their memory beforehand.
         let is_early = !cfg!(target_os = "linux") || message.contains(part);
         assert!(is_early && message.contains("not enough memory"), "{message}");
+    }
+}
+
+#[test]
+fn selections_that_do_not_fit_the_memory_are_refused_before_the_work() {
+    let folder = Folder::new();
+    let volume = folder.write("volume.raw", vec![0; 4 * 810_000]);
+    let dd4 = env!("CARGO_BIN_EXE_dd4");
+    // Only the condition tells how many points are selected: all, half of them, and few.
+    for (condition, code) in [("value >= 0", 5), ("x < 15", 5), ("t < 2 and z < 2 and x < 5 and y < 5", 0)] {
+        let limited = format!(
+            "ulimit -v 100000 || exit 99; exec '{dd4}' '{volume}' --raw 30x30x30x30:f32le --where '{condition}' -o /dev/null"
+        );
+        let output = Command::new("sh").args(["-c", &limited]).env("RUST_BACKTRACE", "0").output().unwrap();
+        let (found, message) = outcome(&output);
+        if found == Some(99) || !cfg!(target_os = "linux") {
+            eprintln!("SKIPPED: memory cannot be limited here, or is not told");
+            return;
+        }
+        let early = "the diagram of 146286 points takes at least 98 MiB, there are 98";
+        assert!(found == Some(code) && (code == 0 || message.contains(early)), "{condition}: {message}");
     }
 }

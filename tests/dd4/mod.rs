@@ -1,8 +1,11 @@
 //! `dd4`: points in, streams of cells out.
 
 mod failures;
+mod interrupts;
+mod oblique;
 mod products;
 mod routes;
+mod time_scale;
 
 use std::fs;
 

@@ -9,6 +9,7 @@ pub mod outline;
 mod pieces;
 pub mod pipelines;
 mod samples;
+mod sheets;
 mod tiles;
 
 use std::io::Cursor;
@@ -18,6 +19,7 @@ use spmesh_io::raster::{Grid, RasterFormat, RasterOptions};
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Header, Kind, StreamReader, write_triangles};
 use spmesh_terrain::dem::{Method, Options, Quantity, Sample, Stats, rasterize};
+use spmesh_terrain::files::Destination;
 
 use spmesh_reference::incremental;
 use spmesh_reference::sets::Random;
@@ -75,7 +77,7 @@ fn file(stream: &[u8], format: RasterFormat, grid: &Grid, options: &Options) -> 
     let mut output = Cursor::new(Vec::new());
     let raster = RasterOptions { format, ..options.raster.clone() };
     let options = Options { raster, ..options.clone() };
-    let stats = rasterize(&mut reader, &mut output, grid, &options, |_| {})?;
+    let stats = rasterize(&mut reader, Destination::File(&mut output), grid, &options, |_| {})?;
     Ok((output.into_inner(), stats))
 }
 

@@ -151,10 +151,18 @@ fn world_units_follow_sform_then_qform_then_the_distances() {
     assert_fails(
         read_world(&mapped(Header::new(false), 0.25).file()),
         ErrorKind::Usage,
-        &["axes of the world", "grid indices"],
+        &["not perpendicular", "grid indices"],
     );
-    let quarter = Header::new(false).with(252, 1i16.to_le_bytes()).with(264, 0.5f32.to_le_bytes());
-    assert_fails(read_world(&quarter.file()), ErrorKind::Usage, &["axes of the world"]);
+    // A quarter turn around z: the axes of the grid are those of the world in another order.
+    let half = std::f32::consts::FRAC_1_SQRT_2.to_le_bytes();
+    let quarter = steps(Header::new(false)).with(252, 1i16.to_le_bytes()).with(264, half);
+    let points = read_world(&quarter.file()).unwrap();
+    assert_eq!((points.points[1], points.orientation), ([0.0, 2.0, 0.0, 100.0], None));
+    let sixth = steps(Header::new(false)).with(252, 1i16.to_le_bytes()).with(264, 0.5f32.to_le_bytes());
+    let points = read_world(&sixth.file()).unwrap();
+    assert_eq!(points.points[3], [2.0, 0.0, 0.0, 100.5]);
+    let [x, y, z] = points.orientation.unwrap().to_world([2.0, 0.0, 0.0]);
+    assert!((x - 1.0).abs() + (y - 3f64.sqrt()).abs() + z.abs() < 1e-15, "{x} {y} {z}");
     let flat = Header::new(false).with(80, 0f32.to_le_bytes());
     assert_fails(read_world(&flat.file()), ErrorKind::Usage, &["apart"]);
 }

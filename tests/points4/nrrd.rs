@@ -177,6 +177,19 @@ fn world_units_are_what_the_header_states() {
 }
 
 #[test]
+fn directions_may_be_oblique_or_in_another_order() {
+    let turned = "space directions: (0,2,0) (4,0,0) (0,0,3) none\nspace origin: (1,8,-1)\n";
+    let points = read_world(&small(turned)).unwrap();
+    assert_eq!((points.points[7], points.orientation), ([5.0, 10.0, -1.0, 1.0], None));
+    let oblique = "kinds: time space space space\nspace directions: none (3,4,0) (-8,6,0) (0,0,3)\n\
+                   space origin: (1,8,-1)\n";
+    let points = read_world(&small(oblique)).unwrap();
+    // The axis of z has one more sample, that of y none.
+    assert_eq!(points.points[7], [5.0, 0.0, 3.0, 1.0]);
+    assert_eq!(points.orientation.unwrap().point_to_world(points.points[7]), [4.0, 12.0, 2.0, 1.0]);
+}
+
+#[test]
 fn rounded_world_units_are_told() {
     let points = read_world(&small("spacings: 0.1 0.3 1 1\naxis mins: 0.7 0 0 0\n")).unwrap();
     assert_eq!(points.warnings.len(), 1);
@@ -192,8 +205,8 @@ fn world_units_that_are_not_known_are_refused() {
         ("spacings: 1 2 inf 1\n", "inf apart"),
         ("spacings: 1 2 1\n", "3 entries for 4"),
         ("spacings: 1 2 one 1\n", "\"one\""),
-        ("space directions: (1,0.1,0) (0,1,0) (0,0,1) none\n", "along the axes"),
-        ("space directions: (0,1,0) (1,0,0) (0,0,1) none\n", "along the axes"),
+        ("space directions: (1,0.1,0) (0,1,0) (0,0,1) none\n", "not perpendicular"),
+        ("space directions: (1,0.1,0,0) (0,1,0,0) (0,0,1,0) (0,0,0,1)\n", "along the axes"),
         ("space directions: (1,0,0) (0,1,0) (0,0,1)\n", "for each axis"),
         ("space directions: (1,0,0) (0,1) (0,0,1) none\n", "components"),
         ("space directions: (1,0,0) (0,1,0 none\n", "a vector"),

@@ -59,3 +59,30 @@ fn a_volume_and_a_grid_of_its_size_give_the_same_choice() {
     assert_eq!(raw.len(), 205);
     assert_eq!(raw, grid);
 }
+
+#[test]
+fn too_many_points_are_refused_before_one_is_kept() {
+    // A file with a hole for all values but the first ones, which takes no room on the disk.
+    let folder = Folder::new();
+    let path = folder.file("volume.raw", b"");
+    let large = std::fs::File::options().write(true).open(&path).unwrap();
+    large.set_len(264_000_000).unwrap();
+    let from = |kind: &str| From4::Raw(path.clone(), format!("1000x1000x66x4:{kind}").parse().unwrap());
+    let refused = |request| {
+        let error = read_points4(&request).expect_err("there are too many points");
+        assert!(error.to_string().contains("--count"), "{error}");
+        error.to_string()
+    };
+    assert!(refused(all(from("u8"))).contains("264000000 points, more than 67108864"));
+    for (share, found) in
+        [(Share::Part(0.5), "132000000 points"), (Share::Count(100_000_000), "100000000 points")]
+    {
+        let mut request = all(from("u8"));
+        request.selection.share = Some(share);
+        assert!(refused(request.clone()).contains(found));
+        if let Share::Count(_) = share {
+            request.selection.condition = Some("value == 0".parse().unwrap());
+            assert!(refused(request).contains(found));
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use spmesh_core::error::{Error, ErrorKind};
-use spmesh_dd4::{Form, Product};
+use spmesh_dd4::{Form, Placement, Product};
 use spmesh_geometry::spacetime::{Slice, Surface, isosurface, slice};
 use spmesh_model::cells4::Point4;
 
@@ -164,7 +164,7 @@ fn products_are_written() {
     let diagram = with_values(sampled(&mut Random::new(36), [3, 3, 3, 3], 0.7), |p| p[0]);
     let product = |product: Product| {
         let mut bytes = Vec::new();
-        let notices = product.write(&diagram, false, &mut bytes)?;
+        let notices = product.write(&diagram, &Placement::default(), false, &mut bytes)?;
         Ok((String::from_utf8_lossy(&bytes).into_owned(), notices))
     };
     let text = |product_: Product| product(product_).unwrap_or_else(|e: Error| panic!("{e}"));

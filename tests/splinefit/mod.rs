@@ -5,6 +5,7 @@ mod features;
 mod info;
 mod rasters;
 mod robust;
+mod safety;
 mod sources;
 
 use serde_json::Value;

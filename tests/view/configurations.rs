@@ -66,3 +66,40 @@ fn splines_have_their_knots_and_configurations() {
     assert!(named(&elements, "upper").is_some() && named(&elements, "lower").is_none());
     assert!(within(&elements, "knots", "circle").len() > 8);
 }
+
+/// Twice the signed area of a ring.
+fn area(ring: &[[f64; 2]]) -> f64 {
+    ring.iter().zip(ring.iter().cycle().skip(1)).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum()
+}
+
+#[test]
+fn copies_of_knots_are_drawn_apart() {
+    let knots = grid(4);
+    let sharp: Vec<&str> = knots.lines().chain(["100 100 0", "100 100 0", "100 100 0"]).collect();
+    let pulled = output("configgen", &["--pull-apart", "all", "-"], knots.as_bytes());
+    let repeated = output("configgen", &["-"], sharp.join("\n").as_bytes());
+    for (stream, count, distinct, flat) in [(&pulled, 32, 16, 0), (&repeated, 19, 17, usize::MAX)] {
+        let places = |apart: bool| {
+            let options = Options { order: Some(1), apart, ..Options::new("knots") };
+            let elements = parse(&picture(stream, &options).svg);
+            let knots = within(&elements, "knots", "circle").len();
+            (knots, named(&elements, "upper").unwrap().rings())
+        };
+        assert_eq!(places(false).0, distinct);
+        let (knots, triangles) = places(true);
+        assert_eq!(knots, count);
+        assert_eq!(triangles.len(), set(stream).degrees[0].len());
+        // Triangles are counterclockwise in the plane, and y goes down in pictures. So flat triangles have
+        // opened to the right side, and no other one has turned over.
+        let wrong = triangles.iter().filter(|ring| area(ring) >= 0.0).count();
+        assert!(wrong <= flat, "{wrong} of {} triangles are flat or turned over", triangles.len());
+    }
+    // A link of a pulled knot, and the centroids of pairs, are drawn too.
+    for options in [
+        Options { set: Some(vec![5]), apart: true, ..Options::new("knots") },
+        Options { order: Some(2), apart: true, ..Options::new("knots") },
+    ] {
+        let elements = parse(&picture(&pulled, &options).svg);
+        assert_eq!(within(&elements, "numbers", "text").len(), 32);
+    }
+}

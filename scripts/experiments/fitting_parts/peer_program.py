@@ -1,4 +1,4 @@
-"""One scipy method in a separate process: peer_program.py METHOD POINTS SITES VALUES [UNKNOWNS].
+"""One method of scipy or pykrige in a separate process: peer_program.py METHOD POINTS SITES VALUES [UNKNOWNS].
 
 POINTS has rows of x, y and z; VALUES gets the method's results at SITES. All are numpy files. If SITES is a
 number, VALUES is a raster with so many cells along each side of the box of the points.
@@ -12,6 +12,8 @@ from scipy import interpolate
 # A compromise between time and error; the complete system of equations does not fit in memory.
 NEIGHBOURS = 50
 DEGREE = 3
+# Points that the variogram is fitted to, classes of distance, and sites that are kriged together.
+SEED, SAMPLE, LAGS, SITES_MAX = 1, 3_000, 30, 400
 
 
 def linear(points, sites, _):
@@ -41,11 +43,46 @@ def bicubic(points, sites, unknowns):
     return spline(*sites.T, grid=False)
 
 
+def kriging(model):
+    """Ordinary kriging with a variogram model, from the nearest points."""
+
+    def values(points, sites, _):
+        from pykrige.ok import OrdinaryKriging
+        from scipy.spatial import cKDTree
+
+        tree, found = cKDTree(points[:, :2]), np.empty(len(sites))
+        chosen = points[np.random.default_rng(SEED).permutation(len(points))[:SAMPLE]]
+        kriged = OrdinaryKriging(*chosen.T, variogram_model=model, nlags=LAGS, weight=True)
+        for group in groups(sites):
+            # pykrige makes a full matrix of all points that it has.
+            near = points[np.unique(tree.query(sites[group], NEIGHBOURS)[1])]
+            kriged.X_ADJUSTED, kriged.Y_ADJUSTED, kriged.Z = near.T
+            near_values = kriged.execute("points", *sites[group].T, backend="loop", n_closest_points=NEIGHBOURS)
+            found[group] = near_values[0]
+        return found
+
+    return values
+
+
+def groups(sites):
+    """Numbers of sites that are close to each other: halves along the longer side, again and again."""
+    waiting = [np.arange(len(sites))]
+    while waiting:
+        group = waiting.pop()
+        if len(group) <= SITES_MAX:
+            yield group
+            continue
+        axis = np.argmax(np.ptp(sites[group], axis=0))
+        group = group[np.argsort(sites[group, axis])]
+        waiting += [group[: len(group) // 2], group[len(group) // 2 :]]
+
+
 def centres(first, last, count):
     return first + (np.arange(count) + 0.5) / count * (last - first)
 
 
 METHODS = {"linear": linear, "clough-tocher": clough_tocher, "thin-plates": thin_plates, "bicubic": bicubic}
+METHODS |= {f"kriging-{model}": kriging(model) for model in ("linear", "power", "spherical", "exponential")}
 
 
 def main():

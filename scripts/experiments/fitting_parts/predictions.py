@@ -60,10 +60,11 @@ class Scipy:
     name: str
     method: str
     has_unknowns: bool = False
+    package: str = "scipy"
 
     def predict(self, work, points, sites, unknowns):
-        if not has_scipy():
-            return Prediction(reason="scipy is not installed")
+        if not is_installed(self.package):
+            return Prediction(reason=f"{self.package} is not installed")
         files = [work.folder / f"{name}.npy" for name in ("points", "sites", "values")]
         np.save(files[0], points)
         np.save(files[1], sites)
@@ -82,9 +83,18 @@ PEERS = [
     Scipy("bicubic, least squares (scipy)", "bicubic", has_unknowns=True),
 ]
 
+KRIGING = [
+    Scipy(f"ordinary kriging, {model} (pykrige)", f"kriging-{model}", package="pykrige")
+    for model in ("linear", "power", "spherical", "exponential")
+]
+
+
+def is_installed(package):
+    return importlib.util.find_spec(package) is not None
+
 
 def has_scipy():
-    return importlib.util.find_spec("scipy") is not None
+    return is_installed("scipy")
 
 
 def run(command):

@@ -9,7 +9,7 @@ import subprocess
 
 import inputs
 import numpy as np
-from predictions import HEAD, PEERS, Ours, compare
+from predictions import HEAD, KRIGING, PEERS, Ours, compare
 from tsv import write_tables
 from work import progress
 
@@ -31,8 +31,9 @@ def run(work, flags):
         fitted, held = held_back(points)
         progress(f"terrain: {path.name}: {len(points)} points, {len(held)} held back in the hull")
         rows = [["", *row] for row in compare(work, ways(), fitted, held[:, :2], held[:, 2])]
-        spoilt = with_gross_errors(fitted)
-        rows += [["1 %", *row] for row in compare(work, robust_ways(), spoilt, held[:, :2], held[:, 2])]
+        if not flags.clean:
+            spoilt = with_gross_errors(fitted)
+            rows += [["1 %", *row] for row in compare(work, robust_ways(), spoilt, held[:, :2], held[:, 2])]
         write_tables(flags.out / f"terrain-{path.stem}", ("gross errors", "way", *HEAD), rows)
 
 
@@ -41,7 +42,10 @@ def ways():
         Ours("splinefit"),
         Ours("splinefit --step D", step=1.0),
         Ours("splinefit --step 0.7*D", step=0.7),
+        Ours("splinefit --step D --lambda gcv", ("--lambda", "gcv"), step=1.0),
+        Ours("splinefit --step D --lambda cv", ("--lambda", "cv"), step=1.0),
         *PEERS,
+        *KRIGING,
     ]
 
 

@@ -18,7 +18,9 @@ pub const EXAMPLES: &str =
   Where a series of volumes is brighter than 0.3, in its second half:
     dd4 heart.nrrd --where 'value > 0.3 and t >= 10' -o heart.spm
   100,000 of those points; values without a header, 20 time steps of 64 x 64 x 64:
-    dd4 heart.raw --raw 64x64x64x20:f32le --where 'value > 0.3' --count 100000 -o heart.spm";
+    dd4 heart.raw --raw 64x64x64x20:f32le --where 'value > 0.3' --count 100000 -o heart.spm
+  In the units of the header, such as mm and s, where things move about 3 mm/s; a surface at 4.5 s:
+    dd4 heart.nii --spacing world --time-scale 3 --slice 4.5 --isosurface 0.4 -o heart.ply";
 
 /// The input and the selection of points.
 #[derive(Debug, Clone, Args)]
@@ -39,7 +41,8 @@ pub struct SourceFlags {
     raw: Option<RawLayout>,
 
     /// Coordinates of a volume: grid indices from 0, or what its header states (world), in its units and
-    /// rounded; the axes must be those of the world
+    /// rounded. The grid may be oblique if its axes are perpendicular: a stream then holds distances along
+    /// them
     #[arg(long, value_enum, default_value_t = SpacingFlag::Index, value_name = "index|world", hide_possible_values = true)]
     spacing: SpacingFlag,
 

@@ -27,7 +27,7 @@ pub(super) struct ContourFlags {
         long,
         value_name = "D",
         allow_negative_numbers = true,
-        conflicts_with_all = ["CellFlags", "RasterFlags", "kind", "method", "light", "multidirectional", "range", "fill"]
+        conflicts_with_all = ["CellFlags", "SheetFlags", "RasterFlags", "kind", "method", "light", "multidirectional", "range", "fill"]
     )]
     contours: Option<f64>,
 

@@ -1,12 +1,14 @@
 //! `spdem --points`: a raster of points.
 
-use std::path::Path;
+use std::iter;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::cells::{self, CellFlags};
 use crate::progress::Progress;
 use crate::reduction::open_stream;
 use crate::rows::{self, Row};
+use crate::sheets::SheetFlags;
 use crate::{Common, StatsFormat, notice, peak_memory};
 use spmesh_core::error::Result;
 use spmesh_terrain::points::{self, Options, Stats};
@@ -19,6 +21,7 @@ pub(super) struct Job<'f> {
     pub(super) input: &'f Path,
     pub(super) output: &'f Path,
     pub(super) cells: &'f CellFlags,
+    pub(super) sheets: &'f SheetFlags,
     pub(super) stats: Option<StatsFormat>,
     pub(super) common: &'f Common,
 }
@@ -28,21 +31,23 @@ pub(super) struct Job<'f> {
 /// # Errors
 /// As [`points::rasterize`], and if the input or the output cannot be opened.
 pub(super) fn run(job: &Job, options: &Options, started: Instant) -> Result<()> {
-    let mut output = cells::create(job.output, options.raster.format)?;
+    let inputs = iter::once(job.input).chain(job.cells.like().map(PathBuf::as_path));
+    let mut output = job.sheets.create(job.output, options.raster.format, job.cells, inputs)?;
     let mut reader = open_stream(job.input)?;
     points::check(reader.header(), options).map_err(|e| e.of_input(reader.name()))?;
     let window = || points::window(reader.header()).map_err(|e| e.of_input(reader.name()));
     let grid = job.cells.grid(window)?;
     let mut progress = Progress::new(job.common, "counting", reader.header().points);
-    let stats = points::rasterize(&mut reader, &mut output, &grid, options, |points| progress.set(points))?;
+    let done = |points| progress.set(points);
+    let stats = points::rasterize(&mut reader, output.destination(), &grid, options, done)?;
     drop(progress);
-    let output_bytes = output.bytes_written();
-    output.commit()?;
+    let committed = output.commit()?;
     let say = |message: &str| notice(super::TOOL, job.common, message);
     stats.notices.iter().for_each(|message| say(message));
     say(&cells::summary(&grid, stats.cells - stats.known));
+    committed.notice().iter().for_each(|message| say(message));
     if let Some(format) = job.stats {
-        rows::print(format, started.elapsed(), counts(&stats, output_bytes));
+        rows::print(format, started.elapsed(), counts(&stats, committed.bytes));
     }
     Ok(())
 }

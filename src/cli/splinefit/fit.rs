@@ -28,13 +28,15 @@ use spmesh_splines::fitting::Loss;
 const NOTES: &str = "\
 Without --knots, the program searches for knots. It starts with a coarse grid over the box of the points. \
 Each round adds knots where residuals exceed --tol [default: 0.25 % of the range of most elevations], up to \
---max-knots [default: one for 4 points, at most 20,000]. With --step, knots form a grid; one knot for each \
-point predicts terrain best and takes the most time. Points as knots are for splines of degree 2 over their \
+--max-knots [default: one for 4 points, at most 20,000]. Without both flags, the search ends at 5,000 knots; \
+if residuals still exceed the tolerance, the knots are those of a grid with about two for each point (at most \
+300,000), which predicts terrain best. With --step, knots form a grid with cells of this side. Points as knots are for splines of degree 2 over their \
 convex hull: the border is pulled apart.
 
 Without --lambda, given knots get the coefficients of least squares. Those that points do not determine \
-make the surface as smooth as possible. Other knots get the default lambda, which halves waves as short as \
-two distances of points: it bridges gaps and predicts terrain best. LAMBDA multiplies the thin-plate energy (plus a thousandth of the bending of the \
+make the surface as smooth as possible. For other knots, lambda is chosen by restricted maximum likelihood \
+(reml), which bridges gaps and adapts to noise. No choice is less than a floor that depends on the distance \
+of points. LAMBDA multiplies the thin-plate energy (plus a thousandth of the bending of the \
 control mesh), which is added to the sum of squares of residuals.
 
 --features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which \
@@ -44,7 +46,7 @@ spline with one of the words. Polylines may meet at common vertices only.
 
 --robust weighs points by their residuals, iteratively: huber reduces weights beyond 1.345 standard \
 deviations, tukey reduces them to zero at 4.685. Points beyond 4.685 are rejected. The deviation is \
-estimated from the median of magnitudes.";
+estimated from the median of magnitudes. If lambda is chosen, it is chosen with these weights.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
@@ -79,8 +81,9 @@ pub(super) struct Flags {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = parse_positive, conflicts_with_all = ["tol", "max_knots"])]
     step: Option<f64>,
 
-    /// How much to smooth: a number, gcv (generalised cross-validation), or cv or cv:FOLDS (cross-validation)
-    #[arg(long, value_name = "LAMBDA|gcv|cv[:FOLDS]", allow_negative_numbers = true)]
+    /// How much to smooth: a number, reml (restricted maximum likelihood), gcv (generalised
+    /// cross-validation), or cv or cv:FOLDS (cross-validation)
+    #[arg(long, value_name = "LAMBDA|reml|gcv|cv[:FOLDS]", allow_negative_numbers = true)]
     lambda: Option<Smoothing>,
 
     /// Weigh points by their residuals, so that gross errors count little, or not at all
@@ -124,7 +127,7 @@ pub(super) struct Flags {
     #[arg(long, value_name = "BOX", value_parser = parse_box, allow_hyphen_values = true)]
     bounds: Option<Bounds>,
 
-    /// Seed of folds, and of estimates for gcv
+    /// Seed of folds
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use super::report::{outside, residual_rows};
+use super::report::{excess, extent_json, outside, residual_rows};
 use super::{Threads, check_stdin, say};
 use crate::Common;
 use crate::messages::{escaped, escaped_json};
@@ -16,7 +16,9 @@ use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_io::raster::Window;
 use spmesh_io::source::SourceOptions;
-use spmesh_splinefit::{Candidate, Condition, Layout, Points, Smoothness, Spline, Statistics, Summary};
+use spmesh_splinefit::{
+    Candidate, Condition, Excess, Extent, Layout, Points, Smoothness, Spline, Statistics, Summary,
+};
 
 /// Segments that the text output lists.
 const LISTED: usize = 5;
@@ -26,7 +28,9 @@ const NOTES: &str = "\
 The condition is that of interpolation at Greville sites: in the 2-norm for up to 500 functions; for more, a \
 lower estimate in the 1-norm. Splines of degree k have k - 1 continuous derivatives, except across segments \
 between knots that are repeated or collinear with others. For degree 2, the gradients of functions on both \
-sides of these segments are compared. Residuals are elevations less values.";
+sides of these segments are compared. Residuals are elevations less values. The least and greatest value \
+are searched near Greville sites and knots. With points, there is a warning if the spline leaves the range of \
+elevations by more than a quarter of it.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
@@ -55,34 +59,93 @@ impl Flags {
         check_apart(inputs, &[("the report", Path::new("-"))])?;
         // Fail before the work if stdout is closed.
         let mut output = Output::create(Path::new("-"), false)?;
-        let (layout, residuals) = self.compare()?;
+        let (layout, extent, residuals) = self.compare()?;
         if let Some(residuals) = residuals.as_ref().filter(|residuals| residuals.outside > 0) {
             say(common, &outside(residuals));
         }
+        residuals.as_ref().and_then(excess).iter().for_each(|text| say(common, text));
         let summary = Summary::of(&layout)?;
+        let report = Report { summary: &summary, layout: &layout, extent, residuals: residuals.as_ref() };
         let text = match self.json {
-            true => escaped_json(&format!("{}\n", json(&summary, &layout, residuals.as_ref()))),
-            false => text(&summary, &layout, residuals.as_ref()),
+            true => escaped_json(&format!("{}\n", report.json())),
+            false => report.text(),
         };
         output.write_all(text.as_bytes()).map_err(|error| Error::io("printing", error))?;
         output.commit()
     }
 
-    /// The layout, with residuals if points are given.
-    fn compare(&self) -> Result<(Layout, Option<Statistics>)> {
+    /// The layout, with the extent of a spline, and with residuals if points are given.
+    fn compare(&self) -> Result<(Layout, Option<Extent>, Option<Statistics>)> {
         if self.points.is_empty() {
-            return Ok((Layout::open(&self.spline)?.0, None));
+            let (layout, coefficients) = Layout::open(&self.spline)?;
+            if coefficients.len() != layout.basis.len() {
+                return Ok((layout, None, None));
+            }
+            let spline = Spline { layout, coefficients };
+            let extent = Extent::of(&spline);
+            return Ok((spline.layout, extent, None));
         }
         let spline = Spline::open(&self.spline)?;
         let points = Points::open(&self.points, &SourceOptions::default(), None, false, |_| ())?;
-        let residuals = Statistics::of(&spline, &points, self.threads.get(), &|_| ())?;
-        Ok((spline.layout, Some(residuals)))
+        let residuals = Statistics::of(&spline, &points, f64::INFINITY, self.threads.get(), &|_| ())?;
+        Ok((spline.layout, residuals.extent, Some(residuals)))
     }
 }
 
-fn text(summary: &Summary, layout: &Layout, residuals: Option<&Statistics>) -> String {
+/// What is printed.
+struct Report<'a> {
+    summary: &'a Summary,
+    layout: &'a Layout,
+    extent: Option<Extent>,
+    residuals: Option<&'a Statistics>,
+}
+
+impl Report<'_> {
+    fn text(&self) -> String {
+        let mut text = text(self.summary, self.layout);
+        if let Some(Extent { least, greatest }) = &self.extent {
+            let of = |(value, [x, y]): &(f64, [f64; 2])| format!("{value} at {x} {y}");
+            text += &line("values", &format!("from {} to {}", of(least), of(greatest)));
+        }
+        if let Some(residuals) = self.residuals {
+            text += &residuals_text(residuals);
+        }
+        text
+    }
+
+    fn json(&self) -> Value {
+        let mut object = json(self.summary, self.layout, self.residuals);
+        object["extent"] = extent_json(self.extent.as_ref());
+        object
+    }
+}
+
+/// A line of text.
+fn line(label: &str, value: &str) -> String {
+    format!("{label:<12} {value}\n")
+}
+
+fn residuals_text(residuals: &Statistics) -> String {
+    let mut text = line("residuals", &format!("of {} points", residuals.count));
+    for (label, _, value) in residual_rows(residuals) {
+        text += &line("", &format!("{:<22} {value:.6e}", label.trim()));
+    }
+    if let Some([x, y]) = residuals.worst {
+        text += &line("", &format!("{:<22} {x} {y}", "greatest at"));
+    }
+    let Some([low, high]) = residuals.range else { return text };
+    let leaves = match residuals.excess() {
+        None => String::new(),
+        Some(Excess { value, place: [x, y], share }) => {
+            format!("; the spline leaves this range by {:.2} % of it: {value} at {x} {y}", 100.0 * share)
+        }
+    };
+    text + &line("elevations", &format!("from {low} to {high}{leaves}"))
+}
+
+fn text(summary: &Summary, layout: &Layout) -> String {
     let mut text = String::new();
-    let mut line = |label: &str, value: String| text += &format!("{label:<12} {value}\n");
+    let mut line = |label: &str, value: String| text += &line(label, &value);
     line("degree", summary.degree.to_string());
     line("knots", format!("{} at {} places", summary.knots, summary.places));
     line("functions", summary.functions.to_string());
@@ -104,15 +167,6 @@ fn text(summary: &Summary, layout: &Layout, residuals: Option<&Statistics>) -> S
     );
     for (label, value) in smoothness_lines(&summary.smoothness, layout) {
         line(label, value);
-    }
-    if let Some(residuals) = residuals {
-        line("residuals", format!("of {} points", residuals.count));
-        for (label, _, value) in residual_rows(residuals) {
-            line("", format!("{:<22} {value:.6e}", label.trim()));
-        }
-        if let Some([x, y]) = residuals.worst {
-            line("", format!("{:<22} {x} {y}", "greatest at"));
-        }
     }
     text
 }
@@ -187,5 +241,9 @@ fn residuals_json(residuals: &Statistics) -> Value {
         object.insert(key.trim_start_matches("residual_").into(), number.into());
     }
     object.insert("worst".into(), json!(residuals.worst));
+    object.insert("range".into(), json!(residuals.range));
+    let excess = residuals.excess();
+    let excess = excess.map(|e| json!({"value": e.value, "at": e.place, "share": e.share.min(f64::MAX)}));
+    object.insert("excess".into(), excess.into());
     Value::Object(object)
 }

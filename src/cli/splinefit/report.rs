@@ -6,7 +6,8 @@ use serde_json::{Map, Value, json};
 
 use crate::rows::{Row, entries, lines, seconds};
 use crate::{StatsFormat, peak_memory, say};
-use spmesh_splinefit::{Fitted, PERCENTILES, Report, Spline, Statistics};
+use spmesh_splinefit::{EXCESS_MAX, Extent, Fitted, PERCENTILES, Report, Spline, Statistics};
+use spmesh_splines::fitting::{Choice, FailedTrial};
 
 /// Notices for the user.
 pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -> Vec<String> {
@@ -16,11 +17,18 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
         let (tolerance, most) = (search.goal.tolerance, search.goal.max_knots);
         let knots = spline.layout.places();
         let above = search.rounds.last().map_or(0, |round| round.above);
-        notices.push(format!(
-            "{knots} knots (at most {most}), {functions} functions, tolerance {}: {}",
-            short(tolerance),
-            if search.is_reached { "reached".into() } else { format!("{above} points are farther off") }
-        ));
+        let above = format!("{above} points are farther off");
+        notices.push(match (search.is_replaced, search.is_reached) {
+            (true, _) => format!(
+                "{knots} knots on a grid, {functions} functions: with {most} knots, tolerance {}, {above}",
+                short(tolerance)
+            ),
+            (false, is_reached) => format!(
+                "{knots} knots (at most {most}), {functions} functions, tolerance {}: {}",
+                short(tolerance),
+                if is_reached { "reached" } else { &above }
+            ),
+        });
     }
     if let Some(chosen) = &report.chosen {
         if let Some(undetermined @ 1..) = chosen.undetermined {
@@ -28,8 +36,8 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
                 "points leave {undetermined} of {functions} functions undetermined: these alone are smoothed"
             ));
         }
-        if chosen.choice.is_some() {
-            notices.push(format!("smoothed with lambda {}", short(chosen.lambda)));
+        if let Some(choice) = &chosen.choice {
+            notices.extend(of_choice(choice));
         }
     }
     if let Some((scale, has_settled)) = report.scale {
@@ -44,13 +52,45 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
     if report.residuals.outside > 0 {
         notices.push(outside(&report.residuals));
     }
+    notices.extend(excess(&report.residuals));
     notices
+}
+
+/// Notices about a chosen `lambda`.
+fn of_choice(choice: &Choice) -> Vec<String> {
+    let floor = if choice.is_at_floor() { ", the least that the distance of points allows" } else { "" };
+    let mut notices = vec![format!("smoothed with lambda {}{floor}", short(choice.best.lambda))];
+    if let Some(first) = choice.failed.first() {
+        let all = choice.failed.len() + choice.trials.len();
+        notices.push(format!(
+            "{} of {all} trials of lambda failed; lambda {}: {}",
+            choice.failed.len(),
+            short(first.lambda),
+            first.reason
+        ));
+    }
+    notices
+}
+
+/// The warning about a spline that leaves the range of elevations.
+pub(super) fn excess(residuals: &Statistics) -> Option<String> {
+    let excess = residuals.excess().filter(|excess| excess.share > EXCESS_MAX)?;
+    let [low, high] = residuals.range?;
+    let [x, y] = excess.place;
+    Some(format!(
+        "warning: the spline is {} at {x} {y}, but elevations are between {} and {}: smooth more, or give points \
+         there",
+        short(excess.value),
+        short(low),
+        short(high)
+    ))
 }
 
 /// A number with four digits.
 fn short(number: f64) -> String {
     let rounded = format!("{number:.3e}");
     match number.abs() {
+        0.0 => "0".into(),
         // Without trailing zeros after the point.
         1e-4..1e6 => rounded.parse().map_or(rounded, |number: f64| number.to_string()),
         _ => rounded,
@@ -151,12 +191,23 @@ fn details(report: &Report) -> Map<String, Value> {
                 "residual_rms": round.root_mean_square, "above": round.above,
             })
         };
+        details.insert("is_replaced".into(), search.is_replaced.into());
         details.insert("rounds".into(), search.rounds.iter().map(round).collect());
     }
+    details.insert("range".into(), json!(report.residuals.range));
+    details.insert("extent".into(), extent_json(report.residuals.extent.as_ref()));
     if let Some(choice) = report.chosen.as_ref().and_then(|chosen| chosen.choice.as_ref()) {
         let trial =
             |trial: &spmesh_splines::fitting::Trial| json!({"lambda": trial.lambda, "score": trial.score});
         details.insert("trials".into(), choice.trials.iter().map(trial).collect());
+        let failed = |trial: &FailedTrial| json!({"lambda": trial.lambda, "reason": trial.reason});
+        details.insert("failed_trials".into(), choice.failed.iter().map(failed).collect());
     }
     details
+}
+
+/// The least and the greatest value of a spline, with their places.
+pub(super) fn extent_json(extent: Option<&Extent>) -> Value {
+    let of = |(value, place): (f64, [f64; 2])| json!({"value": value, "at": place});
+    extent.map_or(Value::Null, |extent| json!({"least": of(extent.least), "greatest": of(extent.greatest)}))
 }

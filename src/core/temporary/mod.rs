@@ -1,5 +1,6 @@
 //! Temporary files.
 
+mod names;
 mod records;
 
 use std::fs::File;
@@ -8,6 +9,8 @@ use std::os::unix::fs::FileExt;
 use std::path::Path;
 
 use crate::error::{Error, Result};
+pub(crate) use names::Name;
+pub use names::remove_names_at_signals;
 pub use records::Records;
 
 /// The cause of a failure of `tempfile`, which adds a made-up path to it.

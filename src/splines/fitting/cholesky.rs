@@ -11,6 +11,7 @@
 //! function a candidate. The solution v for a unit vector at the candidate is nearly an undetermined
 //! direction, and its curvature v'Mv / v'v decides.
 
+use super::factor_blocks::Blocks;
 use super::symmetric::Symmetric;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::cholesky::{
@@ -130,6 +131,27 @@ impl Factor<'_> {
             .collect();
         weak.sort_unstable_by_key(|&(function, _)| function);
         weak
+    }
+
+    /// The factor of the scaled matrix, in blocks.
+    pub(super) fn blocks(&self) -> Blocks<'_> {
+        Blocks::new(&self.elimination.symbolic, &self.values)
+    }
+
+    /// The factors that scale rows and columns.
+    pub(super) fn scale(&self) -> &[f64] {
+        &self.scale
+    }
+
+    /// The place of a function in the order of elimination.
+    pub(super) fn place(&self, function: usize) -> usize {
+        self.elimination.symbolic.perm().map_or(function, |order| order.arrays().1[function])
+    }
+
+    /// The logarithm of the determinant of the matrix, with the ridge.
+    pub(super) fn log_determinant(&self) -> f64 {
+        let of_pivots: f64 = self.pivots().into_iter().map(f64::ln).sum();
+        of_pivots - 2.0 * self.scale.iter().map(|scale| scale.ln()).sum::<f64>()
     }
 
     /// v'Mv / v'v, where v is the solution for the unit vector of a function.

@@ -54,12 +54,7 @@ pub fn thin_plate(basis: &Basis) -> Result<Symmetric> {
         let what = format!("splines of degree {} cannot be smoothed: degree 2 can", basis.degree());
         return Err(Error::usage(what));
     }
-    let domain = basis.domain_corners();
-    if polygon::area(&domain) <= 0.0 {
-        return Err(Error::usage(
-            "the domain of the knots has no area: pull the knots of their border apart",
-        ));
-    }
+    check_domain(basis)?;
     let mesh = delaunay2::triangulate(basis.knots())?;
     let corners = |triangle: &Triangle| triangle.vertices.map(|id| basis.knots()[id as usize]);
     let triangles: Vec<[Point2; 3]> = mesh.triangles().iter().map(corners).collect();
@@ -70,6 +65,17 @@ pub fn thin_plate(basis: &Basis) -> Result<Symmetric> {
         add_quadrature(basis, &triangles, &mut rows);
     }
     Ok(Symmetric::of_rows(&rows, |_| true))
+}
+
+/// Refuses knots over which no splines are whole.
+///
+/// # Errors
+/// Usage, if the domain has no area.
+pub(super) fn check_domain(basis: &Basis) -> Result<()> {
+    if polygon::area(&basis.domain_corners()) > 0.0 {
+        return Ok(());
+    }
+    Err(Error::usage("the domain of the knots has no area: use more knots, or repeat those of the border"))
 }
 
 /// Adds the energy of quadratic functions, triangle by triangle of the Delaunay triangulation of the knots.

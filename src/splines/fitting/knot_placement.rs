@@ -43,7 +43,10 @@ pub fn grid_knots<O: Observations + ?Sized>(observations: &O, side: f64) -> Resu
 }
 
 /// The bounding box of all observations, those of weight zero included.
-pub(super) fn bounds<O: Observations + ?Sized>(observations: &O) -> Result<[Point2; 2]> {
+///
+/// # Errors
+/// Observations that span no area; those of the source.
+pub fn bounds<O: Observations + ?Sized>(observations: &O) -> Result<[Point2; 2]> {
     let (mut lower, mut upper) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let (mut reader, mut batch, mut index) = (observations.read()?, Vec::new(), 0u64);
     loop {

@@ -1,7 +1,7 @@
 //! Residuals of observations.
 
 use super::blocks::{self, Block};
-use super::observations::Observations;
+use super::observations::{Observation, Observations};
 use crate::bases::{Basis, Scratch};
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
@@ -14,6 +14,8 @@ pub struct Residual {
     pub index: u64,
     /// Its place.
     pub point: Point2,
+    /// The value of the observation.
+    pub value: f64,
     /// Value minus spline.
     pub residual: f64,
     /// Weight of the observation.
@@ -59,8 +61,9 @@ pub fn for_each_residual<O: Observations + ?Sized>(
         let all: Vec<Residual> = inside
             .map(|(index, observation)| {
                 let alive = basis.at(observation.point, &mut scratch);
-                let residual = observation.value - value(coefficients, alive);
-                Residual { index, point: observation.point, residual, weight: observation.weight }
+                let residual = observation.value - self::value(coefficients, alive);
+                let Observation { point, value, weight } = *observation;
+                Residual { index, point, value, residual, weight }
             })
             .collect();
         Ok((block.observations.len() - all.len(), all))

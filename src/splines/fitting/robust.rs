@@ -146,24 +146,34 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
     /// # Errors
     /// Those of [`robust()`].
     pub(super) fn fit(&self, loss: Loss, plain: &NormalEquations) -> Result<RobustFit> {
-        let coefficients = self.solve(plain)?;
-        let scale_min = (SCALE_MIN * (plain.square / plain.weight).sqrt()).max(f64::MIN_POSITIVE);
-        let scale = self.scale(&coefficients, scale_min)?;
-        let mut found = RobustFit { coefficients, scale, passes: 2, has_converged: false };
-        self.improve(&mut found, Loss::Huber, scale_min)?;
+        let scale_min = scale_min(plain);
+        let mut found = self.start(plain)?;
         if loss == Loss::Tukey {
             self.improve(&mut found, Loss::Tukey, scale_min)?;
         }
         Ok(found)
     }
 
+    /// The fit with Huber's loss.
+    ///
+    /// # Errors
+    /// Those of [`robust()`].
+    pub(super) fn start(&self, plain: &NormalEquations) -> Result<RobustFit> {
+        let coefficients = self.solve(plain)?;
+        let scale_min = scale_min(plain);
+        let scale = self.scale(&coefficients, scale_min)?;
+        let mut found = RobustFit { coefficients, scale, passes: 2, has_converged: false };
+        self.improve(&mut found, Loss::Huber, scale_min)?;
+        Ok(found)
+    }
+
     /// Iterates with one loss. Each round weighs observations by the scale that the previous round measured,
     /// and measures the scale for the next one.
-    fn improve(&self, fit: &mut RobustFit, loss: Loss, scale_min: f64) -> Result<()> {
+    pub(super) fn improve(&self, fit: &mut RobustFit, loss: Loss, scale_min: f64) -> Result<()> {
         fit.has_converged = false;
         for _ in 0..self.most {
-            let (normal, scale) = self.weighted(fit, loss)?;
-            let coefficients = self.solve(&normal)?;
+            let (parts, scale) = self.weighted(fit, loss, 1, |_| 0)?;
+            let coefficients = self.solve(&parts.sum(|_| true))?;
             let squares = coefficients.iter().zip(&fit.coefficients).map(|(a, b)| (a - b) * (a - b));
             let change = (squares.sum::<f64>() / coefficients.len() as f64).sqrt();
             // While the scale still shrinks, coefficients have not converged, however slowly they change.
@@ -180,15 +190,21 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
         Ok(())
     }
 
-    /// The normal equations, weighted by residuals, and the scale of the residuals.
-    fn weighted(&self, fit: &RobustFit, loss: Loss) -> Result<(NormalEquations, f64)> {
+    /// The normal equations, weighted by residuals, in several parts; and the scale of the residuals.
+    pub(super) fn weighted(
+        &self,
+        fit: &RobustFit,
+        loss: Loss,
+        count: usize,
+        part_of: impl Fn(u64) -> usize + Sync,
+    ) -> Result<(Parts, f64)> {
         let mut sketch = QuantileSketch::default();
         let parts = Parts::of(
             self.basis,
             self.observations,
             self.threads,
-            1,
-            |_| 0,
+            count,
+            part_of,
             |_, observation, alive| {
                 let residual = observation.value - residuals::value(&fit.coefficients, alive);
                 let residual = residual * observation.weight.sqrt();
@@ -197,7 +213,7 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
             },
             |residual| sketch.add(residual),
         )?;
-        Ok((parts.sum(|_| true), scale_of(&sketch)?))
+        Ok((parts, scale_of(&sketch)?))
     }
 
     fn scale(&self, coefficients: &[f64], scale_min: f64) -> Result<f64> {
@@ -213,6 +229,11 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
     fn solve(&self, normal: &NormalEquations) -> Result<Vec<f64>> {
         Equations::new(self.basis, normal, self.energy)?.solve(self.lambda)
     }
+}
+
+/// The least scale: about the rounding error of values.
+pub(super) fn scale_min(plain: &NormalEquations) -> f64 {
+    (SCALE_MIN * (plain.square / plain.weight).sqrt()).max(f64::MIN_POSITIVE)
 }
 
 fn scale_of(sketch: &QuantileSketch) -> Result<f64> {

@@ -2,11 +2,12 @@
 
 use super::cholesky::{Elimination, Factor};
 use super::control_energy::bending;
+use super::energy::check_domain;
 use super::least_energy;
 use super::normal_equations::NormalEquations;
 use super::observations::Observations;
 use super::symmetric::Symmetric;
-use super::trend::trend;
+use super::trend::{Trend, trend};
 use crate::bases::Basis;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
@@ -35,8 +36,8 @@ pub struct Equations<'a> {
     normal: &'a NormalEquations,
     energy: Option<&'a Symmetric>,
     elimination: Elimination,
-    /// Coefficients of the linear function that is nearest to the observations.
-    trend: Vec<f64>,
+    /// The linear function that is nearest to the observations.
+    trend: Trend,
     /// The right side of the equations for the difference from the trend.
     right: Vec<f64>,
 }
@@ -58,13 +59,16 @@ impl<'a> Equations<'a> {
                 basis.len()
             )));
         }
+        if normal.count == 0 {
+            check_domain(basis)?;
+        }
         normal.check()?;
         let elimination = match energy {
             Some(energy) => Elimination::of(&normal.matrix.plus(0.0, energy))?,
             None => Elimination::of(&normal.matrix)?,
         };
         let trend = trend(basis, normal);
-        let done = normal.matrix.times(&trend);
+        let done = normal.matrix.times(&trend.coefficients);
         let right = normal.right.iter().zip(done).map(|(right, done)| right - done).collect();
         Ok(Equations { basis, normal, energy, elimination, trend, right })
     }
@@ -73,6 +77,12 @@ impl<'a> Equations<'a> {
     #[must_use]
     pub fn normal(&self) -> &NormalEquations {
         self.normal
+    }
+
+    /// The default `lambda`: see [`NormalEquations::default_lambda`].
+    #[must_use]
+    pub fn default_lambda(&self) -> f64 {
+        self.normal.default_lambda(self.basis)
     }
 
     /// The coefficients for a `lambda`. If it is zero and there is an energy, they are those of least squares;
@@ -135,6 +145,14 @@ impl<'a> Equations<'a> {
         }
     }
 
+    /// The least value of the weighted squared residuals plus `lambda` times the energy. Accuracy: about
+    /// 1e-15 of z'Wz.
+    pub(super) fn deviance(&self, factor: &Factor) -> f64 {
+        let rest = factor.solve(&self.right);
+        let explained: f64 = rest.iter().zip(&self.right).map(|(c, right)| c * right).sum();
+        (self.normal.residual_square(&self.trend.coefficients) - explained).max(0.0)
+    }
+
     /// The coefficients from the factored equations.
     pub(super) fn coefficients(&self, factor: &Factor) -> Vec<f64> {
         self.with_trend(factor.solve(&self.right))
@@ -146,11 +164,12 @@ impl<'a> Equations<'a> {
     }
 
     fn with_trend(&self, rest: Vec<f64>) -> Vec<f64> {
-        self.trend.iter().zip(rest).map(|(trend, rest)| trend + rest).collect()
+        self.trend.coefficients.iter().zip(rest).map(|(trend, rest)| trend + rest).collect()
     }
 
     /// Refuses factored equations that leave functions undetermined.
     pub(super) fn check(&self, factor: &Factor, lambda: f64) -> Result<()> {
+        self.check_trend()?;
         self.refuse(&self.named(factor), lambda)
     }
 
@@ -160,6 +179,18 @@ impl<'a> Equations<'a> {
             Undetermined { function, site, curvature }
         };
         factor.weak().into_iter().map(named).collect()
+    }
+
+    /// Refuses observations that determine no linear function, however smooth the spline is.
+    fn check_trend(&self) -> Result<()> {
+        if self.energy.is_none() || self.trend.is_determined {
+            return Ok(());
+        }
+        Err(Error::usage(format!(
+            "the {} observations in the domain are on one line, so no slope across it is determined: give some \
+             off the line",
+            self.normal.count
+        )))
     }
 
     fn refuse(&self, undetermined: &[Undetermined], lambda: f64) -> Result<()> {

@@ -2,12 +2,14 @@
 
 mod counts;
 mod files;
+mod placement;
 mod product;
 mod quantum;
 mod write;
 
 pub use counts::Counts;
 pub use files::{Form, write_slice, write_surface, write_values};
+pub use placement::{Placement, TimeScale};
 pub use product::Product;
 pub use quantum::Quantum;
 pub use write::{write_diagram, write_simplices};
@@ -24,6 +26,8 @@ use spmesh_model::diagram4::Diagram4;
 pub struct Options {
     /// The quantum of the coordinates, if they are to be replaced by integers.
     pub quantum: Option<Quantum>,
+    /// The factor of times, applied after the quantum.
+    pub time_scale: TimeScale,
     /// How the diagram is found.
     pub route: Route,
 }
@@ -47,24 +51,41 @@ pub struct Report {
     pub output_bytes: u64,
 }
 
+/// A diagram, and how its coordinates follow from those of the input.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Made {
+    /// The diagram.
+    pub diagram: Diagram4,
+    /// Its coordinates.
+    pub placement: Placement,
+    /// Counts and times.
+    pub report: Report,
+}
+
 /// Computes the diagram of points for a product.
 ///
 /// # Errors
-/// As [`diagram_by`] and [`Product::check`]; usage, if a coordinate is no multiple of the quantum; malformed,
-/// if a value is infinite.
-pub fn make(points: Selected4, product: &Product, options: &Options) -> Result<(Diagram4, Report)> {
+/// As [`diagram_by`] and [`Product::check`]; usage, if a coordinate is no multiple of the quantum, a quantum
+/// is given for an oblique grid, or a time overflows when it is scaled; malformed, if a value is infinite.
+pub fn make(points: Selected4, product: &Product, options: &Options) -> Result<Made> {
     let name = points.name.clone();
+    let placement = Placement { orientation: points.orientation, time_scale: options.time_scale };
     let started = Instant::now();
     let mut report = Report { points: points.points.len() as u64, ..Report::default() };
-    let (diagram, stats) = diagram_of(points, product, options).map_err(|e| e.of_input(name))?;
+    let (diagram, stats) = diagram_of(points, product, options, &placement).map_err(|e| e.of_input(name))?;
     report.diagram_time = started.elapsed();
     report.merged = diagram.merged;
     report.stats = stats;
     report.counts = Counts::of(&diagram.cells);
-    Ok((diagram, report))
+    Ok(Made { diagram, placement, report })
 }
 
-fn diagram_of(points: Selected4, product: &Product, options: &Options) -> Result<(Diagram4, Stats)> {
+fn diagram_of(
+    points: Selected4,
+    product: &Product,
+    options: &Options,
+    placement: &Placement,
+) -> Result<(Diagram4, Stats)> {
     let Selected4 { mut points, values, .. } = points;
     // Fail before the computation, rather than when writing.
     let infinite = values.iter().flatten().position(|value| value.is_infinite());
@@ -73,8 +94,14 @@ fn diagram_of(points: Selected4, product: &Product, options: &Options) -> Result
         return Err(Error::malformed(message).at(format!("point {:?}", points[number])));
     }
     if let Some(quantum) = options.quantum {
+        if placement.orientation.is_some() {
+            let message = "the grid is oblique in the world, so that coordinates there are no multiples of a \
+                           number: leave --quantum or --spacing world out";
+            return Err(Error::usage(message));
+        }
         quantum.divide(&mut points)?;
     }
     product.check(&points, values.is_some())?;
+    placement.scale(&mut points)?;
     diagram_by(options.route, points, values)
 }

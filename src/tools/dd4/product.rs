@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::{Form, write_diagram, write_simplices, write_slice, write_surface, write_values};
+use super::{Form, Placement, write_diagram, write_simplices, write_slice, write_surface, write_values};
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::spacetime::{
     Interpolator, NO_VALUES, Rule, Slice, first_time, isosurface, slice, subdivide,
@@ -73,35 +73,44 @@ impl Product {
         matches!(self, Product::Cells | Product::Simplices(_))
     }
 
-    /// Makes the product of a diagram and writes it, a stream compressed if `compress` says so. Returns notices
-    /// for the user.
+    /// Makes the product of a diagram and writes it, a stream compressed if `compress` says so. Times, sites
+    /// and meshes in space are in coordinates of the input. Returns notices for the user.
     ///
     /// # Errors
     /// Usage, if values are needed and the points have none, the slice is at a time before or after all
     /// points, or the format cannot hold it; I/O. The output is then incomplete.
-    pub fn write(&self, diagram: &Diagram4, compress: bool, output: &mut impl Write) -> Result<Vec<String>> {
+    pub fn write(
+        &self,
+        diagram: &Diagram4,
+        placement: &Placement,
+        compress: bool,
+        output: &mut impl Write,
+    ) -> Result<Vec<String>> {
         match self {
-            Product::Cells => write_diagram(diagram, compress, output).map(|()| Vec::new()),
+            Product::Cells => write_diagram(diagram, compress, output).map(|()| placement.stream_notices()),
             Product::Simplices(rule) => {
                 let (points, values) = (&diagram.points, diagram.values.as_deref());
                 let parts = subdivide(points, values, &diagram.cells, *rule, |_| true)?;
                 write_simplices(&parts, diagram.merged, compress, output)?;
-                Ok(flat_notice(parts.flat).into_iter().collect())
+                Ok(flat_notice(parts.flat).into_iter().chain(placement.stream_notices()).collect())
             }
             Product::Values(sites) => {
-                let values = interpolate(diagram, sites)?;
+                let values = interpolate(diagram, placement, sites)?;
                 write_values(sites, &values, output)?;
                 Ok(outside_notice(&values).into_iter().collect())
             }
             Product::Slice { time, form } => {
-                let slice = slice(diagram, *time)?;
+                let mut slice = slice(diagram, placement.time(*time))?;
+                placement.place_slice(&mut slice, *time);
                 let mut notices = slice_notices(&slice);
                 notices.extend(write_slice(&slice, *form, output)?);
                 Ok(notices)
             }
             Product::Isosurface { time, level, form } => {
-                let slice = slice(diagram, *time)?;
-                let surface = isosurface(&slice, *level)?;
+                let mut slice = slice(diagram, placement.time(*time))?;
+                let mut surface = isosurface(&slice, *level)?;
+                placement.place_slice(&mut slice, *time);
+                placement.place_surface(&mut surface);
                 let mut notices = slice_notices(&slice);
                 if surface.triangles.is_empty() && !slice.tetrahedra.is_empty() {
                     notices.push(empty_notice(&slice, *level));
@@ -113,9 +122,9 @@ impl Product {
     }
 }
 
-fn interpolate(diagram: &Diagram4, sites: &[Point4]) -> Result<Vec<Option<f64>>> {
+fn interpolate(diagram: &Diagram4, placement: &Placement, sites: &[Point4]) -> Result<Vec<Option<f64>>> {
     let mut interpolator = Interpolator::new(diagram)?;
-    sites.iter().map(|&site| interpolator.value(site)).collect()
+    sites.iter().map(|&site| interpolator.value(placement.site(site))).collect()
 }
 
 fn flat_notice(flat: u64) -> Option<String> {

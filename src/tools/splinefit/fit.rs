@@ -23,6 +23,12 @@ const ROUNDING: f64 = 1e-9;
 pub(super) const KNOTS_MAX: usize = 20_000;
 /// ...but at most one knot per this number of points: two or three functions belong to a knot.
 const POINTS_PER_KNOT: u64 = 4;
+/// If a search without limits of the user would need more knots, a grid predicts better and takes less time.
+const KNOTS_MAX_FIRST: usize = 5_000;
+/// The step of this grid, in distances of points: terrain needs about as many functions as points...
+const GRID_STEP: f64 = 0.7;
+/// ...but it has no more knots than this.
+const GRID_KNOTS_MAX: f64 = 300_000.0;
 
 /// A spline that was fitted.
 #[derive(Debug)]
@@ -58,6 +64,8 @@ pub struct Search {
     pub rounds: Vec<Round>,
     /// Whether all residuals are within the tolerance.
     pub is_reached: bool,
+    /// Whether knots on a grid replaced those of the search, because the tolerance was not reached.
+    pub is_replaced: bool,
 }
 
 /// Fits a spline to points. `done` gets the number of points read so far, in all passes together.
@@ -80,11 +88,17 @@ pub fn fit(
                     --lambda and --robust";
         return Err(Error::usage(what));
     }
-    let (mut layout, found) = match knots {
-        Some((source, name)) => (given_knots::layout(source, &name, options)?, None),
-        None if options.step.is_some() => (even(points, options, done)?, None),
-        None => search(points, options, done).map(|(layout, search)| (layout, Some(search)))?,
+    let (mut layout, mut found) = match (knots, options.step) {
+        (Some((source, name)), _) => (given_knots::layout(source, &name, options)?, None),
+        (None, Some(side)) => (even(points, options, side, done)?, None),
+        (None, None) => search(points, options, done).map(|(layout, search)| (layout, Some(search)))?,
     };
+    if let Some(search) = found.as_mut().filter(|search| !search.is_reached && is_automatic(options))
+        && let Some(finer) = finer_grid(points, options, layout.places(), done)?
+    {
+        search.is_replaced = true;
+        layout = finer;
+    }
     layout.frame.join(points.crs())?;
     let frame = layout.frame.clone();
     let all = points.in_frame(&frame, done);
@@ -98,7 +112,8 @@ pub fn fit(
         }
     };
     let spline = Spline { layout, coefficients };
-    let residuals = Statistics::of(&spline, points, options.threads, done)?;
+    let limit = robust.as_ref().map_or(f64::INFINITY, RobustFit::limit);
+    let residuals = Statistics::of(&spline, points, limit, options.threads, done)?;
     let scale = robust.as_ref().map(|fit| (fit.scale, fit.has_converged));
     let report = Report { points: points.count(), search: found, chosen, scale, residuals };
     Ok(Fitted { spline, report, robust })
@@ -119,7 +134,8 @@ impl Fitted {
 /// Searches for knots.
 fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Layout, Search)> {
     check_degree(options)?;
-    let own_max = (points.count() / POINTS_PER_KNOT).min(KNOTS_MAX as u64) as usize;
+    let most = if is_automatic(options) { KNOTS_MAX_FIRST } else { KNOTS_MAX };
+    let own_max = (points.count() / POINTS_PER_KNOT).min(most as u64) as usize;
     // At a constant elevation, residuals are its rounding errors.
     let [low, high] = points.range();
     let rounding = ROUNDING * low.abs().max(high.abs());
@@ -134,7 +150,7 @@ fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Lay
     let frame = Frame::world(points.crs().clone());
     let all = points.in_frame(&frame, done);
     let refined = fitting::refine(&all, &goal, options.threads).map_err(|e| e.of_input(points.name()))?;
-    let search = Search { goal, rounds: refined.rounds, is_reached: refined.is_reached };
+    let search = Search { goal, rounds: refined.rounds, is_reached: refined.is_reached, is_replaced: false };
     let space = match options.polylines.is_empty() {
         true => refined.space,
         false => breaklines::space(refined.space.mesh.points(), options)?,
@@ -142,12 +158,34 @@ fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Lay
     Ok((Layout::of_space(space, frame), search))
 }
 
-/// Places knots on a grid.
-fn even(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<Layout> {
+/// Whether knots are found without any limits of the user.
+fn is_automatic(options: &Options) -> bool {
+    options.tolerance.is_none() && options.max_knots.is_none()
+}
+
+/// Knots on a grid that follows from the distance of points; `None` if it had fewer than `known` knots.
+fn finer_grid(
+    points: &Points,
+    options: &Options,
+    known: usize,
+    done: &dyn Fn(u64),
+) -> Result<Option<Layout>> {
+    let frame = Frame::world(points.crs().clone());
+    let all = points.in_frame(&frame, done);
+    let [lower, upper] = fitting::bounds(&all).map_err(|error| error.of_input(points.name()))?;
+    let area = (upper[0] - lower[0]) * (upper[1] - lower[1]);
+    let side = (GRID_STEP * fitting::spacing(&all)?).max((area / GRID_KNOTS_MAX).sqrt());
+    if area / (side * side) < known as f64 {
+        return Ok(None);
+    }
+    even(points, options, side, done).map(Some)
+}
+
+/// Places knots on a grid with cells of a given side.
+fn even(points: &Points, options: &Options, side: f64, done: &dyn Fn(u64)) -> Result<Layout> {
     check_degree(options)?;
     let frame = Frame::world(points.crs().clone());
     let all = points.in_frame(&frame, done);
-    let side = options.step.unwrap_or_default();
     let places = fitting::grid_knots(&all, side).map_err(|error| error.of_input(points.name()))?;
     let space = match options.polylines.is_empty() {
         true => SplineSpace::of(places)?,

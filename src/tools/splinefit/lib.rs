@@ -8,6 +8,7 @@
 //! | `smoothing_choice` | the choice of the smoothing parameter |
 //! | `frame`, `layout` | the coordinate frame of knots; knots with configurations and basis |
 //! | `statistics`, `residual_lists` | residuals, as numbers and as lists |
+//! | `extent` | the least and greatest value of a spline |
 //! | `attributes`, `values`, `raster` | values and derivatives, at sites and in cells |
 //! | `summary`, `smoothness` | the domain, condition and smoothness of functions |
 //! | `control` | control meshes |
@@ -17,6 +18,7 @@ mod breaklines;
 mod control;
 mod distinct_points;
 mod elevations;
+mod extent;
 mod fit;
 mod frame;
 mod given_knots;
@@ -34,6 +36,7 @@ mod values;
 pub use attributes::Attribute;
 pub use control::ControlMesh;
 pub use elevations::Elevations;
+pub use extent::{EXCESS_MAX, Excess, Extent};
 pub use fit::{Fitted, Report, Search, fit};
 pub use frame::Frame;
 pub use layout::{Layout, Spline};

@@ -9,8 +9,8 @@ use spmesh_splines::fitting::Loss;
 /// Options of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// How to smooth. If `None`, other knots than given ones are smoothed with the default `lambda`. Over given
-    /// knots, only the functions that points do not determine are smoothed.
+    /// How to smooth. If `None`, other knots than given ones are smoothed by restricted maximum likelihood. Over
+    /// given knots, only the functions that points do not determine are smoothed.
     pub smoothing: Option<Smoothing>,
     /// The loss function of a robust fit; `None` for least squares.
     pub loss: Option<Loss>,
@@ -28,7 +28,7 @@ pub struct Options {
     pub polylines_name: String,
     /// Degree of splines, for knots with configurations of several degrees.
     pub degree: Option<usize>,
-    /// Seed of random numbers: folds, and estimates of traces.
+    /// Seed of folds.
     pub seed: u64,
     /// Threads that evaluate functions.
     pub threads: NonZeroUsize,
@@ -57,6 +57,8 @@ impl Default for Options {
 pub enum Smoothing {
     /// By this factor of the thin-plate energy. Units: an area, if weights have none.
     Lambda(f64),
+    /// By restricted maximum likelihood.
+    Likelihood,
     /// By generalised cross-validation.
     Generalised,
     /// By cross-validation with this number of folds.
@@ -76,10 +78,11 @@ impl FromStr for Smoothing {
                 _ => Err(format!("{folds:?} folds: expected an integer above one")),
             },
             _ if text == "cv" => Ok(Smoothing::Folds(FOLDS)),
+            _ if text == "reml" => Ok(Smoothing::Likelihood),
             _ if text == "gcv" => Ok(Smoothing::Generalised),
             _ => match text.parse() {
                 Ok(lambda) if (0.0..f64::INFINITY).contains(&lambda) => Ok(Smoothing::Lambda(lambda)),
-                _ => Err("expected a number that is not negative, gcv, cv or cv:FOLDS".into()),
+                _ => Err("expected a number that is not negative, reml, gcv, cv or cv:FOLDS".into()),
             },
         }
     }
@@ -94,13 +97,14 @@ mod tests {
         for (text, expected) in [
             ("0", Smoothing::Lambda(0.0)),
             ("2.5e-3", Smoothing::Lambda(0.0025)),
+            ("reml", Smoothing::Likelihood),
             ("gcv", Smoothing::Generalised),
             ("cv", Smoothing::Folds(FOLDS)),
             ("cv:10", Smoothing::Folds(10)),
         ] {
             assert_eq!(text.parse(), Ok(expected));
         }
-        for text in ["", "-1", "nan", "inf", "cv:", "cv:1", "gcv:3", "reml"] {
+        for text in ["", "-1", "nan", "inf", "cv:", "cv:1", "gcv:3", "ml"] {
             assert!(text.parse::<Smoothing>().is_err(), "{text}");
         }
     }

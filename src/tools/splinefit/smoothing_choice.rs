@@ -5,7 +5,7 @@ use super::options::{Options, Smoothing};
 use super::points::PointsInFrame;
 use spmesh_core::error::Result;
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{self, Choice, Equations, Folds, NormalEquations, Symmetric};
+use spmesh_splines::fitting::{self, Choice, Equations, Method, NormalEquations, Symmetric};
 
 /// The smoothing of a fit, and the reason for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,7 +14,7 @@ pub struct SmoothingChoice {
     pub lambda: f64,
     /// Number of functions that points leave undetermined without smoothing; `None` if it was not needed.
     pub undetermined: Option<usize>,
-    /// The trials of cross-validation; `lambda` in world coordinates.
+    /// The trials of the choice; `lambda` in world coordinates.
     pub choice: Option<Choice>,
 }
 
@@ -34,7 +34,8 @@ impl Problem {
 }
 
 /// Sets up the equations of points, and chooses `lambda`. Without an option, given knots are not smoothed: if
-/// points do not determine all functions, the energy counts only for the others. Other knots are smoothed.
+/// points do not determine all functions, the energy counts only for the others. Other knots are smoothed by
+/// restricted maximum likelihood.
 ///
 /// In stored coordinates, second derivatives are those of the world times the step squared, and areas are
 /// those of the world divided by the step squared. So the energy is that of the world times the step squared,
@@ -54,27 +55,32 @@ pub(super) fn choose_smoothing(
     if options.smoothing.is_none() && are_given {
         undetermined = Some(Equations::new(basis, &normal, None)?.undetermined(0.0)?.len());
     }
-    let needs_none = options.smoothing == Some(Smoothing::Lambda(0.0)) || undetermined == Some(0);
+    // Robust weights may leave further functions undetermined.
+    let is_determined = undetermined == Some(0) && options.loss.is_none();
+    let needs_none = options.smoothing == Some(Smoothing::Lambda(0.0)) || is_determined;
     let energy = if needs_none { None } else { Some(fitting::bending(basis)?) };
     let area = layout.frame.step().powi(2);
-    let lambda = match (&energy, options.smoothing) {
-        (None, _) => 0.0,
-        (_, Some(Smoothing::Lambda(lambda))) => lambda / area,
-        (Some(energy), Some(Smoothing::Folds(folds))) => {
-            let folds = Folds::of(basis, all, folds, options.seed, threads)?;
-            choice.insert(folds.choose(basis, energy)?).best.lambda
-        }
-        (energy, Some(Smoothing::Generalised)) => {
-            let equations = Equations::new(basis, &normal, energy.as_ref())?;
-            choice.insert(fitting::generalised_cross_validation(&equations, options.seed)?).best.lambda
-        }
+    let method = match options.smoothing {
+        Some(Smoothing::Lambda(_)) => None,
         // Least squares, with the least energy where points determine nothing.
-        (_, None) if are_given => 0.0,
-        (_, None) => normal.default_lambda(basis),
+        None if are_given => None,
+        None | Some(Smoothing::Likelihood) => Some(Method::Likelihood),
+        Some(Smoothing::Generalised) => Some(Method::Generalised),
+        Some(Smoothing::Folds(count)) => Some(Method::Folds { count, seed: options.seed }),
+    };
+    let lambda = match (&energy, method, options.smoothing) {
+        (Some(energy), Some(method), _) => {
+            let choose = if options.loss.is_some() { fitting::choose_robustly } else { fitting::choose };
+            choice.insert(choose(&normal, basis, all, energy, method, threads)?).best.lambda
+        }
+        (Some(_), _, Some(Smoothing::Lambda(lambda))) => lambda / area,
+        _ => 0.0,
     };
     if let Some(choice) = &mut choice {
         choice.best.lambda *= area;
+        choice.least *= area;
         choice.trials.iter_mut().for_each(|trial| trial.lambda *= area);
+        choice.failed.iter_mut().for_each(|trial| trial.lambda *= area);
     }
     let chosen = SmoothingChoice { lambda: lambda * area, undetermined, choice };
     Ok(Problem { normal, energy, lambda, chosen })

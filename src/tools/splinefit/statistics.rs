@@ -1,5 +1,6 @@
 //! Statistics of residuals.
 
+use super::extent::{Excess, Extent};
 use super::layout::Spline;
 use super::points::Points;
 use spmesh_core::error::Result;
@@ -25,24 +26,37 @@ pub struct Statistics {
     pub greatest: f64,
     /// The place of the first point with the greatest magnitude, in world coordinates.
     pub worst: Option<Point2>,
+    /// The least and greatest elevation of the points in the domain, without rejected ones; `None` without
+    /// points.
+    pub range: Option<[f64; 2]>,
+    /// The least and the greatest value of the spline; `None` if it has no domain.
+    pub extent: Option<Extent>,
     /// Quantiles of magnitudes for [`PERCENTILES`]; the first one is the median. Accuracy: half a percent.
     pub percentiles: [f64; 5],
 }
 
 impl Statistics {
-    /// Computes the statistics of points in one pass.
+    /// How far the spline leaves the range of elevations; `None` if it does not.
+    #[must_use]
+    pub fn excess(&self) -> Option<Excess> {
+        self.extent?.excess(self.range?)
+    }
+
+    /// Computes the statistics of points in one pass. Points whose residual, times the root of the weight, is
+    /// greater than `limit` are rejected.
     ///
     /// # Errors
     /// If points cannot be read.
     pub fn of(
         spline: &Spline,
         points: &Points,
+        limit: f64,
         threads: NonZeroUsize,
         done: &dyn Fn(u64),
     ) -> Result<Statistics> {
         let frame = &spline.layout.frame;
         let (mut count, mut sum, mut square, mut sketch) = (0u64, 0.0, 0.0, QuantileSketch::default());
-        let (mut greatest, mut worst) = (0f64, None);
+        let (mut greatest, mut worst, mut range) = (0f64, None, None::<[f64; 2]>);
         let all = points.in_frame(frame, done);
         let (basis, coefficients) = (&spline.layout.basis, &spline.coefficients);
         let outside = fitting::for_each_residual(basis, coefficients, &all, threads, |found| {
@@ -50,6 +64,12 @@ impl Statistics {
             sum += found.residual;
             square += found.residual * found.residual;
             sketch.add(found.residual);
+            if found.residual.abs() * found.weight.sqrt() <= limit {
+                // Without the sign of a negative zero.
+                let value = found.value + 0.0;
+                let [low, high] = range.unwrap_or([value; 2]);
+                range = Some([low.min(value), high.max(value)]);
+            }
             if worst.is_none() || found.residual.abs() > greatest {
                 (greatest, worst) = (found.residual.abs(), Some(frame.to_decimal(found.point)));
             }
@@ -62,6 +82,8 @@ impl Statistics {
             root_mean_square: (square / divisor).sqrt(),
             greatest,
             worst,
+            range,
+            extent: Extent::of(spline),
             // A class may end above the greatest magnitude, so quantiles are limited to it.
             percentiles: PERCENTILES.map(|part| sketch.quantile(part).unwrap_or(0.0).min(greatest)),
         })

@@ -5,13 +5,9 @@ use std::path::Path;
 use bytemuck::Pod;
 use foldhash::{HashMap, HashMapExt};
 
-use crate::dem::tile_cache::TilePlace;
+use crate::files::{CELLS, TilePlace};
 use spmesh_core::error::Result;
 use spmesh_core::temporary::Records;
-use spmesh_io::raster::TILE;
-
-/// Cells of a tile.
-const CELLS: usize = TILE * TILE;
 
 /// A tile in memory.
 #[derive(Debug)]

@@ -3,5 +3,6 @@
 mod accumulators;
 pub mod contours;
 pub mod dem;
+pub mod files;
 pub mod points;
 mod surface;

@@ -8,6 +8,7 @@ mod energies;
 mod failures;
 mod figure;
 mod interpolation;
+mod likelihood;
 mod normal_equations;
 mod random_knots;
 mod refinement;

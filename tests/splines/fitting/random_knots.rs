@@ -4,7 +4,8 @@ use super::bases::{ONE, scattered};
 use spmesh_geometry::configurations::{self, Knots, Rule, Start};
 use spmesh_reference::sets::Random;
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{Equations, NormalEquations, bending};
+use spmesh_splines::fitting::{Equations, NormalEquations, bending, restricted_likelihood};
+use std::ops::Range;
 
 /// How knots of the border are repeated.
 #[derive(Debug, Clone, Copy)]
@@ -39,25 +40,38 @@ pub fn over(points: &[[f64; 2]], degree: usize, border: Border) -> Basis {
     Basis::new(&knots, &all.swap_remove(degree - 1)).expect("a basis")
 }
 
-/// Fits random sets of knots with factors of the energy over 18 orders of magnitude.
-fn check(degree: usize, sets: std::ops::Range<u64>) {
+/// Fits random sets of knots with factors of the energy over 18 orders of magnitude, and with the chosen one.
+fn check(degree: usize, sets: Range<u64>) {
+    for border in BORDERS {
+        let failures: Vec<String> = sets.clone().filter_map(|seed| failure(degree, border, seed)).collect();
+        println!("degree {degree}, {border:?}: {} of {} sets fail", failures.len(), sets.end - sets.start);
+        assert!(failures.is_empty(), "degree {degree}, {border:?}: {failures:?}");
+    }
+}
+
+/// What fails over a set of knots.
+fn failure(degree: usize, border: Border, seed: u64) -> Option<String> {
     let f = |[x, y]: [f64; 2]| (5.0 * x).sin() * y + x;
-    for (border, seed) in BORDERS.into_iter().flat_map(|border| sets.clone().map(move |seed| (border, seed)))
-    {
-        let basis = over(&random_points(KNOTS, seed), degree, border);
-        let normal = NormalEquations::of(&basis, &scattered(2_000, seed, f), ONE).expect("equations");
-        let energy = bending(&basis).expect("an energy");
-        let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
-        let unit = equations.unit();
-        for lambda in [0.0, normal.default_lambda(&basis), 1e-6 * unit, 1e-3 * unit, unit] {
-            let found = equations.solve(lambda);
-            assert!(found.is_ok(), "degree {degree}, {border:?}, set {seed}, {lambda}: {found:?}");
+    let basis = over(&random_points(KNOTS, seed), degree, border);
+    let normal = NormalEquations::of(&basis, &scattered(2_000, seed, f), ONE).expect("equations");
+    let energy = bending(&basis).expect("an energy");
+    let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
+    let unit = equations.unit();
+    for lambda in [0.0, normal.default_lambda(&basis), 1e-6 * unit, 1e-3 * unit, unit] {
+        if let Err(error) = equations.solve(lambda) {
+            return Some(format!("set {seed}, lambda {lambda}: {error}"));
         }
-        // So little or so much smoothing may leave functions undetermined, but nothing else may fail.
-        for lambda in [1e-9 * unit, 1e3 * unit, 1e6 * unit, 1e9 * unit] {
-            let found = equations.undetermined(lambda);
-            assert!(found.is_ok(), "degree {degree}, {border:?}, set {seed}, {lambda}: {found:?}");
+    }
+    // So little or so much smoothing may leave functions undetermined, but nothing else may fail.
+    for lambda in [1e-9 * unit, 1e3 * unit, 1e6 * unit, 1e9 * unit] {
+        if let Err(error) = equations.undetermined(lambda) {
+            return Some(format!("set {seed}, lambda {lambda}: {error}"));
         }
+    }
+    match restricted_likelihood(&equations) {
+        Ok(choice) if choice.failed.is_empty() => None,
+        Ok(choice) => Some(format!("set {seed}: {:?}", choice.failed)),
+        Err(error) => Some(format!("set {seed}: {error}")),
     }
 }
 

@@ -82,17 +82,18 @@ struct Level {
     tiles: Vec<Extent>,
 }
 
-/// Writes a file of the tiles that `fill` supplies; cells of missing tiles have no data.
+/// Writes a file of the tiles that `fill` supplies; cells of missing tiles have no data. Returns what `fill`
+/// does.
 ///
 /// Memory: some tiles, and 16 bytes for each tile of the file.
 ///
 /// # Errors
 /// Those of `fill`; if writing fails.
-pub fn write_tiles<W: Write + Seek>(
+pub fn write_tiles<W: Write + Seek, T>(
     output: &mut W,
     file: &RasterFile,
-    fill: impl FnOnce(&mut Tiles) -> Result<()>,
-) -> Result<()> {
+    fill: impl FnOnce(&mut Tiles) -> Result<T>,
+) -> Result<T> {
     let Grid { columns, rows, .. } = file.grid;
     let sizes = level_sizes([columns, rows], file.options.has_overviews);
     let levels: Vec<Level> = sizes.iter().map(|&size| Level::new(size)).collect();
@@ -114,13 +115,14 @@ pub fn write_tiles<W: Write + Seek>(
         spare: Vec::new(),
         bytes: Vec::new(),
     };
-    fill(&mut tiles)?;
+    let filled = fill(&mut tiles)?;
     tiles.put_rest_of_overviews()?;
     tiles.store_all()?;
     let Tiles { mut levels, store, .. } = tiles;
     // The smallest image first, as in cloud-optimised files.
     let staged = store.arrange(levels.iter_mut().rev().flat_map(|level| &mut level.tiles), head_len);
-    store.finish(&directory::encode(&directories(file, &levels), size), &staged)
+    store.finish(&directory::encode(&directories(file, &levels), size), &staged)?;
+    Ok(filled)
 }
 
 impl Level {

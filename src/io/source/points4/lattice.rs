@@ -61,12 +61,13 @@ impl Lattice {
         self.lens.iter().product()
     }
 
-    /// Sets the coordinates of the sites.
+    /// Sets the coordinates of the sites. Those that change along the axes of x, y and z become `spatial`.
     ///
     /// # Errors
     /// Usage, if a coordinate overflows to infinity.
-    pub(super) fn place(&mut self, frame: Frame) -> Result<()> {
+    pub(super) fn place(&mut self, spatial: [usize; 3], frame: Frame) -> Result<()> {
         self.frame = frame;
+        self.coordinates = self.coordinates.map(|at| spatial.get(at).copied().unwrap_or(at));
         if self.largest().iter().all(|largest| largest.is_finite()) {
             return Ok(());
         }
@@ -177,10 +178,11 @@ mod tests {
             (0.0, f64::from_bits(1), true),
             (1.0, f64::from_bits(1), false),
         ] {
-            lattice.place(Frame { mins: [min, 0.0, 0.0, 0.0], steps: [step, 1.0, 1.0, 1.0] }).unwrap();
+            let frame = Frame { mins: [min, 0.0, 0.0, 0.0], steps: [step, 1.0, 1.0, 1.0] };
+            lattice.place([0, 1, 2], frame).unwrap();
             assert_eq!(lattice.is_exact(), is_exact, "{min} {step}");
         }
         let far = Frame { mins: [0.0; 4], steps: [1e308, 1.0, 1.0, 1.0] };
-        assert!(lattice.place(far).unwrap_err().to_string().contains("beyond all numbers"));
+        assert!(lattice.place([0, 1, 2], far).unwrap_err().to_string().contains("beyond all numbers"));
     }
 }

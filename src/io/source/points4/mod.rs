@@ -4,12 +4,14 @@
 //! Coordinates are grid indices unless world coordinates are requested. So they are integers, and cells are
 //! cospherical exactly where the grid is. The selection depends only on the input and the seed.
 
+mod budget;
 mod condition;
 mod data;
 mod lattice;
 mod nifti;
 mod nrrd;
 mod opening;
+mod orientation;
 mod raw;
 mod sample;
 mod scan;
@@ -17,10 +19,12 @@ mod select;
 mod stream;
 mod text;
 mod volume;
+mod world;
 
 use std::path::PathBuf;
 
 pub use condition::Condition;
+pub use orientation::Orientation;
 pub use raw::{RawLayout, parse_sizes};
 pub use sample::Share;
 
@@ -33,10 +37,13 @@ use spmesh_model::cells4::Point4;
 
 /// Points of four dimensions in the order of the input. Sites of a grid are in the order of volume files,
 /// where x changes fastest. Equal points of a text are all kept.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Selected4 {
     /// The points, all finite, and none with -0.0.
     pub points: Vec<Point4>,
+    /// How the coordinates of the points lie in the world, if they are those along the axes of an oblique
+    /// grid.
+    pub orientation: Option<Orientation>,
     /// A value for each point, if the input has values.
     pub values: Option<Vec<f64>>,
     /// Name of the input in messages.
@@ -77,7 +84,8 @@ pub enum Spacing {
     /// Grid indices, from 0.
     #[default]
     Index,
-    /// World coordinates as the file states them, in its units, rounded to f64.
+    /// World coordinates as the file states them, in its units, rounded to f64. Points of an oblique grid
+    /// have distances along its axes instead ([`Orientation`]); conditions apply to their world coordinates.
     World,
 }
 
@@ -96,13 +104,15 @@ pub struct Selection {
 
 /// Reads or generates the requested points.
 ///
-/// Cost: a pass over the input, and a second one if points of a file are chosen at random; sites of a whole
-/// grid are chosen without a pass. Memory: 32 bytes per selected point, 8 per value, and about 24 more per
-/// point chosen at random. An input that cannot be read twice is copied to an unlinked temporary file.
+/// Cost: a pass over the input, and one before it if points of a file are chosen at random, or if there may
+/// be too many; sites of a whole grid are chosen without a pass. Memory: 32 bytes per selected point, 8 per
+/// value, and about 24 more per point chosen at random. An input that cannot be read twice is copied to an
+/// unlinked temporary file.
 ///
 /// # Errors
 /// If the input cannot be read, is malformed (with the position), or of no known format; if the request does
-/// not suit the input, or selects more than [`spmesh_core::limits`] allows.
+/// not suit the input, or selects more than [`spmesh_core::limits`] or the memory allow: before any point is
+/// kept, except for lines and streams.
 pub fn read_points4(request: &Request) -> Result<Selected4> {
     let mut warnings = Vec::new();
     let (supply, name) = match &request.from {
@@ -124,7 +134,9 @@ pub fn read_points4(request: &Request) -> Result<Selected4> {
             let name = name_of(path);
             let path = (!is_stdin).then_some(path.as_path());
             let supply = match &request.from {
-                From4::Raw(_, layout) => raw::open(origin, path, layout).map(Supply::Volume),
+                From4::Raw(_, layout) => {
+                    raw::open(origin, path, layout).map(|volume| Supply::Volume(Box::new(volume)))
+                }
                 _ => opening::open(origin, path, &mut warnings),
             };
             (supply.map_err(|e| e.of_input(&name))?, name)
@@ -134,15 +146,17 @@ pub fn read_points4(request: &Request) -> Result<Selected4> {
 }
 
 fn read(mut supply: Supply, request: &Request, name: String, warnings: Vec<String>) -> Result<Selected4> {
-    if request.spacing == Spacing::World {
-        supply.place_in_world().map_err(|e| e.of_input(&name))?;
-    }
-    let mut points = select::select(&supply, &request.selection).map_err(|e| e.of_input(&name))?;
+    let orientation = match request.spacing {
+        Spacing::World => supply.place_in_world().map_err(|e| e.of_input(&name))?,
+        Spacing::Index => None,
+    };
+    let selected = select::select(&supply, &request.selection, orientation.as_ref());
+    let mut points = selected.map_err(|e| e.of_input(&name))?;
     if request.spacing == Spacing::World && supply.is_rounded() {
         points.warnings.push(ROUNDED.to_string());
     }
     points.warnings.splice(0..0, warnings);
-    Ok(Selected4 { name, ..points })
+    Ok(Selected4 { name, orientation, ..points })
 }
 
 const ROUNDED: &str = "coordinates in world units are rounded: sites that are cospherical in the grid may be \

@@ -4,12 +4,14 @@
 //! needed here.
 
 use super::data::{Data, Encoding, Part, Skip};
-use super::lattice::{Frame, Lattice};
+use super::lattice::Lattice;
 use super::volume::Volume;
+use super::world::World;
 use crate::source::byte_order::ByteOrder;
 use crate::source::origin::Origin;
 use crate::source::sample_type::SampleType;
 use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
 
 /// Length of the header, which its first four bytes state.
 const HEADER_LEN: u32 = 348;
@@ -149,28 +151,22 @@ impl Header<'_> {
     }
 
     /// World coordinates of the sites by `sform`, else by `qform`, else by the distances alone.
-    fn world(&self) -> std::result::Result<Frame, String> {
-        let (mins, steps) = if self.i16(254) > 0 {
-            self.affine()?
+    fn world(&self) -> std::result::Result<World, String> {
+        let sizes = [0, 1, 2].map(|axis| self.distance(axis));
+        let (origin, steps) = if self.i16(254) > 0 {
+            self.affine()
         } else if self.i16(252) > 0 {
-            self.rotation()?
+            self.rotation(sizes)
         } else {
-            ([0.0; 3], [0, 1, 2].map(|axis| self.distance(axis)))
+            let [x, y, z] = sizes;
+            ([0.0; 3], [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]])
         };
-        let [x, y, z] = mins;
-        let [dx, dy, dz] = steps;
-        let mins = [x, y, z, f64::from(self.f32(136))];
         // Files of single volumes leave the time step at 0.
         let dt = match self.distance(3) {
             0.0 => 1.0,
             step => step,
         };
-        let steps = [dx, dy, dz, dt];
-        let is_good = mins.iter().all(|min| min.is_finite());
-        if !is_good || !steps.iter().all(|step| step.is_finite() && *step != 0.0) {
-            return Err(format!("sites cannot be {steps:?} apart, starting at {mins:?}"));
-        }
-        Ok(Frame { mins, steps })
+        World::new(origin, steps, Some(sizes.map(f64::abs)), [self.f32(136).into(), dt])
     }
 
     /// Distance between sites along an axis (`pixdim`).
@@ -178,35 +174,35 @@ impl Header<'_> {
         self.f32(80 + 4 * axis).into()
     }
 
-    /// Origin and steps of the affine map (`srow_x`, `srow_y`, `srow_z`).
-    fn affine(&self) -> std::result::Result<([f64; 3], [f64; 3]), String> {
-        let entry = |row: usize, column: usize| f64::from(self.f32(280 + 16 * row + 4 * column));
-        if (0..3).any(|row| (0..3).any(|column| row != column && entry(row, column) != 0.0)) {
-            return Err(oblique());
-        }
-        Ok(([0, 1, 2].map(|row| entry(row, 3)), [0, 1, 2].map(|row| entry(row, row))))
+    /// Origin, and steps along each axis of the grid, by the affine map (`srow_x`, `srow_y`, `srow_z`).
+    fn affine(&self) -> (Point, [Point; 3]) {
+        let column = |column: usize| [0, 1, 2].map(|row| f64::from(self.f32(280 + 16 * row + 4 * column)));
+        (column(3), [column(0), column(1), column(2)])
     }
 
-    /// Origin and steps of the rotation that `quatern_b` and its siblings state, if it maps axes to
-    /// themselves.
-    fn rotation(&self) -> std::result::Result<([f64; 3], [f64; 3]), String> {
-        let turn = [256, 260, 264].map(|at| self.f32(at));
-        // A half turn around an axis has one component of 1; the identity has only zeros.
-        let signs = match turn.map(f32::abs) {
-            [0.0, 0.0, 0.0] => [1.0, 1.0, 1.0],
-            [1.0, 0.0, 0.0] => [1.0, -1.0, -1.0],
-            [0.0, 1.0, 0.0] => [-1.0, 1.0, -1.0],
-            [0.0, 0.0, 1.0] => [-1.0, -1.0, 1.0],
-            _ => return Err(oblique()),
-        };
+    /// The same by the rotation that the unit quaternion of `quatern_b`, `quatern_c` and `quatern_d` states;
+    /// its first component follows from these.
+    fn rotation(&self, sizes: [f64; 3]) -> (Point, [Point; 3]) {
+        let [b, c, d] = [256, 260, 264].map(|at| f64::from(self.f32(at)));
+        let rest = 1.0 - (b * b + c * c + d * d);
+        // Within rounding this is a half turn.
+        let (a, scale) = if rest < 1e-7 { (0.0, 1.0 / (1.0 - rest).sqrt()) } else { (rest.sqrt(), 1.0) };
+        let [b, c, d] = [b, c, d].map(|part| part * scale);
+        let axes = [
+            [a * a + b * b - c * c - d * d, 2.0 * (b * c + a * d), 2.0 * (b * d - a * c)],
+            [2.0 * (b * c - a * d), a * a + c * c - b * b - d * d, 2.0 * (c * d + a * b)],
+            [2.0 * (b * d + a * c), 2.0 * (c * d - a * b), a * a + d * d - c * c - b * b],
+        ];
         // qfac (pixdim[0]) below 0 mirrors the third axis.
         let mirror = if self.f32(76) < 0.0 { -1.0 } else { 1.0 };
-        let mut steps = [0, 1, 2].map(|axis| signs[axis] * self.distance(axis));
-        steps[2] *= mirror;
-        Ok(([268, 272, 276].map(|at| f64::from(self.f32(at))), steps))
+        let [x, y, z] = sizes;
+        let steps = [(axes[0], x), (axes[1], y), (axes[2], z * mirror)];
+        let steps = steps.map(|(axis, size)| axis.map(|part| whole(part) * size));
+        ([268, 272, 276].map(|at| f64::from(self.f32(at))), steps)
     }
 }
 
-fn oblique() -> String {
-    "the grid does not lie along the axes of the world".to_string()
+/// A component of a unit vector; 1, 0 or -1 if it is that within the rounding of f32.
+fn whole(part: f64) -> f64 {
+    if (part - part.round()).abs() < 1e-6 { part.round() } else { part }
 }

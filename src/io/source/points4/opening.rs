@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::scan::Supply;
+use super::volume::Volume;
 use super::{nifti, nrrd, stream, text};
 use crate::detect::{DD4, Format, read_head};
 use crate::source::origin::Origin;
@@ -19,9 +20,13 @@ pub(super) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<Strin
         return Err(Error::malformed("found no point"));
     }
     match DD4.detect(&head)? {
-        Format::Nrrd => nrrd::open(origin, path, warnings).map(Supply::Volume),
-        Format::Nifti => nifti::open(origin, &head, plain.is_compressed(), warnings).map(Supply::Volume),
+        Format::Nrrd => nrrd::open(origin, path, warnings).map(boxed),
+        Format::Nifti => nifti::open(origin, &head, plain.is_compressed(), warnings).map(boxed),
         Format::Stream | Format::Twin => stream::open(origin, path, &head).map(Supply::Stream),
         _ => text::open(origin).map(Supply::Text),
     }
+}
+
+fn boxed(volume: Volume) -> Supply {
+    Supply::Volume(Box::new(volume))
 }

@@ -1,6 +1,7 @@
 //! Passes over all points of an input.
 
 use super::lattice::Lattice;
+use super::orientation::Orientation;
 use super::stream::Stream;
 use super::text::Text;
 use super::volume::Volume;
@@ -13,7 +14,7 @@ pub(super) enum Supply {
     Grid(Lattice),
     Text(Text),
     Stream(Stream),
-    Volume(Volume),
+    Volume(Box<Volume>),
 }
 
 impl Supply {
@@ -45,17 +46,17 @@ impl Supply {
         }
     }
 
-    /// Gives the sites of a volume their world coordinates. Coordinates of texts and streams stay unchanged.
+    /// Gives the sites of a volume their world coordinates, or those along the axes of an oblique grid, and
+    /// returns how that lies in the world. Coordinates of texts and streams stay unchanged.
     ///
     /// # Errors
-    /// Usage, if the world coordinates are not known or not along the axes, or the source is a grid without a
-    /// file.
-    pub(super) fn place_in_world(&mut self) -> Result<()> {
+    /// Usage, if the world coordinates are not known, or the source is a grid without a file.
+    pub(super) fn place_in_world(&mut self) -> Result<Option<Orientation>> {
         match self {
             Supply::Grid(_) => {
                 Err(Error::usage("a grid without a file has no world units: leave --spacing away"))
             }
-            Supply::Text(_) | Supply::Stream(_) => Ok(()),
+            Supply::Text(_) | Supply::Stream(_) => Ok(None),
             Supply::Volume(volume) => volume.place_in_world(),
         }
     }

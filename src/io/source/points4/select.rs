@@ -1,31 +1,45 @@
 //! Selects the points of an input.
 
+use super::budget::Budget;
+use super::orientation::Orientation;
 use super::sample::choose;
 use super::scan::Supply;
-use super::{Selected4, Selection, Share, too_many};
+use super::{Selected4, Selection, Share};
 use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_core::limits::{DIAGRAM4_POINT_BYTES, POINTS4_MAX};
-use spmesh_core::system::memory_limit;
 use spmesh_model::cells4::Point4;
 
-/// The selected points, in the order of the input.
+/// The selected points, in the order of the input; `orientation` is that of an oblique grid.
+///
+/// Cost: a pass over the input. It takes a pass more if points are chosen at random, or if there may be more
+/// points than the budget allows: that pass keeps no points, and ends at the first one beyond the budget.
 ///
 /// # Errors
-/// As [`Supply::scan`]; usage, if the selection does not suit the input or selects too many points.
-pub(super) fn select(supply: &Supply, selection: &Selection) -> Result<Selected4> {
+/// As [`Supply::scan`]; usage, if the selection does not suit the input or selects too many points; memory,
+/// if their diagram does not fit.
+pub(super) fn select(
+    supply: &Supply,
+    selection: &Selection,
+    orientation: Option<&Orientation>,
+) -> Result<Selected4> {
     check(supply, selection)?;
-    if let Some(points) = count_before(supply, selection) {
-        check_count(points)?;
+    let selector = Selector { selection, orientation, budget: Budget::of(supply) };
+    if let Some(points) = count_before(supply, selection)? {
+        selector.budget.check(points)?;
     }
     match (supply, selection.share) {
         (Supply::Grid(lattice), Some(share)) if selection.condition.is_none() => {
             let sites = lattice.sites();
             let chosen = choose(sites, share.of(sites)?, selection.seed)?;
             let points = chosen.into_iter().map(|number| lattice.site(number)).collect();
-            Ok(Selected4 { points, values: None, name: String::new(), sites, warnings: Vec::new() })
+            Ok(Selected4 { points, sites, ..Selected4::default() })
         }
-        (_, Some(share)) => select_at_random(supply, selection, share),
-        (_, None) => Ok(Intake::of(supply, selection, |_| true)?.finish(selection)),
+        (_, Some(share)) => selector.at_random(supply, share),
+        (_, None) => {
+            if sites(supply).is_some_and(|sites| selector.budget.is_exceeded_by(sites)) {
+                selector.count(supply, 1.0)?;
+            }
+            Ok(selector.intake(supply, |_| true)?.finish(selection))
+        }
     }
 }
 
@@ -39,61 +53,101 @@ fn check(supply: &Supply, selection: &Selection) -> Result<()> {
     Ok(())
 }
 
+/// The number of sites of a grid or a volume.
+fn sites(supply: &Supply) -> Option<u64> {
+    match supply {
+        Supply::Grid(lattice) => Some(lattice.sites()),
+        Supply::Volume(volume) => Some(volume.lattice.sites()),
+        Supply::Text(_) | Supply::Stream(_) => None,
+    }
+}
+
 /// The number of points that will be selected, if it is known before any is read or generated.
-fn count_before(supply: &Supply, selection: &Selection) -> Option<u64> {
-    let sites = match supply {
-        Supply::Grid(lattice) => lattice.sites(),
-        Supply::Volume(volume) if selection.keep_nan || volume.data.sample.is_integer() => {
-            volume.lattice.sites()
-        }
-        _ => return None,
+///
+/// # Errors
+/// As [`Share::of`].
+fn count_before(supply: &Supply, selection: &Selection) -> Result<Option<u64>> {
+    let is_each_wanted = match supply {
+        Supply::Volume(volume) => selection.keep_nan || volume.data.sample.is_integer(),
+        _ => true,
     };
-    match (&selection.condition, selection.share) {
-        (None, None) => Some(sites),
-        _ => None,
+    let wanted = sites(supply).filter(|_| is_each_wanted && selection.condition.is_none());
+    match (selection.share, wanted) {
+        (Some(share), Some(wanted)) => share.of(wanted).map(Some),
+        (Some(Share::Count(count)), None) => Ok(Some(count)),
+        (Some(Share::Part(_)), None) => Ok(None),
+        (None, wanted) => Ok(wanted),
     }
 }
 
-/// Refuses more points than are read, and more than the memory can hold the diagram of.
-fn check_count(points: u64) -> Result<()> {
-    if points > POINTS4_MAX {
-        return Err(too_many("points", points, POINTS4_MAX, REMEDY));
+/// Tells which points are wanted, and how many may be selected.
+struct Selector<'s> {
+    selection: &'s Selection,
+    orientation: Option<&'s Orientation>,
+    budget: Budget,
+}
+
+impl Selector<'_> {
+    fn wants(&self, point: &Point4, value: Option<f64>) -> bool {
+        let Selector { selection, orientation, .. } = self;
+        let holds = |condition: &super::Condition| {
+            let place = orientation.map_or(*point, |orientation| orientation.point_to_world(*point));
+            condition.holds(&place, value.unwrap_or(f64::NAN))
+        };
+        (selection.keep_nan || !value.is_some_and(f64::is_nan))
+            && selection.condition.as_ref().is_none_or(holds)
     }
-    let needed = points * DIAGRAM4_POINT_BYTES;
-    match memory_limit().filter(|&limit| needed > limit) {
-        Some(limit) => {
-            let [needed, limit] = [needed, limit].map(|bytes| bytes.div_ceil(1 << 20));
-            let message = format!(
-                "not enough memory: the diagram of {points} points takes at least {needed} MiB, there are {limit}: \
-                 {REMEDY}"
-            );
-            Err(Error::new(ErrorKind::Memory, message))
+
+    /// The number of wanted points, of which a part will be selected.
+    ///
+    /// # Errors
+    /// As [`Supply::scan`] and [`Budget::check`].
+    fn count(&self, supply: &Supply, part: f64) -> Result<u64> {
+        let mut wanted = 0;
+        supply.scan(&mut |point, value| {
+            if self.wants(&point, value) {
+                wanted += 1;
+                self.budget.check_part(wanted, part)?;
+            }
+            Ok(())
+        })?;
+        Ok(wanted)
+    }
+
+    /// Takes two passes: the number of wanted points must be known before some of them are chosen.
+    fn at_random(&self, supply: &Supply, share: Share) -> Result<Selected4> {
+        let wanted = match share {
+            Share::Part(part) => self.count(supply, part)?,
+            Share::Count(_) => self.count(supply, 0.0)?,
+        };
+        let mut chosen = choose(wanted, share.of(wanted)?, self.selection.seed)?.into_iter().peekable();
+        let intake = self.intake(supply, |number| chosen.next_if_eq(&number).is_some())?;
+        if chosen.peek().is_some() || intake.wanted != wanted {
+            // Only another process can have changed the input.
+            return Err(Error::malformed("has changed while it was read: read it again"));
         }
-        None => Ok(()),
+        Ok(intake.finish(self.selection))
     }
-}
 
-const REMEDY: &str = "choose some of them with --where, --sample or --count";
-
-/// Takes two passes: the number of wanted points must be known before some of them are chosen.
-fn select_at_random(supply: &Supply, selection: &Selection, share: Share) -> Result<Selected4> {
-    let mut wanted = 0;
-    supply.scan(&mut |point, value| {
-        wanted += u64::from(is_wanted(selection, &point, value));
-        Ok(())
-    })?;
-    let mut chosen = choose(wanted, share.of(wanted)?, selection.seed)?.into_iter().peekable();
-    let intake = Intake::of(supply, selection, |number| chosen.next_if_eq(&number).is_some())?;
-    if chosen.peek().is_some() || intake.wanted != wanted {
-        // Only another process can have changed the input.
-        return Err(Error::malformed("has changed while it was read: read it again"));
+    /// Collects those wanted points for whose index among the wanted points `keeps` returns true.
+    fn intake(&self, supply: &Supply, mut keeps: impl FnMut(u64) -> bool) -> Result<Intake> {
+        let values = supply.has_values().then(Vec::new);
+        let mut intake = Intake { values, ..Intake::default() };
+        let warning = supply.scan(&mut |point, value| {
+            intake.sites += 1;
+            intake.missing += u64::from(value.is_some_and(f64::is_nan));
+            if !self.wants(&point, value) {
+                return Ok(());
+            }
+            intake.wanted += 1;
+            if !keeps(intake.wanted - 1) {
+                return Ok(());
+            }
+            self.budget.check(intake.points.len() as u64 + 1)?;
+            intake.push(point, value)
+        })?;
+        Ok(Intake { warning, ..intake })
     }
-    Ok(intake.finish(selection))
-}
-
-fn is_wanted(selection: &Selection, point: &Point4, value: Option<f64>) -> bool {
-    let holds = |condition: &super::Condition| condition.holds(point, value.unwrap_or(f64::NAN));
-    (selection.keep_nan || !value.is_some_and(f64::is_nan)) && selection.condition.as_ref().is_none_or(holds)
 }
 
 /// Collects points.
@@ -108,27 +162,8 @@ struct Intake {
 }
 
 impl Intake {
-    /// Keeps those wanted points for whose index among the wanted points `keeps` returns true.
-    fn of(supply: &Supply, selection: &Selection, mut keeps: impl FnMut(u64) -> bool) -> Result<Intake> {
-        let values = supply.has_values().then(Vec::new);
-        let mut intake = Intake { values, ..Intake::default() };
-        let warning = supply.scan(&mut |point, value| {
-            intake.sites += 1;
-            intake.missing += u64::from(value.is_some_and(f64::is_nan));
-            if !is_wanted(selection, &point, value) {
-                return Ok(());
-            }
-            intake.wanted += 1;
-            if keeps(intake.wanted - 1) { intake.push(point, value) } else { Ok(()) }
-        })?;
-        Ok(Intake { warning, ..intake })
-    }
-
     fn push(&mut self, point: Point4, value: Option<f64>) -> Result<()> {
-        let count = self.points.len() as u64;
-        if count == POINTS4_MAX {
-            return Err(too_many("points", count + 1, POINTS4_MAX, REMEDY));
-        }
+        let count = self.points.len();
         let no_memory = |_| Error::new(ErrorKind::Memory, format!("not enough memory for {count} points"));
         self.points.try_reserve(1).map_err(no_memory)?;
         self.points.push(point);
@@ -149,6 +184,6 @@ impl Intake {
             let why = if wanted == 0 { "none fulfils what is asked for" } else { "too few are chosen" };
             warnings.push(format!("no point is left of {sites}: {why}"));
         }
-        Selected4 { points, values, name: String::new(), sites, warnings }
+        Selected4 { points, values, sites, warnings, ..Selected4::default() }
     }
 }

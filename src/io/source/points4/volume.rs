@@ -1,7 +1,9 @@
 //! Volumes: a value for each site of a grid.
 
 use super::data::Data;
-use super::lattice::{Frame, Lattice};
+use super::lattice::Lattice;
+use super::orientation::Orientation;
+use super::world::World;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
@@ -13,7 +15,7 @@ pub(super) struct Volume {
     /// Slope and intercept: values are `slope * stored + intercept`. `None` if values are stored directly.
     pub scaling: Option<[f64; 2]>,
     /// World coordinates of the sites, or why they are not known.
-    pub world: std::result::Result<Frame, String>,
+    pub world: std::result::Result<World, String>,
 }
 
 impl Volume {
@@ -35,13 +37,16 @@ impl Volume {
         })
     }
 
-    /// Gives the sites their world coordinates.
+    /// Gives the sites their world coordinates, or those along the axes of an oblique grid.
     ///
     /// # Errors
-    /// Usage, if these are not known or not along the axes.
-    pub(super) fn place_in_world(&mut self) -> Result<()> {
+    /// Usage, if these are not known.
+    pub(super) fn place_in_world(&mut self) -> Result<Option<Orientation>> {
         match &self.world {
-            Ok(frame) => self.lattice.place(*frame),
+            Ok(world) => {
+                self.lattice.place(world.coordinates, world.frame)?;
+                Ok(world.orientation)
+            }
             Err(reason) => Err(Error::usage(format!("{reason}: coordinates can only be grid indices"))),
         }
     }

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::search::first;
 use super::tile::{WORD, WORDS, WORDS_OF_TILE};
-use super::tile_cache::TilePlace;
+use crate::files::TilePlace;
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 use spmesh_io::raster::{Grid, TILE};
 use spmesh_io::source::Mask;

@@ -6,12 +6,12 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::cut::{Polygon, cells_of};
+use super::cut::{Cutter, Polygon};
 use super::options::Sample;
 use super::stages::Stages;
-use super::tile::CELLS;
-use super::tile_cache::{TileCache, tiles_of};
+use super::tile_cache::TileCache;
 use crate::accumulators::Accumulators;
+use crate::files::{CELLS, places, tiles_of};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::raster::{Grid, TILE};
 use spmesh_model::bounds::Point;
@@ -51,6 +51,7 @@ pub(super) struct Coverage {
     coordinates: Coordinates,
     steps_per_unit: f64,
     cells: Accumulators<Cover>,
+    cutter: Cutter,
 }
 
 impl Coverage {
@@ -68,7 +69,7 @@ impl Coverage {
             2f64.powi(VALUE_BITS - 1 - exponent)
         });
         let cells = Accumulators::new(BLANK, memory, temp_dir);
-        Coverage { sample, grid, coordinates, steps_per_unit, cells }
+        Coverage { sample, grid, coordinates, steps_per_unit, cells, cutter: Cutter::new() }
     }
 
     /// Adds a triangle with corners in stored coordinates and elevations of the world.
@@ -88,13 +89,13 @@ impl Coverage {
             limits.into_iter().fold(f64::NEG_INFINITY, f64::max),
         ];
         let (cells, steps_per_unit) = (&mut self.cells, self.steps_per_unit);
-        cells_of(placed, [columns, rows], |[column, row], part: &Polygon| {
+        self.cutter.cells_of(placed, [columns, rows], |[column, row], part: &Polygon| {
             let (area, mean) = part.integral();
-            let area = (area * AREA_STEPS).round().min(AREA_STEPS) as u64;
+            let area = rounded(area.min(1.0) * AREA_STEPS) as u64;
             if area == 0 {
                 return Ok(());
             }
-            let steps = (mean.clamp(low, high) * steps_per_unit).round();
+            let steps = mean.clamp(low, high) * steps_per_unit;
             if steps.is_nan() || steps.abs() > VALUE_STEPS_MAX {
                 return Err(Error::usage(format!(
                     "a value of {mean:e} is too great for --sample: scale values"
@@ -104,7 +105,7 @@ impl Coverage {
             let cover = cells.cell(tile, cell)?;
             // The parts of a cell add up to its area, but for their rounding.
             cover.area = cover.area.saturating_add(area);
-            cover.sum = cover.sum.saturating_add(i128::from(area) * steps as i128);
+            cover.sum = cover.sum.saturating_add(i128::from(area) * i128::from(rounded(steps)));
             for [_, _, elevation] in part.corners() {
                 let elevation = elevation.clamp(low, high) as f32;
                 cover.least = cover.least.min(elevation);
@@ -121,7 +122,7 @@ impl Coverage {
     /// Those of `stages`; if the temporary file fails.
     pub(super) fn finish(mut self, cache: &TileCache, stages: &mut Stages) -> Result<[u64; 2]> {
         let mut values = vec![f32::NAN; CELLS];
-        for at in super::neighbours::places(tiles_of(&self.grid)?) {
+        for at in places(tiles_of(&self.grid)?) {
             let Some(cells) = self.cells.read(at)? else { continue };
             for (value, cover) in values.iter_mut().zip(cells) {
                 *value = match self.sample {
@@ -136,6 +137,14 @@ impl Coverage {
         }
         Ok([self.cells.spilled, self.cells.spill_len()])
     }
+}
+
+/// The nearest integer of a number up to 2^60. A call of the library would take as long as all else.
+#[inline]
+fn rounded(number: f64) -> i64 {
+    // Numbers from 2^52 on are integers, to which a half would add an error.
+    let half = if number.abs() < (1u64 << 52) as f64 { 0.5f64.copysign(number) } else { 0.0 };
+    (number + half) as i64
 }
 
 /// The mean elevation, rounded at the end only.

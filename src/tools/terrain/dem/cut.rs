@@ -14,6 +14,7 @@ pub(super) struct Polygon {
 }
 
 impl Polygon {
+    #[cfg(test)]
     fn of([a, b, c]: [Point; 3]) -> Polygon {
         let none = [0.0; 3];
         Polygon { corners: [a, b, c, none, none, none, none], count: 3 }
@@ -37,29 +38,39 @@ impl Polygon {
         (area, if area > 0.0 { first[2] + sum / area } else { first[2] })
     }
 
-    /// The parts below and above a place on an axis. A side that lies there belongs to both.
-    fn cut(&self, axis: usize, at: f64) -> [Polygon; 2] {
-        let mut parts = [Polygon { corners: self.corners, count: 0 }; 2];
+    /// Makes `parts` those below and above a place on an axis. A side that lies there belongs to both.
+    #[inline]
+    fn cut(&self, axis: usize, at: f64, [below, above]: [&mut Polygon; 2]) {
+        below.count = 0;
+        above.count = 0;
         let corners = self.corners();
-        for (number, corner) in corners.iter().enumerate() {
-            let next = &corners[(number + 1) % corners.len()];
+        let Some(mut corner) = corners.last() else { return };
+        for next in corners {
             let [here, there] = [corner[axis] - at, next[axis] - at];
-            if here <= 0.0 {
-                parts[0].push(*corner);
-            }
-            if here >= 0.0 {
-                parts[1].push(*corner);
-            }
             if here < 0.0 && there > 0.0 || here > 0.0 && there < 0.0 {
                 let share = here / (here - there);
                 let mut crossing = [0, 1, 2].map(|axis| corner[axis] + share * (next[axis] - corner[axis]));
                 crossing[axis] = at;
-                parts.iter_mut().for_each(|part| part.push(crossing));
+                below.push(crossing);
+                above.push(crossing);
             }
+            if there <= 0.0 {
+                below.push(*next);
+            }
+            if there >= 0.0 {
+                above.push(*next);
+            }
+            corner = next;
         }
-        parts
     }
 
+    /// Becomes a copy.
+    fn set(&mut self, other: &Polygon) {
+        self.count = other.count;
+        self.corners[..other.count].copy_from_slice(other.corners());
+    }
+
+    #[inline]
     fn push(&mut self, corner: Point) {
         // Rounding may add corners that a convex polygon would not have: they are nearly on another one.
         if self.count < CORNERS_MAX {
@@ -69,50 +80,96 @@ impl Polygon {
     }
 
     /// The least and the greatest coordinate along an axis.
+    #[inline]
     fn range(&self, axis: usize) -> [f64; 2] {
-        let places = || self.corners().iter().map(|corner| corner[axis]);
-        [places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max)]
+        self.corners().iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], corner| {
+            let place = corner[axis];
+            [if place < low { place } else { low }, if place > high { place } else { high }]
+        })
     }
 }
 
-/// Calls `part` with the part of a triangle in each cell that it meets, of a raster of `size` columns and rows.
-///
-/// # Errors
-/// Those of `part`.
-pub(super) fn cells_of(
-    corners: [Point; 3],
-    size: [u32; 2],
-    mut part: impl FnMut([usize; 2], &Polygon) -> Result<()>,
-) -> Result<()> {
-    strips(Polygon::of(corners), 1, size[1], |row, strip| {
-        strips(*strip, 0, size[0], |column, cell| part([column, row], cell))
-    })
+/// Cuts triangles at the sides of cells. It holds polygons, so that none is copied as a whole.
+#[derive(Debug)]
+pub(super) struct Cutter {
+    triangle: Polygon,
+    rows: Strips,
+    columns: Strips,
 }
 
-/// Calls `part` with the part of a polygon between each pair of neighbouring integers on an axis, from 0 to `end`.
-fn strips(
-    polygon: Polygon,
-    axis: usize,
-    end: u32,
-    mut part: impl FnMut(usize, &Polygon) -> Result<()>,
-) -> Result<()> {
-    let [low, high] = polygon.range(axis);
-    if !(high > 0.0 && low < f64::from(end)) {
-        return Ok(());
+/// The polygon that is cut into strips: two copies that take turns, and the strip that was cut off.
+#[derive(Debug)]
+struct Strips {
+    rests: [Polygon; 2],
+    strip: Polygon,
+}
+
+const NOTHING: Polygon = Polygon { corners: [[0.0; 3]; CORNERS_MAX], count: 0 };
+
+impl Cutter {
+    pub(super) fn new() -> Cutter {
+        let strips = || Strips { rests: [NOTHING; 2], strip: NOTHING };
+        Cutter { triangle: NOTHING, rows: strips(), columns: strips() }
     }
-    let first = low.max(0.0).floor();
-    let mut rest = if low < 0.0 { polygon.cut(axis, 0.0)[1] } else { polygon };
-    let last = high.min(f64::from(end)).ceil() as usize;
-    for number in first as usize..last {
-        let side = (number + 1) as f64;
-        if high <= side {
-            return part(number, &rest);
+
+    /// Calls `part` with the part of a triangle in each cell that it meets, of a raster of `size` columns and
+    /// rows.
+    ///
+    /// # Errors
+    /// Those of `part`.
+    pub(super) fn cells_of(
+        &mut self,
+        corners: [Point; 3],
+        size: [u32; 2],
+        mut part: impl FnMut([usize; 2], &Polygon) -> Result<()>,
+    ) -> Result<()> {
+        let Cutter { triangle, rows, columns } = self;
+        triangle.corners[..3].copy_from_slice(&corners);
+        triangle.count = 3;
+        rows.each(triangle, 1, size[1], |row, strip| {
+            columns.each(strip, 0, size[0], |column, cell| part([column, row], cell))
+        })
+    }
+}
+
+impl Strips {
+    /// Calls `part` with the part of a polygon between each pair of neighbouring integers on an axis, from 0
+    /// to `end`.
+    #[inline]
+    fn each(
+        &mut self,
+        polygon: &Polygon,
+        axis: usize,
+        end: u32,
+        mut part: impl FnMut(usize, &Polygon) -> Result<()>,
+    ) -> Result<()> {
+        let [low, high] = polygon.range(axis);
+        if !(high > 0.0 && low < f64::from(end)) {
+            return Ok(());
         }
-        let [here, beyond] = rest.cut(axis, side);
-        part(number, &here)?;
-        rest = beyond;
+        let first = low.max(0.0).floor();
+        // Where triangles are smaller than cells, most are in one row and one column.
+        if low >= 0.0 && high <= first + 1.0 {
+            return part(first as usize, polygon);
+        }
+        let [mut rest, mut beyond] = self.rests.each_mut();
+        if low < 0.0 {
+            polygon.cut(axis, 0.0, [&mut self.strip, rest]);
+        } else {
+            rest.set(polygon);
+        }
+        let last = high.min(f64::from(end)).ceil() as usize;
+        for number in first as usize..last {
+            let side = (number + 1) as f64;
+            if high <= side {
+                return part(number, rest);
+            }
+            rest.cut(axis, side, [&mut self.strip, beyond]);
+            part(number, &self.strip)?;
+            (rest, beyond) = (beyond, rest);
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -129,18 +186,24 @@ mod tests {
         ] {
             let whole = Polygon::of(corners);
             let (mut area, mut sum) = (0.0, 0.0);
-            cells_of(corners, [8, 8], |[column, row], part| {
-                let ((size, mean), place) = (part.integral(), [column as f64, row as f64]);
-                for (axis, side) in place.into_iter().enumerate() {
-                    let [low, high] = part.range(axis);
-                    assert!(low >= side && high <= side + 1.0, "{column} {row}");
-                }
-                area += size;
-                sum += size * mean;
-                Ok(())
-            })
-            .unwrap();
-            let inside = whole.cut(0, 0.0)[1].cut(1, 0.0)[1].cut(0, 8.0)[0].cut(1, 8.0)[0];
+            Cutter::new()
+                .cells_of(corners, [8, 8], |[column, row], part| {
+                    let ((size, mean), place) = (part.integral(), [column as f64, row as f64]);
+                    for (axis, side) in place.into_iter().enumerate() {
+                        let [low, high] = part.range(axis);
+                        assert!(low >= side && high <= side + 1.0, "{column} {row}");
+                    }
+                    area += size;
+                    sum += size * mean;
+                    Ok(())
+                })
+                .unwrap();
+            let part = |polygon: &Polygon, axis: usize, at: f64| {
+                let [mut below, mut above] = [NOTHING; 2];
+                polygon.cut(axis, at, [&mut below, &mut above]);
+                [below, above]
+            };
+            let inside = part(&part(&part(&part(&whole, 0, 0.0)[1], 1, 0.0)[1], 0, 8.0)[0], 1, 8.0)[0];
             let (expected, mean) = inside.integral();
             assert!((area - expected).abs() < 1e-12 * expected, "{area} {expected}");
             assert!((sum - expected * mean).abs() < 1e-11 * expected, "{sum}");

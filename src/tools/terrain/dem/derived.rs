@@ -6,10 +6,11 @@ use foldhash::{HashMap, HashMapExt};
 
 use super::fill::{Filler, around};
 use super::flush::fill_holes;
-use super::neighbours::{SIDE, place, places};
+use super::neighbours::{SIDE, place};
 use super::options::Quantity;
-use super::tile::{CELLS, Tile};
-use super::tile_cache::{TileCache, TilePlace};
+use super::tile::Tile;
+use super::tile_cache::TileCache;
+use crate::files::{CELLS, TilePlace, places};
 use spmesh_core::error::Result;
 use spmesh_core::temporary::Records;
 use spmesh_geometry::predicates::Point2;

@@ -1,6 +1,6 @@
 //! Fills cells without data from data around them.
 
-use super::tile_cache::TilePlace;
+use crate::files::TilePlace;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::raster::TILE;
 

@@ -2,12 +2,12 @@
 
 use super::derived::Derived;
 use super::fill::Filler;
-use super::neighbours::places;
 use super::options::Options;
 use super::rasterizer::Rasterizer;
 use super::stages::Stages;
 use super::tile::WORD;
-use super::tile_cache::{TileCache, TilePlace, blank_others};
+use super::tile_cache::{TileCache, blank_others};
+use crate::files::{TilePlace, places};
 use spmesh_core::error::Result;
 use spmesh_io::raster::TILE;
 

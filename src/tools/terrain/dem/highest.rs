@@ -2,15 +2,12 @@
 
 use std::io::{Read, Seek, Write};
 
-use super::band::Band;
 use super::options::Options;
-use super::tile::CELLS;
-use super::tile_cache::{TilePlace, tiles_of};
-use super::tile_store::{TileStore, TileTarget};
 use super::{Run, Stats, check};
+use crate::files::{CELLS, Destination, TilePlace, TileSource, TileStore, TileTarget, places, tiles_of};
 use spmesh_core::error::Result;
 use spmesh_crs::System;
-use spmesh_io::raster::{self, Grid, RasterFormat, Reference};
+use spmesh_io::raster::{Grid, Reference};
 use spmesh_stream::{Crs, StreamReader};
 
 /// In each cell, the greatest value of the meshes that have one there.
@@ -31,7 +28,7 @@ impl Highest {
     /// Usage, if there are too many tiles.
     pub fn new(grid: &Grid, options: &Options) -> Result<Highest> {
         tiles_of(grid)?;
-        let store = TileStore::new(options.memory / 2, options.raster.temp_dir.as_deref());
+        let store = TileStore::new(1, options.memory / 2, options.raster.temp_dir.as_deref());
         Ok(Highest { grid: *grid, store, tile: vec![f32::NAN; CELLS] })
     }
 
@@ -53,7 +50,7 @@ impl Highest {
     /// If writing fails.
     pub fn write<W: Write + Seek>(
         mut self,
-        output: &mut W,
+        output: Destination<W>,
         options: &Options,
         crs: &Crs,
     ) -> Result<(u64, Vec<String>)> {
@@ -61,27 +58,17 @@ impl Highest {
         let mut reference = Reference::of(&System::of(crs), false, options.raster.format);
         let notices = std::mem::take(&mut reference.notices);
         let (file, grid) = (options.file(self.grid, &reference), self.grid);
-        let mut known = 0;
-        let mut count = |values: &[f32]| known += super::flush::count_known(values);
-        match options.raster.format {
-            RasterFormat::Ascii => {
-                let mut band = Band::new(grid);
-                raster::write_rows(output, &file, |row, values| {
-                    band.read(&mut self.store, row, values)?;
-                    count(values);
-                    Ok(())
-                })?;
-            }
-            RasterFormat::GeoTiff => raster::write_tiles(output, &file, |tiles| {
-                for at in super::neighbours::places(tiles_of(&grid)?) {
-                    if self.store.get(at, &mut self.tile)? {
-                        count(&self.tile);
-                        tiles.tile(at[0], at[1], &self.tile)?;
-                    }
+        let (known, _) = output.write(&file, options.memory, |tiles, _| {
+            let mut known = 0;
+            for at in places(tiles_of(&grid)?) {
+                if self.store.get(at, &mut self.tile)? {
+                    known += super::flush::count_known(&self.tile);
+                    tiles.put(at, &self.tile)?;
+                    self.store.remove(at);
                 }
-                Ok(())
-            })?,
-        }
+            }
+            Ok(known)
+        })?;
         Ok((known, notices))
     }
 }
@@ -95,7 +82,9 @@ impl TileTarget for Highest {
         self.tile.iter_mut().zip(values).for_each(|(highest, value)| *highest = highest.max(*value));
         self.store.put(at, &self.tile)
     }
+}
 
+impl TileSource for Highest {
     fn get(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool> {
         self.store.get(at, values)
     }

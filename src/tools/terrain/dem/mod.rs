@@ -6,10 +6,9 @@
 //! `tile` holds cells; `tile_cache` holds all tiles, some of them in a temporary file. After the last
 //! triangle, `flush` passes on the remaining tiles, whose holes `fill` fills; `derived` has the slopes there.
 //! `cell_mask` finds the cells in polygons. Complete tiles go through `stages`: `neighbours` derives slopes from
-//! the cells of elevations. A `tile_store` holds complete tiles, of which `band` makes rows.
+//! the cells of elevations.
 
 mod axis;
-pub(crate) mod band;
 mod cell_mask;
 mod centers;
 mod coverage;
@@ -27,16 +26,15 @@ mod search;
 mod span;
 mod stages;
 mod tile;
-pub(crate) mod tile_cache;
-pub(crate) mod tile_store;
+mod tile_cache;
 
 use std::io::{Read, Seek, Write};
 
 pub use highest::Highest;
 pub use options::{Interpolation, Method, Options, Quantity, Sample};
 
+use crate::files::{Destination, TilePlace, TileStore, TileTarget, tiles_of};
 use crate::surface::check_input;
-use band::Band;
 use coverage::Coverage;
 use fill::Filler;
 use flush::Flush;
@@ -46,13 +44,11 @@ use relief::Derivation;
 use spmesh_core::error::{Error, Result};
 use spmesh_crs::System;
 use spmesh_geometry::predicates::{PredicateCounts, Predicates2};
-use spmesh_io::raster::{self, Gradient, Grid, RasterFormat, Window};
+use spmesh_io::raster::{Gradient, Grid, Window};
 use spmesh_model::attributes::Column;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Header, LiveVertices, Patch, StreamReader};
 use stages::Stages;
-use tile_cache::{TilePlace, tiles_of};
-use tile_store::{TileStore, TileTarget};
 
 /// Counts of a run.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -114,7 +110,7 @@ pub fn window(header: &Header) -> Result<Window> {
 /// f32; if there are too many tiles; if writing fails.
 pub fn rasterize<R: Read, W: Write + Seek>(
     reader: &mut StreamReader<R>,
-    output: &mut W,
+    output: Destination<W>,
     grid: &Grid,
     options: &Options,
     progress: impl FnMut(u64),
@@ -127,28 +123,14 @@ pub fn rasterize<R: Read, W: Write + Seek>(
     let reference = options.reference(&system);
     let file = options.file(*grid, &reference);
     let run = Run { grid, options, column, system: &system };
-    let mut stats = match options.raster.format {
-        RasterFormat::Ascii => {
-            // Rows are written from the top, so all tiles wait.
-            let mut store = TileStore::new(options.memory / 2, options.raster.temp_dir.as_deref());
-            let mut stats = run.draw(reader, &mut store, options.memory / 2, progress)?;
-            let mut band = Band::new(*grid);
-            raster::write_rows(output, &file, |row, values| band.read(&mut store, row, values))?;
-            stats.spilled += store.spilled;
-            stats.spilled_bytes += store.spill_len();
-            stats
-        }
-        RasterFormat::GeoTiff => {
-            let mut stats = Stats::default();
-            raster::write_tiles(output, &file, |tiles| {
-                stats = run.draw(reader, tiles, options.memory, progress)?;
-                Ok(())
-            })?;
-            stats
-        }
-    };
-    stats.notices = reference.notices;
-    Ok(stats)
+    let draw = |target: &mut dyn TileTarget, memory| run.draw(reader, target, memory, progress);
+    let (stats, [spilled, spilled_bytes]) = output.write(&file, options.memory, draw)?;
+    Ok(Stats {
+        spilled: stats.spilled + spilled,
+        spilled_bytes: stats.spilled_bytes + spilled_bytes,
+        notices: reference.notices,
+        ..stats
+    })
 }
 
 /// What the tiles of a raster follow from.
@@ -189,7 +171,7 @@ impl Run<'_> {
             rasterizer.coverage = Some(coverage);
         }
         let neighbours = differences.map(|differences| -> Result<Neighbours> {
-            let store = TileStore::new(memory - for_drawing, options.raster.temp_dir.as_deref());
+            let store = TileStore::new(1, memory - for_drawing, temp_dir);
             let gradient = Gradient::new(differences, self.grid.step / rasterizer.unit_of_z);
             let derivation = Derivation::new(&options.quantity, gradient, reader.header())?;
             Ok(Neighbours::new(derivation, rasterizer.cache.tiles(), store))

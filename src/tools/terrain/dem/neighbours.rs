@@ -4,9 +4,7 @@
 
 use super::fill::around;
 use super::relief::Derivation;
-use super::tile::CELLS;
-use super::tile_cache::TilePlace;
-use super::tile_store::{TileStore, TileTarget};
+use crate::files::{CELLS, Dependencies, TilePlace, TileSource, TileStore, TileTarget, places};
 use spmesh_core::error::Result;
 use spmesh_io::raster::TILE;
 
@@ -15,7 +13,7 @@ pub(super) const SIDE: usize = TILE + 2;
 
 /// Derives tiles from tiles of elevations that come in any order.
 ///
-/// Memory: that of the store, three bytes for each tile of the grid, and two tiles. Tiles wait only while a
+/// Memory: that of the store, nine bytes for each tile of the grid, and two tiles. Tiles wait only while a
 /// neighbour is missing.
 #[derive(Debug)]
 pub(super) struct Neighbours {
@@ -23,11 +21,8 @@ pub(super) struct Neighbours {
     /// Number of tiles along each axis.
     tiles: [usize; 2],
     store: TileStore,
-    /// For each tile, whether it has come, how many tiles around it and including it have not, and how many of
-    /// these are not derived yet.
-    has_come: Vec<bool>,
-    missing: Vec<u8>,
-    users: Vec<u8>,
+    /// Each derived tile needs itself and the tiles around it.
+    dependencies: Dependencies,
     window: Vec<f32>,
     tile: Vec<f32>,
     /// The values of a derived tile, band by band.
@@ -37,16 +32,13 @@ pub(super) struct Neighbours {
 impl Neighbours {
     /// No tiles so far. The store is empty; `tiles` is the number of tiles in a row and in a column of the grid.
     pub(super) fn new(derivation: Derivation, tiles: [usize; 2], store: TileStore) -> Neighbours {
-        let places = || places(tiles);
-        let counts: Vec<u8> = places().map(|at| around(at, tiles).count() as u8).collect();
+        let around = |count: usize| (0..count).map(|at| at.saturating_sub(1)..(at + 2).min(count)).collect();
         Neighbours {
             values: vec![f32::NAN; derivation.bands() * CELLS],
             derivation,
             tiles,
             store,
-            has_come: vec![false; counts.len()],
-            missing: counts.clone(),
-            users: counts,
+            dependencies: Dependencies::new(tiles, tiles.map(around)),
             window: vec![f32::NAN; SIDE * SIDE],
             tile: vec![f32::NAN; CELLS],
         }
@@ -77,57 +69,36 @@ impl Neighbours {
     /// As [`Neighbours::take`].
     pub(super) fn finish(&mut self, target: &mut dyn TileTarget) -> Result<()> {
         places(self.tiles)
-            .try_for_each(|at| if self.has_come[self.number(at)] { Ok(()) } else { self.come(at, target) })
+            .try_for_each(|at| if self.dependencies.has_come(at) { Ok(()) } else { self.come(at, target) })
     }
 
     /// Marks a tile as complete and derives those for which it was the last one.
     fn come(&mut self, at: TilePlace, target: &mut dyn TileTarget) -> Result<()> {
-        let number = self.number(at);
-        self.has_come[number] = true;
-        for other in around(at, self.tiles) {
-            let number = self.number(other);
-            self.missing[number] -= 1;
-            if self.missing[number] == 0 {
-                self.derive(other, target)?;
-            }
+        for tile in self.dependencies.come(at) {
+            self.derive(tile, target)?;
+            self.dependencies.made(tile).into_iter().for_each(|tile| self.store.remove(tile));
         }
         Ok(())
     }
 
-    /// Derives a tile, and forgets the elevations that no tile needs any more.
+    /// Derives a tile.
     fn derive(&mut self, at: TilePlace, target: &mut dyn TileTarget) -> Result<()> {
-        if self.store.get(at, &mut self.tile)? {
-            self.window.fill(f32::NAN);
-            place(&mut self.window, &self.tile, [1, 1]);
-            for other in around(at, self.tiles).filter(|&other| other != at) {
-                if self.store.get(other, &mut self.tile)? {
-                    place(&mut self.window, &self.tile, [0, 1].map(|axis| other[axis] + 1 - at[axis]));
-                }
-            }
-            for row in 0..TILE {
-                let lines = [0, 1, 2].map(|line| &self.window[(row + line) * SIDE..][..SIDE]);
-                self.derivation.row(lines, &mut self.values, row)?;
-            }
-            target.put(at, &self.values)?;
+        if !self.store.get(at, &mut self.tile)? {
+            return target.skip(at);
         }
-        for other in around(at, self.tiles) {
-            let number = self.number(other);
-            self.users[number] -= 1;
-            if self.users[number] == 0 {
-                self.store.remove(other);
+        self.window.fill(f32::NAN);
+        place(&mut self.window, &self.tile, [1, 1]);
+        for other in around(at, self.tiles).filter(|&other| other != at) {
+            if self.store.get(other, &mut self.tile)? {
+                place(&mut self.window, &self.tile, [0, 1].map(|axis| other[axis] + 1 - at[axis]));
             }
         }
-        Ok(())
+        for row in 0..TILE {
+            let lines = [0, 1, 2].map(|line| &self.window[(row + line) * SIDE..][..SIDE]);
+            self.derivation.row(lines, &mut self.values, row)?;
+        }
+        target.put(at, &self.values)
     }
-
-    fn number(&self, [column, row]: TilePlace) -> usize {
-        row * self.tiles[0] + column
-    }
-}
-
-/// All places of a grid of tiles, row by row.
-pub(super) fn places([across, down]: [usize; 2]) -> impl Iterator<Item = TilePlace> {
-    (0..down).flat_map(move |row| (0..across).map(move |column| [column, row]))
 }
 
 /// Copies the part of a tile in the window; `at` is 1, 1 for the tile in the middle.

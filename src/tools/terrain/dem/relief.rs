@@ -1,7 +1,7 @@
 //! The values of a cell that follow from its elevation and those of its eight neighbours.
 
 use super::options::Quantity;
-use super::tile::CELLS;
+use crate::files::CELLS;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::raster::colour_map::{BATLOW, lit};
 use spmesh_io::raster::{Gradient, Samples, Shading, TILE};

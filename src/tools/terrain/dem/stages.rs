@@ -2,9 +2,7 @@
 
 use super::flush::count_known;
 use super::neighbours::Neighbours;
-use super::tile::CELLS;
-use super::tile_cache::TilePlace;
-use super::tile_store::TileTarget;
+use crate::files::{CELLS, TilePlace, TileSource, TileTarget};
 use spmesh_core::error::Result;
 
 /// Takes complete tiles in any order, each once.
@@ -13,7 +11,7 @@ pub(super) struct Stages<'t> {
     counted: Counted<'t>,
 }
 
-/// A target, and how many cells of its tiles have a value. Tiles without any are left out.
+/// A target, and how many cells of its tiles have a value. Tiles without any are skipped.
 struct Counted<'t> {
     target: &'t mut dyn TileTarget,
     known: u64,
@@ -24,9 +22,15 @@ impl TileTarget for Counted<'_> {
         let known = count_known(values);
         self.known += known / (values.len() / CELLS) as u64;
         // A tile may be outside of the mask.
-        if known > 0 { self.target.put(at, values) } else { Ok(()) }
+        if known > 0 { self.target.put(at, values) } else { self.target.skip(at) }
     }
 
+    fn skip(&mut self, at: TilePlace) -> Result<()> {
+        self.target.skip(at)
+    }
+}
+
+impl TileSource for Counted<'_> {
     fn get(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool> {
         self.target.get(at, values)
     }

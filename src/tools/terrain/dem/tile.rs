@@ -2,11 +2,9 @@
 
 use std::ops::Range;
 
+use crate::files::CELLS;
 use spmesh_core::error::Error;
 use spmesh_io::raster::TILE;
-
-/// Number of cells of a tile, including those beyond the grid.
-pub(super) const CELLS: usize = TILE * TILE;
 
 /// Bits of a word of the bit set.
 pub(super) const WORD: usize = u64::BITS as usize;

@@ -2,8 +2,8 @@
 
 use super::cell_mask::CellMask;
 use super::tile::{Tile, WORDS_OF_TILE};
-use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::RASTER_TILES_MAX;
+use crate::files::{TilePlace, tiles_of};
+use spmesh_core::error::Result;
 use spmesh_core::temporary::Records;
 use spmesh_io::raster::{Grid, TILE};
 use std::path::Path;
@@ -14,9 +14,6 @@ const READING: &str = "reading tiles back";
 
 /// Where the parts of a tile start in its record.
 const STARTS: [u64; 3] = [0, Tile::VALUES_LEN, Tile::VALUES_LEN + Tile::BITS_LEN];
-
-/// The column and the row of a tile.
-pub(crate) type TilePlace = [usize; 2];
 
 /// Where a tile is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,23 +35,6 @@ struct Held {
     /// The clock at its last use.
     used: u64,
     tile: Tile,
-}
-
-/// The number of tiles in a row of a grid, and in a column.
-///
-/// # Errors
-/// Usage, if there are more tiles than [`RASTER_TILES_MAX`].
-pub(crate) fn tiles_of(grid: &Grid) -> Result<[usize; 2]> {
-    let [across, down] = [grid.columns, grid.rows].map(|count| (count as usize).div_ceil(TILE));
-    let count = across as u64 * down as u64;
-    if count <= RASTER_TILES_MAX {
-        return Ok([across, down]);
-    }
-    Err(Error::usage(format!(
-        "{} by {} cells of size {} are {count} tiles, at most {RASTER_TILES_MAX} are possible: take larger cells, \
-         or a part with --bounds",
-        grid.columns, grid.rows, grid.step
-    )))
 }
 
 /// All tiles of a grid.

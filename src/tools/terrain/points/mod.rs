@@ -10,15 +10,11 @@ use std::io::{Read, Seek, Write};
 use std::ops::Range;
 
 use crate::accumulators::Accumulators;
-use crate::dem::band::Band;
-use crate::dem::tile_cache::{TilePlace, tiles_of};
-use crate::dem::tile_store::TileTarget;
+use crate::files::{CELLS, Destination, TilePlace, TileSource, places, tiles_of};
 use place::Placement;
 use spmesh_core::error::{Error, Result};
 use spmesh_crs::System;
-use spmesh_io::raster::{
-    self, Grid, RasterFile, RasterFormat, RasterOptions, Reduction, Reference, Samples, TILE, Window,
-};
+use spmesh_io::raster::{Grid, RasterFile, RasterOptions, Reduction, Reference, Samples, TILE, Window};
 use spmesh_model::attributes::Column;
 use spmesh_stream::{Coordinates, Crs, Event, Header, Kind, StreamReader};
 pub use statistic::Statistic;
@@ -114,7 +110,7 @@ pub fn check(header: &Header, options: &Options) -> Result<Option<Column>> {
 /// tiles; if writing fails.
 pub fn rasterize<R: Read, W: Write + Seek>(
     reader: &mut StreamReader<R>,
-    output: &mut W,
+    output: Destination<W>,
     grid: &Grid,
     options: &Options,
     progress: impl FnMut(u64),
@@ -135,28 +131,22 @@ pub fn rasterize<R: Read, W: Write + Seek>(
     };
     let steps = Steps::of(&header, column.as_ref());
     let mut stats = Stats { cells: grid.cells(), ..Stats::default() };
-    let mut counters = Accumulators::new(Cell::default(), options.memory, options.raster.temp_dir.as_deref());
-    count(reader, column.as_ref(), &steps, grid, &mut counters, &mut stats, progress)?;
-    stats.spilled = counters.spilled;
-    stats.input_bytes = reader.bytes_read();
-    let mut tiles = Finished { counters, statistic: options.statistic, steps, grid: *grid, known: 0 };
-    match options.raster.format {
-        RasterFormat::Ascii => {
-            let mut band = Band::new(*grid);
-            raster::write_rows(output, &file, |row, values| band.read(&mut tiles, row, values))?;
-        }
-        RasterFormat::GeoTiff => raster::write_tiles(output, &file, |target| {
-            let mut values = vec![f32::NAN; TILE * TILE];
-            let [across, down] = tiles_of(grid)?;
-            for at in (0..down).flat_map(|row| (0..across).map(move |column| [column, row])) {
-                if tiles.get(at, &mut values)? {
-                    target.tile(at[0], at[1], &values)?;
-                }
+    let (mut stats, [spilled, _]) = output.write(&file, options.memory, |target, memory| {
+        let mut counters = Accumulators::new(Cell::default(), memory, options.raster.temp_dir.as_deref());
+        count(reader, column.as_ref(), &steps, grid, &mut counters, &mut stats, progress)?;
+        stats.spilled = counters.spilled;
+        let mut tiles = Finished { counters, statistic: options.statistic, steps, grid: *grid, known: 0 };
+        let mut values = vec![f32::NAN; CELLS];
+        for at in places(tiles_of(grid)?) {
+            if tiles.get(at, &mut values)? {
+                target.put(at, &values)?;
             }
-            Ok(())
-        })?,
-    }
-    stats.known = tiles.known;
+        }
+        stats.known = tiles.known;
+        Ok(stats)
+    })?;
+    stats.spilled += spilled;
+    stats.input_bytes = reader.bytes_read();
     stats.notices = reference.notices;
     Ok(stats)
 }
@@ -205,11 +195,7 @@ struct Finished {
     known: u64,
 }
 
-impl TileTarget for Finished {
-    fn put(&mut self, _: TilePlace, _: &[f32]) -> Result<()> {
-        unreachable!("tiles are read only")
-    }
-
+impl TileSource for Finished {
     fn get(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool> {
         let cells = self.counters.read(at)?;
         if cells.is_none() && self.statistic.is_value() {

@@ -3,7 +3,9 @@
 use super::fields::{Fields, integer};
 use crate::source::lines::quote;
 use crate::source::points4::lattice::{Frame, Lattice};
+use crate::source::points4::world::World;
 use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
 
 /// The sites of the volume.
 ///
@@ -62,9 +64,12 @@ fn coordinates(fields: &Fields, dimension: usize) -> Result<[usize; 4]> {
 
 /// World coordinates of samples, or why they are not known: by `space directions` and `space origin`, or by
 /// `spacings`, `axis mins` and `axis maxs`. Axes without such data keep their indices.
-pub(super) fn world(fields: &Fields) -> std::result::Result<Frame, String> {
+pub(super) fn world(fields: &Fields) -> std::result::Result<World, String> {
     let text = |e: Error| e.to_string();
     let coordinates = dimension(fields).and_then(|dimension| coordinates(fields, dimension)).map_err(text)?;
+    if let Some((origin, steps)) = in_space(fields, &coordinates)? {
+        return World::new(origin, steps, None, [0.0, 1.0]);
+    }
     let axes = by_directions(fields)?.map_or_else(|| by_spacings(fields), Ok)?;
     let Some(axes) = axes else { return Err("the header states no spacing".to_string()) };
     let mut frame = Frame::default();
@@ -74,7 +79,33 @@ pub(super) fn world(fields: &Fields) -> std::result::Result<Frame, String> {
         }
         (frame.mins[coordinate], frame.steps[coordinate]) = (min, step);
     }
-    Ok(frame)
+    Ok(World { coordinates: [0, 1, 2], frame, orientation: None })
+}
+
+/// The origin and the directions of the three axes in space, if these and no others have directions, and
+/// space has three dimensions.
+fn in_space(
+    fields: &Fields,
+    coordinates: &[usize; 4],
+) -> std::result::Result<Option<(Point, [Point; 3])>, String> {
+    let Some(directions) = fields.get("space directions") else { return Ok(None) };
+    let origin = match fields.get("space origin") {
+        Some(origin) => vectors(origin)?.into_iter().flatten().next().unwrap_or_default(),
+        None => vec![0.0; 3],
+    };
+    let (Ok(origin), directions) = (Point::try_from(origin), vectors(directions)?) else { return Ok(None) };
+    if directions.len() != dimension(fields).map_err(|e| e.to_string())? {
+        return Ok(None);
+    }
+    let mut steps = Vec::new();
+    for (direction, &coordinate) in directions.into_iter().zip(coordinates) {
+        match direction.map(Point::try_from) {
+            Some(Ok(step)) if coordinate < 3 => steps.push(step),
+            None if coordinate == 3 => {}
+            _ => return Ok(None),
+        }
+    }
+    Ok(steps.try_into().ok().map(|steps| (origin, steps)))
 }
 
 fn dimension(fields: &Fields) -> Result<usize> {

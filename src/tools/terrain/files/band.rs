@@ -1,14 +1,13 @@
 //! Rows of cells from tiles.
 
-use super::tile::CELLS;
-use super::tile_store::TileTarget;
+use super::tiles::{CELLS, TileSource};
 use spmesh_core::error::Result;
 use spmesh_io::raster::{Grid, TILE};
 
 /// One row of tiles, as rows of cells.
 ///
 /// Memory: 256 rows.
-pub(crate) struct Band {
+pub(super) struct Band {
     /// Tiles in a row.
     across: usize,
     /// The row of tiles that is there.
@@ -19,7 +18,7 @@ pub(crate) struct Band {
 
 impl Band {
     /// No tiles so far.
-    pub(crate) fn new(grid: Grid) -> Band {
+    pub(super) fn new(grid: Grid) -> Band {
         let across = (grid.columns as usize).div_ceil(TILE);
         Band { across, at: None, values: vec![f32::NAN; across * CELLS], tile: vec![f32::NAN; CELLS] }
     }
@@ -28,7 +27,7 @@ impl Band {
     ///
     /// # Errors
     /// If the temporary file fails.
-    pub(crate) fn read(&mut self, tiles: &mut dyn TileTarget, row: u32, values: &mut [f32]) -> Result<()> {
+    pub(super) fn read(&mut self, tiles: &mut dyn TileSource, row: u32, values: &mut [f32]) -> Result<()> {
         let (row, width) = (row as usize, self.across * TILE);
         if self.at != Some(row / TILE) {
             for column in 0..self.across {

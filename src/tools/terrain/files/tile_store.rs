@@ -4,37 +4,9 @@ use std::path::Path;
 
 use foldhash::{HashMap, HashMapExt};
 
-use super::tile::{CELLS, Tile};
-use super::tile_cache::TilePlace;
+use super::tiles::{CELLS, TilePlace, TileSource, TileTarget};
 use spmesh_core::error::Result;
 use spmesh_core::temporary::Records;
-use spmesh_io::raster::Tiles;
-
-/// Takes complete tiles, each once, and gives them back.
-pub(crate) trait TileTarget {
-    /// Takes the values of a tile; NaN marks cells without data.
-    ///
-    /// # Errors
-    /// If they cannot be stored.
-    fn put(&mut self, at: TilePlace, values: &[f32]) -> Result<()>;
-
-    /// Reads the values of a tile; returns false if none were put.
-    ///
-    /// # Errors
-    /// If they cannot be read.
-    fn get(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool>;
-}
-
-/// A staged GeoTIFF can give tiles back, others cannot.
-impl TileTarget for Tiles<'_> {
-    fn put(&mut self, [column, row]: TilePlace, values: &[f32]) -> Result<()> {
-        self.tile(column, row, values)
-    }
-
-    fn get(&mut self, [column, row]: TilePlace, values: &mut [f32]) -> Result<bool> {
-        self.read(column, row, values)
-    }
-}
 
 /// Where the values of a tile are.
 #[derive(Debug)]
@@ -47,7 +19,7 @@ enum Place {
 ///
 /// Memory: the budget, and some 50 bytes for each tile.
 #[derive(Debug)]
-pub(super) struct TileStore {
+pub(crate) struct TileStore {
     places: HashMap<TilePlace, Place>,
     held: usize,
     held_max: usize,
@@ -55,26 +27,33 @@ pub(super) struct TileStore {
     clock: u64,
     spill: Records,
     /// Number of tiles written to the temporary file.
-    pub(super) spilled: u64,
+    pub(crate) spilled: u64,
     spare: Vec<Vec<f32>>,
 }
 
 impl TileStore {
-    /// No tiles. Those in memory take `memory` bytes at most, or one tile if that is more.
-    pub(super) fn new(memory: u64, temp_dir: Option<&Path>) -> TileStore {
+    /// No tiles. Those in memory take `memory` bytes at most, or one tile if that is more; tiles have as many
+    /// values for each cell as there are `bands`.
+    pub(crate) fn new(bands: usize, memory: u64, temp_dir: Option<&Path>) -> TileStore {
+        let tile_len = (bands * CELLS * size_of::<f32>()) as u64;
         TileStore {
             places: HashMap::new(),
             held: 0,
-            held_max: usize::try_from(memory / Tile::VALUES_LEN).unwrap_or(usize::MAX).max(1),
+            held_max: usize::try_from(memory / tile_len).unwrap_or(usize::MAX).max(1),
             clock: 0,
-            spill: Records::new(temp_dir, Tile::VALUES_LEN),
+            spill: Records::new(temp_dir, tile_len),
             spilled: 0,
             spare: Vec::new(),
         }
     }
 
+    /// Whether there is a tile.
+    pub(crate) fn holds(&self, at: TilePlace) -> bool {
+        self.places.contains_key(&at)
+    }
+
     /// Forgets a tile.
-    pub(super) fn remove(&mut self, at: TilePlace) {
+    pub(crate) fn remove(&mut self, at: TilePlace) {
         match self.places.remove(&at) {
             Some(Place::Held { values, .. }) => {
                 self.held -= 1;
@@ -86,7 +65,7 @@ impl TileStore {
     }
 
     /// Length of the temporary file. Units: bytes.
-    pub(super) fn spill_len(&self) -> u64 {
+    pub(crate) fn spill_len(&self) -> u64 {
         self.spill.file_len()
     }
 
@@ -128,9 +107,10 @@ impl TileTarget for TileStore {
         self.held += 1;
         Ok(())
     }
+}
 
+impl TileSource for TileStore {
     fn get(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool> {
-        debug_assert_eq!(values.len(), CELLS);
         self.clock += 1;
         match self.places.get_mut(&at) {
             None => return Ok(false),
@@ -152,8 +132,8 @@ mod tests {
 
     #[test]
     fn tiles_come_back_from_memory_and_disk() {
-        for memory in [0, 3 * Tile::VALUES_LEN, u64::MAX] {
-            let mut store = TileStore::new(memory, None);
+        for memory in [0, 3 * 4 * CELLS as u64, u64::MAX] {
+            let mut store = TileStore::new(1, memory, None);
             let places: Vec<TilePlace> = (0..10).map(|i| [i % 4, i / 4]).collect();
             let values = |at: TilePlace| vec![(at[0] + 10 * at[1]) as f32; CELLS];
             places.iter().for_each(|&at| store.put(at, &values(at)).unwrap());

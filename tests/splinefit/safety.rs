@@ -1,0 +1,112 @@
+//! Smoothing that is chosen: gaps in the points, gross errors, and warnings.
+
+use super::{mean_deviation, output, points, stats};
+use crate::programs::{Folder, outcome, run};
+use spmesh_reference::sets::Random;
+
+fn hills(x: f64, y: f64) -> f64 {
+    500.0 + 4.0 * (0.1 * x).sin() + 3.0 * (0.08 * y).cos()
+}
+
+/// Points with noise, in clusters that leave gaps between them; some have gross errors.
+fn gappy(count: usize, error_every: usize) -> String {
+    let mut random = Random::new(31);
+    let is_kept = |x: f64, y: f64| (0.23 * x).sin() * (0.31 * y).sin() > -0.1;
+    // The corners make the domain the whole box.
+    let corners = [(0.0, 0.0), (100.0, 0.0), (0.0, 80.0), (100.0, 80.0)];
+    let corners: String = corners.map(|(x, y)| format!("{x} {y} {}\n", hills(x, y))).concat();
+    let all = points(count, 6, hills);
+    let kept = all.lines().map(|line| -> Vec<f64> { line.split(' ').map(|w| w.parse().unwrap()).collect() });
+    let lines: String = kept
+        .filter(|row| is_kept(row[0], row[1]))
+        .enumerate()
+        .map(|(i, row)| {
+            let error = if error_every > 0 && i % error_every == 3 { 8.0 + (i % 13) as f64 } else { 0.0 };
+            format!("{} {} {}\n", row[0], row[1], row[2] + 0.1 * (random.unit() - 0.5) + error)
+        })
+        .collect();
+    corners + &lines
+}
+
+#[test]
+fn every_choice_bridges_gaps() {
+    let folder = Folder::new();
+    let points = folder.write("points.txt", gappy(3_000, 0));
+    for lambda in ["reml", "gcv", "cv"] {
+        for step in ["1", "3"] {
+            let said = stats(&["--step", step, "--lambda", lambda, &points], &[]);
+            let range = [0, 1].map(|at| said["range"][at].as_f64().unwrap());
+            let extent = ["least", "greatest"].map(|end| said["extent"][end]["value"].as_f64().unwrap());
+            let whole = range[1] - range[0];
+            let is_near = extent[0] > range[0] - 0.25 * whole && extent[1] < range[1] + 0.25 * whole;
+            assert!(is_near, "{lambda} {step}: {extent:?}, {range:?}");
+            assert_eq!(said["failed_trials"].as_array().unwrap().len(), 0, "{lambda} {step}");
+        }
+    }
+}
+
+#[test]
+fn splines_that_leave_the_range_are_named() {
+    let folder = Folder::new();
+    // All points are in two corners, and their slopes would meet far below.
+    let two: String = (0..400)
+        .map(|i| (f64::from(i % 20) * 0.25, f64::from(i / 20) * 0.25))
+        .flat_map(|(x, y)| [(x, y, -x - y), (100.0 - x, 80.0 - y, -x - y)])
+        .map(|(x, y, z)| format!("{x} {y} {z}\n"))
+        .collect();
+    let points = folder.write("points.txt", two);
+    let spline = folder.path("spline.spm");
+    let found = run("splinefit", &["fit", "--step", "5", "--lambda", "1e-3", &points, "-o", &spline], &[]);
+    let (code, message) = outcome(&found);
+    assert_eq!(code, Some(0), "{message}");
+    assert!(
+        message.contains("warning: the spline is -") && message.contains("between -9.5 and 0"),
+        "{message}"
+    );
+    let found = run("splinefit", &["info", &spline, &points], &[]);
+    let text = String::from_utf8(found.stdout.clone()).unwrap();
+    assert!(text.contains("elevations   from -9.5 to 0; the spline leaves this range by"), "{text}");
+    assert!(outcome(&found).1.contains("warning: the spline is -"));
+    // The place that is named has the value that is named.
+    let json: serde_json::Value =
+        serde_json::from_slice(&output(&["info", "--json", "-q", &spline, &points], &[])).unwrap();
+    let excess = &json["residuals"]["excess"];
+    let [x, y] = [0, 1].map(|axis| excess["at"][axis].as_f64().unwrap());
+    let site = folder.write("site.txt", format!("{x} {y}\n"));
+    let value = super::rows(&output(&["eval", &spline, "--at", &site], &[]))[0][2];
+    assert!((value - excess["value"].as_f64().unwrap()).abs() < 1e-9 * value.abs(), "{value}, {excess}");
+    // No cell of a raster is lower.
+    let cells = super::rows(&output(&["eval", &spline, "--step", "0.5", "--format", "text"], &[]));
+    let least = cells.iter().map(|row| row[2]).fold(f64::INFINITY, f64::min);
+    assert!(least > value + 1e-3 * value && least < 0.9 * value, "{least}, {value}");
+    assert!(value < -15.0 && json["extent"]["least"]["value"] == excess["value"]);
+}
+
+#[test]
+fn lambda_is_chosen_with_robust_weights() {
+    let folder = Folder::new();
+    let clean = folder.write("clean.txt", gappy(4_000, 0));
+    let spoilt = folder.write("spoilt.txt", gappy(4_000, 20));
+    let of = |flags: &[&str], points: &str| {
+        let spline = output(&[&["fit", "--step", "2"], flags, &[points]].concat(), &[]);
+        mean_deviation(&spline, hills)
+    };
+    for lambda in ["reml", "gcv", "cv"] {
+        let best = of(&["--lambda", lambda], &clean);
+        for loss in ["huber", "tukey"] {
+            let found = of(&["--lambda", lambda, "--robust", loss], &spoilt);
+            assert!(found < 1.5 * best, "{lambda} {loss}: {found}, {best}");
+        }
+        assert!(of(&["--lambda", lambda], &spoilt) > 5.0 * best, "{lambda}");
+    }
+}
+
+#[test]
+fn constant_elevations_need_no_warning() {
+    let folder = Folder::new();
+    let points = folder.write("points.txt", points(800, 9, |_, _| 0.1));
+    let found = run("splinefit", &["fit", "--step", "7", &points], &[]);
+    let (code, message) = outcome(&found);
+    assert_eq!(code, Some(0), "{message}");
+    assert!(!message.contains("warning"), "{message}");
+}
