@@ -35,6 +35,12 @@ impl<V: FnMut(&Polygon, &[bool])> Division<'_, V> {
     fn divide(&mut self, polygon: Polygon, is_left: &mut Vec<bool>) {
         let known = is_left.len();
         for &[p, q] in &self.lines[known..] {
+            let extremes = polygon.iter().map(|&corner| twice_area(p, q, corner));
+            let [low, high] = extremes.fold([0f64; 2], |[low, high], at| [low.min(at), high.max(at)]);
+            if low == 0.0 || high == 0.0 {
+                is_left.push(high >= -low);
+                continue;
+            }
             let heights: Vec<f64> = polygon.iter().map(|&corner| twice_area(p, q, corner)).collect();
             let [left, right] = [1.0, -1.0].map(|side| part(&polygon, &heights, side));
             if [&left, &right].into_iter().all(|part| polygon::area(part) > self.least) {
@@ -46,8 +52,7 @@ impl<V: FnMut(&Polygon, &[bool])> Division<'_, V> {
                 is_left.truncate(known);
                 return;
             }
-            let extreme = |pick: fn(f64, f64) -> f64| heights.iter().copied().fold(0.0, pick);
-            is_left.push(extreme(f64::max) >= -extreme(f64::min));
+            is_left.push(high >= -low);
         }
         (self.visit)(&polygon, is_left);
         is_left.truncate(known);

@@ -118,6 +118,15 @@ fn in_domain<'a>(basis: &Basis, corners: &'a [Point2; 3], clipper: &'a mut Clipp
 /// Adds the energy in a polygon, in which `near` may bend. Coordinates relative to `origin` have the least
 /// rounding errors.
 fn add_cells(polygon: Polygon, origin: Point2, near: &[&Bend], rows: &mut Rows) {
+    let local = |point: Point2| [point[0] - origin[0], point[1] - origin[1]];
+    let polygon: Polygon = polygon.into_iter().map(local).collect();
+    // Of the others, some side has the whole polygon on its right. Their lines need not divide it.
+    let is_left_of = |side: [Point2; 2]| {
+        let [p, q] = side.map(local);
+        polygon.iter().any(|&corner| polygon::twice_area(p, q, corner) > 0.0)
+    };
+    let near: Vec<&Bend> =
+        near.iter().copied().filter(|bend| bend.sides.into_iter().all(is_left_of)).collect();
     let mut lines: Vec<[Point2; 2]> = near.iter().flat_map(|bend| bend.sides).map(from_left).collect();
     let order = |a: &[Point2; 2], b: &[Point2; 2]| lexicographic(a[0], b[0]).then(lexicographic(a[1], b[1]));
     lines.sort_unstable_by(order);
@@ -126,10 +135,9 @@ fn add_cells(polygon: Polygon, origin: Point2, near: &[&Bend], rows: &mut Rows) 
     let bounds =
         |bend: &&Bend| bend.sides.map(|side| (number(side).unwrap_or_default(), side == from_left(side)));
     let bounds: Vec<[(usize, bool); 3]> = near.iter().map(bounds).collect();
-    let local = |point: Point2| [point[0] - origin[0], point[1] - origin[1]];
     let here: Vec<[Point2; 2]> = lines.iter().map(|line| line.map(local)).collect();
     let mut hessians = Vec::new();
-    cells::for_each_cell(polygon.into_iter().map(local).collect(), &here, &mut |cell, is_left| {
+    cells::for_each_cell(polygon, &here, &mut |cell, is_left| {
         let covers = |bounds: &[(usize, bool); 3]| bounds.iter().all(|&(line, side)| is_left[line] == side);
         let covering = near.iter().zip(&bounds).filter(|(_, bounds)| covers(bounds)).map(|(bend, _)| bend);
         hessians.clear();

@@ -173,7 +173,12 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
         fit.has_converged = false;
         for _ in 0..self.most {
             let (parts, scale) = self.weighted(fit, loss, 1, |_| 0)?;
-            let coefficients = self.solve(&parts.sum(|_| true))?;
+            let normal = parts.sum(|_| true);
+            // Residuals were rounding errors before, and are greater ones now: no observation keeps a weight.
+            if normal.count == 0 {
+                return Ok(());
+            }
+            let coefficients = self.solve(&normal)?;
             let squares = coefficients.iter().zip(&fit.coefficients).map(|(a, b)| (a - b) * (a - b));
             let change = (squares.sum::<f64>() / coefficients.len() as f64).sqrt();
             // While the scale still shrinks, coefficients have not converged, however slowly they change.
