@@ -59,7 +59,13 @@ fn rasters_of_nothing_have_no_data() {
             assert!(text.ends_with(&format!("\n{nothing}\n")), "{kind}: {text}");
             let like = ["-q", "--kind", kind, "--format", "asc", "--like", &like];
             assert_outcome("spdem", &like, &mesh, 0, "");
-            assert_outcome("spdem", &with(&["--step", "1"]), &mesh, 2, "give --bounds");
+            assert_outcome(
+                "spdem",
+                &with(&["--step", "1"]),
+                &mesh,
+                2,
+                "there are no points, so cells have no place: give --bounds",
+            );
         }
         let lines = run("spdem", &["--contours", "1"], &mesh);
         let (code, message) = outcome(&lines);

@@ -96,7 +96,8 @@ impl Committed {
     pub(super) fn notice(&self) -> Option<String> {
         let [written, blank] = self.sheets?;
         let rest = if blank > 0 { format!("; {blank} without data were not written") } else { String::new() };
-        Some(format!("{written} rasters{rest}"))
+        let rasters = if written == 1 { "raster" } else { "rasters" };
+        Some(format!("{written} {rasters}{rest}"))
     }
 }
 

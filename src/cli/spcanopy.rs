@@ -129,7 +129,7 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M")]
     memory: u64,
 
-    /// Threads that decompress and triangulate [default: one per core, at most 8]
+    /// Threads that decompress, find heights and triangulate [default: one per core, at most 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
@@ -174,7 +174,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     flags.check_systems(&ground, &input)?;
     let total = input.description().stated_points;
     let mut progress = Progress::new(&flags.common, "finding heights", total);
-    let points = HeightPoints::read(&ground, &input, temp_dir, |points| progress.set(points))?;
+    let points =
+        HeightPoints::read(&ground, &input, temp_dir, flags.threads(), |points| progress.set(points))?;
     drop(ground);
     let layers =
         Layers { points: &points, grid, bottom: &bottom, settings: &settings, triangles: Cell::default() };

@@ -101,7 +101,8 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "160M")]
     memory: u64,
 
-    /// Threads that decompress, and as many that compress [default: one per core, at most 8]
+    /// Threads that decompress, as many that compress, and up to eight that find heights [default: one
+    /// per core, at most 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
@@ -206,9 +207,14 @@ impl Flags {
     /// The output of each input.
     fn outputs(&self, inputs: &[PathBuf]) -> Result<Vec<PathBuf>> {
         if let Some(output) = &self.output {
+            let name = output.display().to_string();
+            if stem(&name, ".copc.laz").is_some() {
+                let what = "COPC files are not written: give a name that ends in .laz alone";
+                return Err(Error::usage(what).of_input(name));
+            }
             if self.format.is_none() && format_of(output).is_none() {
                 let what = "points are written to NAME.las or NAME.laz, or choose with --format";
-                return Err(Error::usage(what).of_input(output.display().to_string()));
+                return Err(Error::usage(what).of_input(name));
             }
             return Ok(vec![output.clone()]);
         }
@@ -226,11 +232,6 @@ impl Flags {
 
     /// The name of the output of the file `name`.
     fn output_name(&self, name: &str) -> String {
-        let stem = |name: &str, end: &str| {
-            let at = name.len().checked_sub(end.len())?;
-            name.is_char_boundary(at).then_some(()).filter(|()| name[at..].eq_ignore_ascii_case(end))?;
-            Some(name[..at].to_string())
-        };
         let name = stem(name, ".gz").unwrap_or_else(|| name.to_string());
         let name = stem(&name, ".copc.laz").map_or(name, |stem| format!("{stem}.laz"));
         let end = match self.format {
@@ -301,6 +302,13 @@ impl Flags {
         };
         format!("{points} outside of the ground: {what}")
     }
+}
+
+/// A name without an ending, in whatever case; `None` if it has another one.
+fn stem(name: &str, end: &str) -> Option<String> {
+    let at = name.len().checked_sub(end.len())?;
+    name.is_char_boundary(at).then_some(()).filter(|()| name[at..].eq_ignore_ascii_case(end))?;
+    Some(name[..at].to_string())
 }
 
 /// The format that the extension of a path names.

@@ -69,6 +69,7 @@ mod twin_configurations;
 mod twin_functions;
 mod twin_header;
 mod twin_rows;
+mod twin_statements;
 mod values;
 mod vertices;
 mod vtk;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use spmesh_core::error::Result;
+use spmesh_core::parallel::OrderedPool;
 use spmesh_core::temporary::TemporaryFile;
 use spmesh_model::bounds::Point;
 use spmesh_model::points::Point2;
@@ -10,8 +11,11 @@ use spmesh_model::points::Point2;
 /// Most triangles of a block: few enough to stay in a core's cache.
 const BLOCK_LEN: usize = 1 << 11;
 
-/// Triangles that are divided into blocks together: 19 MB.
-const BUFFER_LEN: usize = 1 << 18;
+/// Triangles that are divided into blocks together: 9 MB.
+const BUFFER_LEN: usize = 1 << 17;
+
+/// Most buffers that the thread has at once.
+const BUFFERS_MAX: u64 = 2;
 
 /// Blocks whose bounds are looked at together.
 const GROUP_LEN: usize = 64;
@@ -63,38 +67,46 @@ struct Block {
     count: u32,
 }
 
-/// All triangles of a mesh, in blocks.
+/// Divides triangles into blocks and writes these, on a thread of its own.
 ///
-/// Memory: 48 bytes for each block of about a thousand triangles; before [`Blocks::seal`] also the triangles
-/// that are not yet in a block, 19 MB.
-#[derive(Debug)]
-pub(super) struct Blocks {
+/// Memory: three buffers of 9 MB, and what the thread has encoded.
+pub(super) struct BlockWriter {
     file: TemporaryFile,
-    /// Whether coordinates are integers of 32 bits, which take half of the space.
     is_integer: bool,
+    divider: OrderedPool<Vec<Triangle>, Divided>,
     waiting: Vec<Triangle>,
     blocks: Vec<Block>,
-    /// The boxes of groups of blocks.
-    groups: Vec<Box2>,
     /// Triangles in the file.
     count: u64,
 }
 
-impl Blocks {
-    /// No triangles. The file is in `folder`, or in the system's folder for temporary files.
+/// A buffer of triangles in blocks.
+struct Divided {
+    bytes: Vec<u8>,
+    /// The box and the number of triangles of each block.
+    blocks: Vec<(Box2, u32)>,
+    /// The empty buffer.
+    triangles: Vec<Triangle>,
+}
+
+impl BlockWriter {
+    /// No triangles. The file is in `folder`, or in the system's folder for temporary files. `is_integer`
+    /// says whether coordinates are integers of 32 bits, which take half of the space.
     ///
     /// # Errors
-    /// If the file cannot be created.
-    pub(super) fn new(is_integer: bool, folder: Option<&Path>) -> Result<Blocks> {
+    /// If the file cannot be created, or the system refuses a thread.
+    pub(super) fn new(is_integer: bool, folder: Option<&Path>) -> Result<BlockWriter> {
         let file = TemporaryFile::create(folder)?;
-        let (waiting, blocks, groups) = (Vec::new(), Vec::new(), Vec::new());
-        Ok(Blocks { file, is_integer, waiting, blocks, groups, count: 0 })
+        let work = move |triangles| Divided::of(triangles, is_integer);
+        let divider = OrderedPool::start("divider", 1, BUFFERS_MAX, work)?;
+        Ok(BlockWriter { file, is_integer, divider, waiting: Vec::new(), blocks: Vec::new(), count: 0 })
     }
 
     /// Adds a triangle.
     ///
     /// # Errors
     /// If the file cannot be written.
+    #[inline]
     pub(super) fn push(&mut self, triangle: Triangle) -> Result<()> {
         self.waiting.push(triangle);
         if self.waiting.len() == BUFFER_LEN { self.divide() } else { Ok(()) }
@@ -104,14 +116,78 @@ impl Blocks {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub(super) fn seal(&mut self) -> Result<()> {
+    pub(super) fn finish(mut self) -> Result<Blocks> {
         self.divide()?;
-        self.waiting = Vec::new();
+        while let Some(divided) = self.divider.take() {
+            self.write(divided)?;
+        }
         let bounds = |group: &[Block]| group.iter().fold(Box2::NONE, |all, block| all.with(&block.bounds));
-        self.groups = self.blocks.chunks(GROUP_LEN).map(bounds).collect();
+        let groups = self.blocks.chunks(GROUP_LEN).map(bounds).collect();
+        let BlockWriter { file, is_integer, blocks, count, .. } = self;
+        Ok(Blocks { file, is_integer, blocks, groups, count })
+    }
+
+    /// Gives the waiting triangles to the thread.
+    fn divide(&mut self) -> Result<()> {
+        let divided = if self.divider.is_full() { self.divider.take() } else { None };
+        let empty = divided.map(|divided| self.write(divided)).transpose()?.unwrap_or_default();
+        self.divider.give(std::mem::replace(&mut self.waiting, empty), 1);
         Ok(())
     }
 
+    /// Writes blocks, and returns the empty buffer.
+    fn write(&mut self, divided: Divided) -> Result<Vec<Triangle>> {
+        let at = self.count * triangle_len(self.is_integer) as u64;
+        self.file.write_at("writing triangles", &divided.bytes, at)?;
+        for (bounds, count) in divided.blocks {
+            self.blocks.push(Block { bounds, first: self.count, count });
+            self.count += u64::from(count);
+        }
+        Ok(divided.triangles)
+    }
+}
+
+impl Divided {
+    fn of(mut triangles: Vec<Triangle>, is_integer: bool) -> Divided {
+        let mut bytes = Vec::with_capacity(triangles.len() * triangle_len(is_integer));
+        let mut blocks = Vec::new();
+        divide(&mut triangles, &mut |block| {
+            for triangle in block {
+                if is_integer {
+                    bytes.extend_from_slice(bytemuck::bytes_of(
+                        &triangle.map(|corner| corner.map(|v| v as i32)),
+                    ));
+                } else {
+                    bytes.extend_from_slice(bytemuck::bytes_of(triangle));
+                }
+            }
+            blocks.push((Box2::of(block.iter().flatten()), block.len() as u32));
+        });
+        triangles.clear();
+        Divided { bytes, blocks, triangles }
+    }
+}
+
+/// Bytes of a triangle in the file.
+fn triangle_len(is_integer: bool) -> usize {
+    if is_integer { size_of::<[[i32; 3]; 3]>() } else { size_of::<Triangle>() }
+}
+
+/// All triangles of a mesh, in blocks.
+///
+/// Memory: 48 bytes for each block of about a thousand triangles.
+#[derive(Debug)]
+pub(super) struct Blocks {
+    file: TemporaryFile,
+    /// Whether coordinates are integers of 32 bits.
+    is_integer: bool,
+    blocks: Vec<Block>,
+    /// The boxes of groups of blocks.
+    groups: Vec<Box2>,
+    count: u64,
+}
+
+impl Blocks {
     /// Number of triangles.
     pub(super) fn triangles(&self) -> u64 {
         self.count
@@ -162,60 +238,30 @@ impl Blocks {
         triangles: &mut Vec<Triangle>,
     ) -> Result<()> {
         let Block { first, count, .. } = self.blocks[block];
-        bytes.resize(count as usize * self.triangle_len(), 0);
-        self.file.read_at("reading triangles", bytes, first * self.triangle_len() as u64)?;
+        let triangle_len = triangle_len(self.is_integer);
+        bytes.resize(count as usize * triangle_len, 0);
+        self.file.read_at("reading triangles", bytes, first * triangle_len as u64)?;
         triangles.clear();
         if self.is_integer {
-            let stored = bytes.chunks_exact(self.triangle_len()).map(bytemuck::pod_read_unaligned);
+            let stored = bytes.chunks_exact(triangle_len).map(bytemuck::pod_read_unaligned);
             triangles
                 .extend(stored.map(|corners: [[i32; 3]; 3]| corners.map(|corner| corner.map(f64::from))));
         } else {
-            let stored = bytes.chunks_exact(self.triangle_len()).map(bytemuck::pod_read_unaligned);
+            let stored = bytes.chunks_exact(triangle_len).map(bytemuck::pod_read_unaligned);
             triangles.extend(stored.map(|corners: Triangle| corners));
         }
-        Ok(())
-    }
-
-    fn triangle_len(&self) -> usize {
-        if self.is_integer { size_of::<[[i32; 3]; 3]>() } else { size_of::<Triangle>() }
-    }
-
-    /// Divides the waiting triangles into blocks and writes these.
-    fn divide(&mut self) -> Result<()> {
-        let mut waiting = std::mem::take(&mut self.waiting);
-        let mut bytes = Vec::new();
-        divide(&mut waiting, &mut |triangles| {
-            bytes.clear();
-            for triangle in triangles {
-                if self.is_integer {
-                    bytes.extend_from_slice(bytemuck::bytes_of(
-                        &triangle.map(|corner| corner.map(|v| v as i32)),
-                    ));
-                } else {
-                    bytes.extend_from_slice(bytemuck::bytes_of(triangle));
-                }
-            }
-            let at = self.count * self.triangle_len() as u64;
-            self.file.write_at("writing triangles", &bytes, at)?;
-            let bounds = Box2::of(triangles.iter().flatten());
-            let count = triangles.len() as u32;
-            self.blocks.push(Block { bounds, first: self.count, count });
-            self.count += u64::from(count);
-            Ok(())
-        })?;
-        waiting.clear();
-        self.waiting = waiting;
         Ok(())
     }
 }
 
 /// Divides triangles at the median of the longer side of their box until they are few enough for a block.
-fn divide(triangles: &mut [Triangle], block: &mut impl FnMut(&[Triangle]) -> Result<()>) -> Result<()> {
+fn divide(triangles: &mut [Triangle], block: &mut impl FnMut(&[Triangle])) {
     if triangles.is_empty() {
-        return Ok(());
+        return;
     }
     if triangles.len() <= BLOCK_LEN {
-        return block(triangles);
+        block(triangles);
+        return;
     }
     let bounds = Box2::of(triangles.iter().flatten());
     let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
@@ -225,6 +271,6 @@ fn divide(triangles: &mut [Triangle], block: &mut impl FnMut(&[Triangle]) -> Res
     let place = |[a, b, c]: &Triangle| 0.25 * a[axis] + 0.25 * b[axis] + 0.25 * c[axis];
     triangles.select_nth_unstable_by(middle, |p, q| place(p).total_cmp(&place(q)));
     let (low, high) = triangles.split_at_mut(middle);
-    divide(low, block)?;
-    divide(high, block)
+    divide(low, block);
+    divide(high, block);
 }

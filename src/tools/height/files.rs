@@ -1,8 +1,9 @@
 //! LAS and LAZ files with the heights of their points.
 
 use std::io::{Seek, Write};
+use std::num::NonZeroUsize;
 
-use super::ground::{Ground, Outside, Unit};
+use super::ground::{Ground, Outside, SEARCHES_MAX, Unit};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::las::{Changes, ExtraField, LasCopy, LasFile};
 use spmesh_io::source::Alignment;
@@ -11,8 +12,8 @@ use spmesh_stream::Coordinates;
 
 /// Most points of a batch.
 const BATCH_MAX: u64 = 1 << 20;
-/// Bytes of memory for each point of a batch, beside two records.
-const POINT_LEN: u64 = 120;
+/// Bytes of memory for each point of a batch, beside two records and a height for each thread.
+const POINT_LEN: u64 = 112;
 /// Records that are written at once.
 const PIECE_LEN: usize = 1 << 12;
 
@@ -36,7 +37,7 @@ pub struct FileOptions {
     pub is_compressed: Option<bool>,
     /// Memory for points under way. Units: bytes.
     pub memory: u64,
-    /// Threads that decompress, and as many that compress.
+    /// Threads that decompress, as many that compress, and up to eight that find heights.
     pub threads: usize,
 }
 
@@ -85,13 +86,14 @@ pub fn write_heights<W: Write + Seek>(
         is_compressed: options.is_compressed.unwrap_or(file.is_compressed()),
     };
     let record_len = file.record_len();
-    let batch_max = (options.memory / (2 * record_len as u64 + POINT_LEN)).clamp(1, BATCH_MAX);
+    let point_len = 2 * record_len as u64 + POINT_LEN + 8 * options.threads.min(SEARCHES_MAX) as u64;
+    let batch_max = (options.memory / point_len).clamp(1, BATCH_MAX);
     let batch_len = batch_max as usize * record_len;
     let of_file = |e: Error| e.of_input(file.name());
     let mut copy =
         LasCopy::start(file, output, &changes, options.threads, batch_len as u64).map_err(of_file)?;
     let mut counts = Counts { notices: copy.notices().to_vec(), ..Counts::default() };
-    let mut finder = Finder::new(ground, file, scale[2], options.outside);
+    let mut finder = Finder::new(ground, file, scale[2], options);
     let mut records = file.records(options.threads)?;
     let (mut next, mut batch, mut piece) = (Vec::new(), Vec::new(), Vec::new());
     loop {
@@ -161,7 +163,7 @@ struct Finder<'g> {
 }
 
 impl<'g> Finder<'g> {
-    fn new(ground: &'g Ground, file: &LasFile, scale_z: f64, outside: Outside) -> Finder<'g> {
+    fn new(ground: &'g Ground, file: &LasFile, scale_z: f64, options: &FileOptions) -> Finder<'g> {
         let alignment = Alignment::between(file.coordinates(), ground.coordinates());
         let (unit, steps_per_unit) = match (alignment, ground.coordinates()) {
             (Alignment::Whole { factor, .. }, _) => (Unit::Steps(factor[2]), None),
@@ -169,7 +171,9 @@ impl<'g> Finder<'g> {
             (_, Coordinates::F64) => (Unit::Stored, Some(1.0 / scale_z)),
         };
         let (points, heights) = (Vec::new(), Vec::new());
-        Finder { heights_above: ground.heights(unit, outside), alignment, steps_per_unit, points, heights }
+        let threads = NonZeroUsize::new(options.threads).unwrap_or(NonZeroUsize::MIN);
+        let heights_above = ground.heights(unit, options.outside, threads);
+        Finder { heights_above, alignment, steps_per_unit, points, heights }
     }
 
     /// Replaces `heights` with those of the points of `records`. Returns the number of points outside of the mesh.

@@ -96,6 +96,7 @@ fn nearest_on(from: &Point, to: &Point, point: &Point) -> Place {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::blocks::BlockWriter;
     use spmesh_core::random::Random;
 
     #[test]
@@ -112,7 +113,7 @@ mod tests {
     #[test]
     fn blocks_are_searched_as_if_they_were_one() {
         let mut random = Random::new(3);
-        let mut blocks = Blocks::new(false, None).unwrap();
+        let mut blocks = BlockWriter::new(false, None).unwrap();
         let mut all = Vec::new();
         for _ in 0..20_000 {
             let at: Point = [random.unit(), random.unit(), 0.0];
@@ -121,7 +122,7 @@ mod tests {
             all.push(triangle);
             blocks.push(triangle).unwrap();
         }
-        blocks.seal().unwrap();
+        let blocks = blocks.finish().unwrap();
         assert!(blocks.that(|_| true).count() > 5);
         let mut nearest = Nearest::new(&blocks);
         for _ in 0..200 {

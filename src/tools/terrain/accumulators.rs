@@ -29,8 +29,8 @@ pub(crate) struct Accumulators<C> {
     held_max: usize,
     /// Where each tile is: its index in memory, or its record.
     places: HashMap<TilePlace, Place>,
-    /// Index of the tile that was used last.
-    last: usize,
+    /// The tile that was used last, as [`packed`], and its index.
+    last: (u64, usize),
     clock: u64,
     spill: Records,
     /// Number of tiles written to the temporary file.
@@ -41,6 +41,16 @@ pub(crate) struct Accumulators<C> {
 enum Place {
     Held(usize),
     Spilled(u32),
+}
+
+/// No tile has this key: places are below 2^31.
+const NOWHERE: u64 = u64::MAX;
+
+/// The place of a tile as one number. Two numbers would be compared as one vector, which waits for both
+/// stores: a sixth of the time of coverage.
+#[inline]
+fn packed([column, row]: TilePlace) -> u64 {
+    (column as u64) << 32 | row as u64
 }
 
 impl<C: Pod> Accumulators<C> {
@@ -54,7 +64,7 @@ impl<C: Pod> Accumulators<C> {
             held: Vec::new(),
             held_max: usize::try_from(memory / Self::TILE_LEN).unwrap_or(usize::MAX).max(1),
             places: HashMap::new(),
-            last: 0,
+            last: (NOWHERE, 0),
             clock: 0,
             spill: Records::new(temp_dir, Self::TILE_LEN),
             spilled: 0,
@@ -67,10 +77,10 @@ impl<C: Pod> Accumulators<C> {
     /// If the temporary file fails.
     #[inline]
     pub(crate) fn cell(&mut self, at: TilePlace, cell: usize) -> Result<&mut C> {
-        if self.held.get(self.last).is_none_or(|held| held.at != at) {
-            self.last = self.hold(at)?;
+        if self.last.0 != packed(at) {
+            self.hold(at)?;
         }
-        Ok(&mut self.held[self.last].cells[cell])
+        Ok(&mut self.held[self.last.1].cells[cell])
     }
 
     /// The cells of a tile; `None` if nothing was added to it.
@@ -90,8 +100,14 @@ impl<C: Pod> Accumulators<C> {
         self.spill.file_len()
     }
 
-    /// Brings a tile into memory, and returns its index there.
+    /// Brings a tile into memory, and returns its index there. It is the one used last.
     fn hold(&mut self, at: TilePlace) -> Result<usize> {
+        let index = self.bring(at)?;
+        self.last = (packed(at), index);
+        Ok(index)
+    }
+
+    fn bring(&mut self, at: TilePlace) -> Result<usize> {
         self.clock += 1;
         let record = match self.places.get(&at) {
             Some(&Place::Held(index)) => {

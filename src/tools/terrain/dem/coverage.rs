@@ -11,11 +11,10 @@ use super::options::Sample;
 use super::stages::Stages;
 use super::tile_cache::TileCache;
 use crate::accumulators::Accumulators;
-use crate::files::{CELLS, places, tiles_of};
+use crate::files::{CELLS, places};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::raster::{Grid, TILE};
 use spmesh_model::bounds::Point;
-use spmesh_stream::Coordinates;
 use std::path::Path;
 
 /// Steps of the area of a cell.
@@ -47,8 +46,8 @@ const BLANK: Cover = Cover { sum: 0, area: 0, least: f32::INFINITY, greatest: f3
 #[derive(Debug)]
 pub(super) struct Coverage {
     sample: Sample,
-    grid: Grid,
-    coordinates: Coordinates,
+    /// Columns and rows.
+    size: [u32; 2],
     steps_per_unit: f64,
     cells: Accumulators<Cover>,
     cutter: Cutter,
@@ -58,8 +57,7 @@ impl Coverage {
     /// Nothing covered so far. `greatest` is the greatest magnitude of values, if it is known.
     pub(super) fn new(
         sample: Sample,
-        grid: Grid,
-        coordinates: Coordinates,
+        grid: &Grid,
         greatest: Option<f64>,
         memory: u64,
         temp_dir: Option<&Path>,
@@ -69,33 +67,30 @@ impl Coverage {
             2f64.powi(VALUE_BITS - 1 - exponent)
         });
         let cells = Accumulators::new(BLANK, memory, temp_dir);
-        Coverage { sample, grid, coordinates, steps_per_unit, cells, cutter: Cutter::new() }
+        let size = [grid.columns, grid.rows];
+        Coverage { sample, size, steps_per_unit, cells, cutter: Cutter::new() }
     }
 
-    /// Adds a triangle with corners in stored coordinates and elevations of the world.
+    /// Adds a triangle with corners in the coordinates of cells.
     ///
     /// # Errors
-    /// If the temporary file fails.
-    pub(super) fn add(&mut self, corners: [Point; 3]) -> Result<()> {
-        let Grid { left, top, step, columns, rows } = self.grid;
-        let placed = corners.map(|corner| {
-            let [x, y, _] = self.coordinates.to_world(corner);
-            // Rows count downwards.
-            [(x - left) / step, (top - y) / step, corner[2]]
-        });
-        let limits = corners.map(|corner| corner[2]);
+    /// If the temporary file fails; usage, if values are too great.
+    pub(super) fn add(&mut self, placed: [Point; 3]) -> Result<()> {
+        let limits = placed.map(|corner| corner[2]);
         let [low, high] = [
             limits.into_iter().fold(f64::INFINITY, f64::min),
             limits.into_iter().fold(f64::NEG_INFINITY, f64::max),
         ];
         let (cells, steps_per_unit) = (&mut self.cells, self.steps_per_unit);
-        self.cutter.cells_of(placed, [columns, rows], |[column, row], part: &Polygon| {
+        let is_mean = self.sample == Sample::Mean;
+        self.cutter.cells_of(placed, self.size, |[column, row], part: &Polygon| {
             let (area, mean) = part.integral();
             let area = rounded(area.min(1.0) * AREA_STEPS) as u64;
             if area == 0 {
                 return Ok(());
             }
-            let steps = mean.clamp(low, high) * steps_per_unit;
+            let mean = mean.clamp(low, high);
+            let steps = mean * steps_per_unit;
             if steps.is_nan() || steps.abs() > VALUE_STEPS_MAX {
                 return Err(Error::usage(format!(
                     "a value of {mean:e} is too great for --sample: scale values"
@@ -105,12 +100,14 @@ impl Coverage {
             let cover = cells.cell(tile, cell)?;
             // The parts of a cell add up to its area, but for their rounding.
             cover.area = cover.area.saturating_add(area);
-            cover.sum = cover.sum.saturating_add(i128::from(area) * i128::from(rounded(steps)));
-            for [_, _, elevation] in part.corners() {
-                let elevation = elevation.clamp(low, high) as f32;
-                cover.least = cover.least.min(elevation);
-                cover.greatest = cover.greatest.max(elevation);
+            if is_mean {
+                cover.sum = cover.sum.saturating_add(i128::from(area) * i128::from(rounded(steps)));
+                return Ok(());
             }
+            // Rounding keeps the order.
+            let [least, greatest] = part.range::<2>().map(|elevation| elevation.clamp(low, high) as f32);
+            cover.least = cover.least.min(least);
+            cover.greatest = cover.greatest.max(greatest);
             Ok(())
         })
     }
@@ -122,7 +119,7 @@ impl Coverage {
     /// Those of `stages`; if the temporary file fails.
     pub(super) fn finish(mut self, cache: &TileCache, stages: &mut Stages) -> Result<[u64; 2]> {
         let mut values = vec![f32::NAN; CELLS];
-        for at in places(tiles_of(&self.grid)?) {
+        for at in places(cache.tiles()) {
             let Some(cells) = self.cells.read(at)? else { continue };
             for (value, cover) in values.iter_mut().zip(cells) {
                 *value = match self.sample {

@@ -21,7 +21,7 @@ impl Polygon {
     }
 
     /// Its corners.
-    pub(super) fn corners(&self) -> &[Point] {
+    fn corners(&self) -> &[Point] {
         &self.corners[..self.count]
     }
 
@@ -31,26 +31,27 @@ impl Polygon {
         let (mut area, mut sum) = (0.0, 0.0);
         for pair in others.windows(2) {
             let [p, q] = [0, 1].map(|at| [0, 1, 2].map(|axis| pair[at][axis] - first[axis]));
-            let part = 0.5 * (p[0] * q[1] - p[1] * q[0]).abs();
-            area += part;
-            sum += part * (p[2] + q[2]) / 3.0;
+            let twice = (p[0] * q[1] - p[1] * q[0]).abs();
+            area += twice;
+            sum += twice * (p[2] + q[2]);
         }
-        (area, if area > 0.0 { first[2] + sum / area } else { first[2] })
+        (0.5 * area, if area > 0.0 { first[2] + sum / (3.0 * area) } else { first[2] })
     }
 
     /// Makes `parts` those below and above a place on an axis. A side that lies there belongs to both.
     #[inline]
-    fn cut(&self, axis: usize, at: f64, [below, above]: [&mut Polygon; 2]) {
+    fn cut<const AXIS: usize>(&self, at: f64, [below, above]: [&mut Polygon; 2]) {
         below.count = 0;
         above.count = 0;
         let corners = self.corners();
         let Some(mut corner) = corners.last() else { return };
         for next in corners {
-            let [here, there] = [corner[axis] - at, next[axis] - at];
+            let [here, there] = [corner[AXIS] - at, next[AXIS] - at];
             if here < 0.0 && there > 0.0 || here > 0.0 && there < 0.0 {
                 let share = here / (here - there);
-                let mut crossing = [0, 1, 2].map(|axis| corner[axis] + share * (next[axis] - corner[axis]));
-                crossing[axis] = at;
+                let crossing = [0, 1, 2].map(|axis| {
+                    if axis == AXIS { at } else { corner[axis] + share * (next[axis] - corner[axis]) }
+                });
                 below.push(crossing);
                 above.push(crossing);
             }
@@ -64,12 +65,6 @@ impl Polygon {
         }
     }
 
-    /// Becomes a copy.
-    fn set(&mut self, other: &Polygon) {
-        self.count = other.count;
-        self.corners[..other.count].copy_from_slice(other.corners());
-    }
-
     #[inline]
     fn push(&mut self, corner: Point) {
         // Rounding may add corners that a convex polygon would not have: they are nearly on another one.
@@ -81,9 +76,9 @@ impl Polygon {
 
     /// The least and the greatest coordinate along an axis.
     #[inline]
-    fn range(&self, axis: usize) -> [f64; 2] {
+    pub(super) fn range<const AXIS: usize>(&self) -> [f64; 2] {
         self.corners().iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], corner| {
-            let place = corner[axis];
+            let place = corner[AXIS];
             [if place < low { place } else { low }, if place > high { place } else { high }]
         })
     }
@@ -126,8 +121,8 @@ impl Cutter {
         let Cutter { triangle, rows, columns } = self;
         triangle.corners[..3].copy_from_slice(&corners);
         triangle.count = 3;
-        rows.each(triangle, 1, size[1], |row, strip| {
-            columns.each(strip, 0, size[0], |column, cell| part([column, row], cell))
+        rows.each::<1>(triangle, size[1], |row, strip| {
+            columns.each::<0>(strip, size[0], |column, cell| part([column, row], cell))
         })
     }
 }
@@ -136,36 +131,38 @@ impl Strips {
     /// Calls `part` with the part of a polygon between each pair of neighbouring integers on an axis, from 0
     /// to `end`.
     #[inline]
-    fn each(
+    fn each<const AXIS: usize>(
         &mut self,
         polygon: &Polygon,
-        axis: usize,
         end: u32,
         mut part: impl FnMut(usize, &Polygon) -> Result<()>,
     ) -> Result<()> {
-        let [low, high] = polygon.range(axis);
+        let [low, high] = polygon.range::<AXIS>();
         if !(high > 0.0 && low < f64::from(end)) {
             return Ok(());
         }
-        let first = low.max(0.0).floor();
+        let first = low.max(0.0) as usize;
         // Where triangles are smaller than cells, most are in one row and one column.
-        if low >= 0.0 && high <= first + 1.0 {
-            return part(first as usize, polygon);
+        if low >= 0.0 && high <= (first + 1) as f64 {
+            return part(first, polygon);
         }
         let [mut rest, mut beyond] = self.rests.each_mut();
-        if low < 0.0 {
-            polygon.cut(axis, 0.0, [&mut self.strip, rest]);
+        let strip = &mut self.strip;
+        let next = if low < 0.0 {
+            polygon.cut::<AXIS>(0.0, [strip, rest]);
+            first
         } else {
-            rest.set(polygon);
-        }
-        let last = high.min(f64::from(end)).ceil() as usize;
-        for number in first as usize..last {
+            polygon.cut::<AXIS>((first + 1) as f64, [strip, rest]);
+            part(first, strip)?;
+            first + 1
+        };
+        for number in next..end as usize {
             let side = (number + 1) as f64;
             if high <= side {
                 return part(number, rest);
             }
-            rest.cut(axis, side, [&mut self.strip, beyond]);
-            part(number, &self.strip)?;
+            rest.cut::<AXIS>(side, [strip, beyond]);
+            part(number, strip)?;
             (rest, beyond) = (beyond, rest);
         }
         Ok(())
@@ -190,7 +187,7 @@ mod tests {
                 .cells_of(corners, [8, 8], |[column, row], part| {
                     let ((size, mean), place) = (part.integral(), [column as f64, row as f64]);
                     for (axis, side) in place.into_iter().enumerate() {
-                        let [low, high] = part.range(axis);
+                        let [low, high] = if axis == 0 { part.range::<0>() } else { part.range::<1>() };
                         assert!(low >= side && high <= side + 1.0, "{column} {row}");
                     }
                     area += size;
@@ -198,12 +195,11 @@ mod tests {
                     Ok(())
                 })
                 .unwrap();
-            let part = |polygon: &Polygon, axis: usize, at: f64| {
-                let [mut below, mut above] = [NOTHING; 2];
-                polygon.cut(axis, at, [&mut below, &mut above]);
-                [below, above]
-            };
-            let inside = part(&part(&part(&part(&whole, 0, 0.0)[1], 1, 0.0)[1], 0, 8.0)[0], 1, 8.0)[0];
+            let [mut right, mut lower, mut left, mut inside, mut outside] = [NOTHING; 5];
+            whole.cut::<0>(0.0, [&mut outside, &mut right]);
+            right.cut::<1>(0.0, [&mut outside, &mut lower]);
+            lower.cut::<0>(8.0, [&mut left, &mut outside]);
+            left.cut::<1>(8.0, [&mut inside, &mut outside]);
             let (expected, mean) = inside.integral();
             assert!((area - expected).abs() < 1e-12 * expected, "{area} {expected}");
             assert!((sum - expected * mean).abs() < 1e-11 * expected, "{sum}");

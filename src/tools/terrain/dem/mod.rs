@@ -5,13 +5,15 @@
 //! triangle, with the help of `search` where rounding leaves doubts. `facet` is the plane of a triangle. A
 //! `tile` holds cells; `tile_cache` holds all tiles, some of them in a temporary file. After the last
 //! triangle, `flush` passes on the remaining tiles, whose holes `fill` fills; `derived` has the slopes there.
-//! `cell_mask` finds the cells in polygons. Complete tiles go through `stages`: `neighbours` derives slopes from
-//! the cells of elevations.
+//! `cell_mask` finds the cells in polygons. For `--sample`, `covering` passes triangles to a thread, where
+//! `cut` cuts them at the sides of cells and `coverage` holds what each cell has got. Complete tiles go
+//! through `stages`: `neighbours` derives slopes from the cells of elevations.
 
 mod axis;
 mod cell_mask;
 mod centers;
 mod coverage;
+mod covering;
 mod cut;
 mod derived;
 mod facet;
@@ -36,6 +38,7 @@ pub use options::{Interpolation, Method, Options, Quantity, Sample};
 use crate::files::{Destination, TilePlace, TileStore, TileTarget, tiles_of};
 use crate::surface::check_input;
 use coverage::Coverage;
+use covering::Covering;
 use fill::Filler;
 use flush::Flush;
 use neighbours::Neighbours;
@@ -89,6 +92,12 @@ pub struct Stats {
 /// Usage, if the header has no bounds.
 pub fn window(header: &Header) -> Result<Window> {
     let Some(bounds) = header.bounds else {
+        if header.points == Some(0) {
+            let what = "there are no points, so cells have no place: give --bounds for a raster without \
+                        data, or look whether the input has the points that its filters keep (such as \
+                        --keep-class 2)";
+            return Err(Error::usage(what));
+        }
         return Err(Error::usage("the header does not say where the mesh is: give --bounds"));
     };
     let [min, max] = [bounds.min, bounds.max].map(|corner| facet::place(header.coordinates.to_world(corner)));
@@ -167,8 +176,8 @@ impl Run<'_> {
                 low.max(high)
             });
             let (grid, sample) = (*self.grid, options.sample);
-            let coverage = Coverage::new(sample, grid, coordinates, greatest, for_drawing, temp_dir);
-            rasterizer.coverage = Some(coverage);
+            let coverage = Coverage::new(sample, &grid, greatest, for_drawing, temp_dir);
+            rasterizer.covering = Some(Covering::start(coverage, grid, coordinates)?);
         }
         let neighbours = differences.map(|differences| -> Result<Neighbours> {
             let store = TileStore::new(1, memory - for_drawing, temp_dir);
@@ -185,8 +194,8 @@ impl Run<'_> {
         let sink: Option<&mut TileSink> = if is_written_early { Some(&mut complete) } else { None };
         let width = read(reader, self.column.as_ref(), &mut rasterizer, sink, progress)?;
         let mut covered = [0; 2];
-        if let Some(coverage) = rasterizer.coverage.take() {
-            covered = coverage.finish(&rasterizer.cache, &mut stages)?;
+        if let Some(covering) = rasterizer.covering.take() {
+            covered = covering.finish()?.finish(&rasterizer.cache, &mut stages)?;
         }
         let mut flush = Flush::new(&mut rasterizer, filler, options, self.grid.step)?;
         flush.write_rest(&mut stages)?;

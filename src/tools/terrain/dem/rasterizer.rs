@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::cell_mask::CellMask;
 use super::centers::Centers;
-use super::coverage::Coverage;
+use super::covering::Covering;
 use super::facet::{Facet, place};
 use super::options::{Interpolation, Options, Quantity};
 use super::span::{Edges, Span};
@@ -36,7 +36,7 @@ pub(super) struct Rasterizer {
     outline: Option<ConcaveOutline>,
     pub(super) cache: TileCache,
     /// The surface over whole cells, if these are not sampled at their centres.
-    pub(super) coverage: Option<Coverage>,
+    pub(super) covering: Option<Covering>,
     /// The elevations, if the quantity of filled cells is derived from them.
     pub(super) heights: Option<TileCache>,
     /// Whether triangles that are left out are marked as holes, which are filled later.
@@ -83,7 +83,7 @@ impl Rasterizer {
                 .concave
                 .map(|length| ConcaveOutline::new(length, coordinates, for_outline, temp_dir)),
             cache: cache()?,
-            coverage: None,
+            covering: None,
             heights: has_heights.then(cache).transpose()?,
             marks_holes: options.fill.is_some(),
             predicates: FiniteFloatPredicates::default(),
@@ -155,10 +155,10 @@ impl Rasterizer {
                 return Ok(());
             }
         }
-        if let Some(coverage) = &mut self.coverage {
+        if let Some(covering) = &mut self.covering {
             let corners = least_first(corners.map(|corner| *corner));
             let is_known = !is_hole && is_counterclockwise(corners.map(place), &mut self.predicates)?;
-            return if is_known { coverage.add(corners) } else { Ok(()) };
+            return if is_known { covering.add(corners) } else { Ok(()) };
         }
         // Where triangles are smaller than cells, most contain no centre.
         let [bottom, top] = range(corners, 1);
