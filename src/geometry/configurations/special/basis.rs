@@ -2,7 +2,6 @@
 
 use crate::configurations::knots::Knots;
 use crate::delaunay2::distinct;
-use crate::predicates::{FiniteFloatPredicates, Predicates2, Sign};
 use foldhash::{HashMap, HashSet};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::configurations::{FARAWAY, Link, Links};
@@ -47,12 +46,12 @@ impl Places {
         is_tent.then_some(FunctionKind::Tent([p.min(q), p.max(q)]))
     }
 
-    /// Whether the B-spline of a link is zero everywhere. Infinite configurations and those whose knots are on
-    /// one line add nothing to it, as on a straight border with clamped corners. Of the other configurations,
-    /// the edges of the link cancel as directed edges between places, as for links of copies.
+    /// Whether the B-spline of a link is zero everywhere. Infinite configurations and those whose knots are
+    /// on one line add nothing to it, as on a straight border with clamped corners. Of the other
+    /// configurations, the edges of the link cancel as directed edges between places, as for links of copies.
     fn is_zero(&self, knots: &Knots, link: &Link) -> bool {
         let finite = link.edges().filter(|edge| !edge.contains(&FARAWAY));
-        let with_area = finite.filter(|&[a, b]| !is_flat(knots, &[link.set, &[a, b]].concat()));
+        let with_area = finite.filter(|&[a, b]| !knots.are_collinear(&[link.set, &[a, b]].concat()));
         let at_places = with_area.map(|edge| edge.map(|id| self.firsts[id as usize]));
         let mut edges: Vec<[u32; 2]> = at_places.filter(|[a, b]| a != b).collect();
         while let Some([a, b]) = edges.pop() {
@@ -63,14 +62,6 @@ impl Places {
         }
         true
     }
-}
-
-/// Whether knots are on one line.
-fn is_flat(knots: &Knots, ids: &[u32]) -> bool {
-    let first = knots.at(ids[0]);
-    let Some(second) = ids.iter().map(|&id| knots.at(id)).find(|&other| other != first) else { return true };
-    let mut predicates = FiniteFloatPredicates::default();
-    ids.iter().all(|&id| predicates.orient2d(first, second, knots.at(id)) == Sign::Zero)
 }
 
 impl Collection {
