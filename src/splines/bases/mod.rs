@@ -13,6 +13,7 @@
 //! | `elements` | turns configurations into simplex splines with shares of functions |
 //! | `build` | builds a basis from elements |
 //! | `domain` | the region where functions sum to one |
+//! | `narrow` | finds functions whose knots are on one line except for rounding |
 //! | `tree` | finds the elements near a point |
 //! | `raster` | evaluates splines row by row |
 
@@ -25,6 +26,7 @@ mod factors;
 mod function_sets;
 mod jet;
 mod linear_simplex;
+mod narrow;
 mod raster;
 mod simplex;
 mod tree;
