@@ -36,6 +36,10 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
                 "points leave {undetermined} of {functions} functions undetermined: these alone are smoothed"
             ));
         }
+        if !chosen.is_solved {
+            let remedy = "smooth all with --lambda reml";
+            notices.push(format!("the energy of undetermined functions may not be the least: {remedy}"));
+        }
         if let Some(choice) = &chosen.choice {
             notices.extend(of_choice(choice));
         }
@@ -78,8 +82,8 @@ pub(super) fn excess(residuals: &Statistics) -> Option<String> {
     let [low, high] = residuals.range?;
     let [x, y] = excess.place;
     Some(format!(
-        "warning: the spline is {} at {x} {y}, but elevations are between {} and {}: smooth more, or give points \
-         there",
+        "warning: the spline is {} at {x} {y}, but elevations are between {} and {}: smooth more, or give \
+         points there",
         short(excess.value),
         short(low),
         short(high)

@@ -24,7 +24,7 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 /// Added to a diagonal of ones: a few hundred times the rounding error of a pivot.
 pub(super) const RIDGE: f64 = 1e-13;
 /// Directions v with a lesser v'Mv / v'v are undetermined.
-const CURVATURE_MIN: f64 = 1e-12;
+pub(super) const CURVATURE_MIN: f64 = 1e-12;
 /// Steps of refinement. For pivots that are not weak, each step multiplies the error by the relative error
 /// that the ridge causes.
 const REFINEMENTS: usize = 3;

@@ -131,9 +131,8 @@ fn add_cells(polygon: Polygon, origin: Point2, near: &[&Bend], rows: &mut Rows) 
     let order = |a: &[Point2; 2], b: &[Point2; 2]| lexicographic(a[0], b[0]).then(lexicographic(a[1], b[1]));
     lines.sort_unstable_by(order);
     lines.dedup();
-    let number = |side: [Point2; 2]| lines.binary_search_by(|line| order(line, &from_left(side)));
-    let bounds =
-        |bend: &&Bend| bend.sides.map(|side| (number(side).unwrap_or_default(), side == from_left(side)));
+    let number = |side| lines.partition_point(|line| order(line, &from_left(side)).is_lt());
+    let bounds = |bend: &&Bend| bend.sides.map(|side| (number(side), side == from_left(side)));
     let bounds: Vec<[(usize, bool); 3]> = near.iter().map(bounds).collect();
     let here: Vec<[Point2; 2]> = lines.iter().map(|line| line.map(local)).collect();
     let mut hessians = Vec::new();

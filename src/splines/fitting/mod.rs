@@ -19,7 +19,8 @@
 //! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
 //! | `interpolation` | interpolation at Greville sites |
 //! | `mesh`, `spline_space` | triangulated knots, and the functions over them |
-//! | `spacing`, `goal`, `knot_placement`, `triangle_residuals`, `refine` | knots on grids, and the search for knots |
+//! | `spacing`, `knot_placement` | knots on grids |
+//! | `goal`, `triangle_residuals`, `refine` | the search for knots |
 
 mod automatic;
 mod blocks;
@@ -69,7 +70,7 @@ pub use quantile_sketch::QuantileSketch;
 pub use refine::{Refined, refine};
 pub use residuals::{Residual, Summary, for_each_residual, summarise};
 pub use robust::{Loss, RobustFit, robust, robust_from};
-pub use solve::{Equations, Undetermined, least_squares};
+pub use solve::{Equations, Solution, Undetermined, least_squares};
 pub use spacing::spacing;
 pub use spline_space::SplineSpace;
 pub use symmetric::Symmetric;

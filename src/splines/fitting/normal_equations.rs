@@ -155,6 +155,11 @@ impl Parts {
         Parts::of(basis, observations, threads, count, part_of, weigh, |_| ())
     }
 
+    /// Number of observations in the domain whose weight is not zero.
+    pub(super) fn count(&self) -> u64 {
+        self.totals.iter().map(|totals| totals.count).sum()
+    }
+
     /// Like [`Parts::unweighed`], with other weights: `weigh` gets the number of an observation, the
     /// observation and the functions alive there; `see` gets the residuals that `weigh` returns, in order.
     pub(super) fn of<O: Observations + ?Sized>(

@@ -13,6 +13,16 @@ use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 use std::num::NonZeroUsize;
 
+/// Coefficients that solve equations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// One for each function.
+    pub coefficients: Vec<f64>,
+    /// Whether they solve the equations except for rounding. The steps that lead to the least energy may not
+    /// get there; all other solutions do.
+    pub has_converged: bool,
+}
+
 /// A function that observations do not determine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Undetermined {
@@ -85,22 +95,32 @@ impl<'a> Equations<'a> {
         self.normal.default_lambda(self.basis)
     }
 
-    /// The coefficients for a `lambda`. If it is zero and there is an energy, they are those of least squares;
-    /// if observations do not determine all of them, those with the least energy.
+    /// The coefficients for a `lambda`, whether they have converged or not: see [`Equations::solution`].
+    ///
+    /// # Errors
+    /// Those of [`Equations::solution`].
+    pub fn solve(&self, lambda: f64) -> Result<Vec<f64>> {
+        Ok(self.solution(lambda)?.coefficients)
+    }
+
+    /// The solution for a `lambda`. If it is zero and there is an energy, it is that of least squares; if
+    /// observations do not determine all functions, the one with the least energy.
     ///
     /// # Errors
     /// Functions that are not determined, with their number and the place of the first one; a `lambda` that
     /// is negative or not finite, or above zero without an energy.
-    pub fn solve(&self, lambda: f64) -> Result<Vec<f64>> {
+    pub fn solution(&self, lambda: f64) -> Result<Solution> {
         // Least energy: so much of it as makes equations regular.
         let is_least = lambda == 0.0 && self.energy.is_some();
         let factored = if is_least { least_energy::SHARE * self.unit() } else { lambda };
         self.with_factor(factored, |factor| {
             self.check(factor, lambda)?;
-            let coefficients =
-                if is_least { self.of_least_energy(factor) } else { self.coefficients(factor) };
-            if coefficients.iter().all(|c| c.is_finite()) {
-                return Ok(coefficients);
+            let found = match is_least {
+                true => self.of_least_energy(factor),
+                false => Solution { coefficients: self.coefficients(factor), has_converged: true },
+            };
+            if found.coefficients.iter().all(|c| c.is_finite()) {
+                return Ok(found);
             }
             Err(Error::malformed("coefficients are too great for 64 bits: scale the values"))
         })
@@ -158,9 +178,10 @@ impl<'a> Equations<'a> {
         self.with_trend(factor.solve(&self.right))
     }
 
-    fn of_least_energy(&self, factor: &Factor) -> Vec<f64> {
-        let normal = self.normal;
-        self.with_trend(least_energy::solve(&normal.matrix, factor, &self.right, &normal.right))
+    fn of_least_energy(&self, factor: &Factor) -> Solution {
+        let size = self.normal.square.sqrt();
+        let rest = least_energy::solve(&self.normal.matrix, factor, &self.right, size);
+        Solution { coefficients: self.with_trend(rest.coefficients), ..rest }
     }
 
     fn with_trend(&self, rest: Vec<f64>) -> Vec<f64> {
@@ -187,8 +208,8 @@ impl<'a> Equations<'a> {
             return Ok(());
         }
         Err(Error::usage(format!(
-            "the {} observations in the domain are on one line, so no slope across it is determined: give some \
-             off the line",
+            "the {} observations in the domain are on one line, or nearly all of their weight is, so no \
+             slope across it is determined: give some off the line",
             self.normal.count
         )))
     }
@@ -196,7 +217,12 @@ impl<'a> Equations<'a> {
     fn refuse(&self, undetermined: &[Undetermined], lambda: f64) -> Result<()> {
         let Some(first) = undetermined.first() else { return Ok(()) };
         let empty = undetermined.iter().filter(|weak| self.is_empty_at(weak.function)).count();
-        let remedy = if self.energy.is_some() && lambda > self.unit() {
+        let narrow = self.basis.narrow();
+        let narrow = undetermined.iter().filter(|weak| narrow.binary_search(&weak.function).is_ok()).count();
+        let remedy = if narrow > 0 {
+            "knots that are on one line except for rounding leave narrow functions between them: smooth with \
+             a lambda above zero, or move these knots off the line"
+        } else if self.energy.is_some() && lambda > self.unit() {
             "smooth with a lesser lambda, which leaves observations some weight"
         } else if self.energy.is_some() {
             "smooth with a greater lambda, or give more observations"
@@ -205,8 +231,7 @@ impl<'a> Equations<'a> {
         };
         Err(Error::usage(format!(
             "{} of {} functions are not determined by {} observations, {empty} of them have none at all; \
-             the first \
-             one is at {} {}: {remedy}",
+             the first one is at {} {}: {remedy}",
             undetermined.len(),
             self.basis.len(),
             self.normal.count,

@@ -49,8 +49,8 @@ fn linear_functions(basis: &Basis) -> [Vec<f64>; 3] {
     [vec![1.0; basis.len()], of_axis(0), of_axis(1)]
 }
 
-/// Solves three equations with a positive semidefinite matrix; undetermined unknowns are zero. Also returns the
-/// least pivot, relative to the first entry.
+/// Solves three equations with a positive semidefinite matrix; undetermined unknowns are zero. Also returns
+/// the least pivot, relative to the first entry.
 fn solve(mut rows: [[f64; 4]; 3]) -> ([f64; 3], f64) {
     let diagonal = [0, 1, 2].map(|i| rows[i][i]);
     let mut is_known = [false; 3];

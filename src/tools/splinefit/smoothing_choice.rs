@@ -5,7 +5,7 @@ use super::options::{Options, Smoothing};
 use super::points::PointsInFrame;
 use spmesh_core::error::Result;
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{self, Choice, Equations, Method, NormalEquations, Symmetric};
+use spmesh_splines::fitting::{self, Choice, Equations, Method, NormalEquations, Solution, Symmetric};
 
 /// The smoothing of a fit, and the reason for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +14,8 @@ pub struct SmoothingChoice {
     pub lambda: f64,
     /// Number of functions that points leave undetermined without smoothing; `None` if it was not needed.
     pub undetermined: Option<usize>,
+    /// Whether the equations were solved: the steps to the least energy may not get there.
+    pub is_solved: bool,
     /// The trials of the choice; `lambda` in world coordinates.
     pub choice: Option<Choice>,
 }
@@ -28,8 +30,8 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    pub(super) fn solve(&self, basis: &Basis) -> Result<Vec<f64>> {
-        Equations::new(basis, &self.normal, self.energy.as_ref())?.solve(self.lambda)
+    pub(super) fn solve(&self, basis: &Basis) -> Result<Solution> {
+        Equations::new(basis, &self.normal, self.energy.as_ref())?.solution(self.lambda)
     }
 }
 
@@ -82,6 +84,6 @@ pub(super) fn choose_smoothing(
         choice.trials.iter_mut().for_each(|trial| trial.lambda *= area);
         choice.failed.iter_mut().for_each(|trial| trial.lambda *= area);
     }
-    let chosen = SmoothingChoice { lambda: lambda * area, undetermined, choice };
+    let chosen = SmoothingChoice { lambda: lambda * area, undetermined, is_solved: true, choice };
     Ok(Problem { normal, energy, lambda, chosen })
 }

@@ -88,3 +88,14 @@ fn robust_fits_continue_over_gaps() {
     let found = robust(&basis, &all, Loss::Tukey, Some(&energy), 0.0, ONE).expect("a fit");
     assert!(deviation(&basis, &found.coefficients, 31, |[x, y]| x - y) < 1e-6);
 }
+
+#[test]
+fn constants_at_a_few_places_are_constants_everywhere() {
+    let basis = pulled_apart(&grid(5, 0.2));
+    let places = [[0.05, 0.68], [0.37, 0.59], [0.67, 0.67], [0.6, 0.2], [0.61, 0.21]];
+    for count in 3..=places.len() {
+        let all: Vec<_> = places[..count].iter().map(|&place| Observation::new(place, 7.25)).collect();
+        let error = deviation(&basis, &fit(&basis, &all), 31, |_| 7.25);
+        assert!(error < 1e-9, "{count}: {error}");
+    }
+}
