@@ -16,12 +16,14 @@ fn each_failure_has_its_exit_code() {
         (folder.write("line.txt", "0 0\n1 1\n2 2\n3 3\n"), folder.write("far.txt", "0 0\n1e6 0\n0 1e6\n"));
     let pairs = folder.write("pairs.txt", "1 2\n");
     let plane = points(500, 1, plane);
-    let cases: [(&[&str], &[u8], i32, &str); 24] = [
+    let cases: [(&[&str], &[u8], i32, &str); 26] = [
         (&["fit", "no/such/file"], b"", 1, "no/such/file"),
         (&["fit"], b"", 3, "stdin: empty"),
         (&["fit"], b"0 0 1\n1 x 2\n", 3, "stdin: line 2"),
         (&["fit"], b"0 0\n1 1\n", 2, "stdin: points have no elevation"),
         (&["fit"], b"0 0 1\n1 0 2\n2 0 3\n", 2, "stdin: all observations have the same x or y"),
+        (&["fit", "--knots", &knots, "--lambda", "1"], b"11 11 0\n22 22 0\n33 33 1\n", 2, "are on one line"),
+        (&["fit", "--knots", &knots], b"11 11 1e200\n22 23 0\n33 32 1\n", 2, "too great for f64"),
         (&["fit", "--tol", "0"], b"", 2, "not a number above zero"),
         (&["fit", "--max-knots", "5"], plane.as_bytes(), 2, "5 knots: 29 are needed"),
         (&["fit", "--lambda", "-1"], b"", 2, "--lambda"),

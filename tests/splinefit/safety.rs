@@ -100,3 +100,13 @@ fn lambda_is_chosen_with_robust_weights() {
         assert!(of(&["--lambda", lambda], &spoilt) > 5.0 * best, "{lambda}");
     }
 }
+
+#[test]
+fn constant_elevations_need_no_warning() {
+    let folder = Folder::new();
+    let points = folder.write("points.txt", points(800, 9, |_, _| 0.1));
+    let found = run("splinefit", &["fit", "--step", "7", &points], &[]);
+    let (code, message) = outcome(&found);
+    assert_eq!(code, Some(0), "{message}");
+    assert!(!message.contains("warning"), "{message}");
+}

@@ -30,14 +30,15 @@ const NOTES: &str = "\
 Without --knots, the program searches for knots. It starts with a coarse grid over the box of the points. \
 Each round adds knots where residuals exceed --tol [default: 0.25 % of the range of most elevations], up to \
 --max-knots [default: one for 4 points, at most 20,000]. Without both flags, the search ends at 5,000 knots; \
-if residuals still exceed the tolerance, the knots are those of a grid with about two for each point (at most \
-300,000), which predicts terrain best. With --step, knots form a grid with cells of this side. Points as knots are for splines of degree 2 over their \
-convex hull: the border is pulled apart.
+if residuals still exceed the tolerance, the knots are those of a grid with about two for each point (at \
+most 300,000), which predicts terrain best. With --step, knots form a grid with cells of this side. Points \
+as knots are for splines of degree 2 over their convex hull: the border is pulled apart.
 
-Without --lambda, given knots get the coefficients of least squares if the points determine them all. \
-Otherwise lambda is chosen by restricted maximum likelihood (reml), which bridges gaps and adapts to noise. \
-No choice is less than a floor that depends on the distance of points. LAMBDA multiplies the thin-plate energy (plus a thousandth of the bending of the \
-control mesh), which is added to the sum of squares of residuals.
+Without --lambda, given knots get the coefficients of least squares. Those that points do not determine \
+make the surface as smooth as possible. For other knots, lambda is chosen by restricted maximum likelihood \
+(reml), which bridges gaps and adapts to noise. No choice is less than a floor that depends on the distance \
+of points. LAMBDA multiplies the thin-plate energy (plus a thousandth of the bending of the control mesh), \
+which is added to the sum of squares of residuals.
 
 --features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which \
 values are linear. Their vertices become knots. Long segments get more knots, and other knots near them are \
@@ -78,7 +79,8 @@ pub(super) struct Flags {
     max_knots: Option<usize>,
 
     /// Place knots on a grid of cells with this side instead of searching; inner knots are moved slightly
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = parse_positive, conflicts_with_all = ["tol", "max_knots"])]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = parse_positive)]
+    #[arg(conflicts_with_all = ["tol", "max_knots"])]
     step: Option<f64>,
 
     /// How much to smooth: a number, reml (restricted maximum likelihood), gcv (generalised
@@ -142,7 +144,8 @@ pub(super) struct Flags {
     compression: Compression,
 
     /// Print what the run did on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1)]
+    #[arg(default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
 }
 

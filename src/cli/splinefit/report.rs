@@ -33,9 +33,12 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
     if let Some(chosen) = &report.chosen {
         if let Some(undetermined @ 1..) = chosen.undetermined {
             notices.push(format!(
-                "points leave {undetermined} of {functions} functions undetermined: smoothed with lambda {}",
-                short(chosen.lambda)
+                "points leave {undetermined} of {functions} functions undetermined: these alone are smoothed"
             ));
+        }
+        if !chosen.is_solved {
+            let remedy = "smooth all with --lambda reml";
+            notices.push(format!("the energy of undetermined functions may not be the least: {remedy}"));
         }
         if let Some(choice) = &chosen.choice {
             notices.extend(of_choice(choice));
@@ -79,8 +82,8 @@ pub(super) fn excess(residuals: &Statistics) -> Option<String> {
     let [low, high] = residuals.range?;
     let [x, y] = excess.place;
     Some(format!(
-        "warning: the spline is {} at {x} {y}, but elevations are between {} and {}: smooth more, or give points \
-         there",
+        "warning: the spline is {} at {x} {y}, but elevations are between {} and {}: smooth more, or give \
+         points there",
         short(excess.value),
         short(low),
         short(high)
@@ -145,6 +148,8 @@ fn count_rows(fitted: &Fitted, rejected: Option<u64>, seed: u64, output_bytes: u
         rows.push(("rounds", "rounds_count", search.rounds.len() as u64));
         rows.push(("tolerance reached", "is_reached", search.is_reached.into()));
     }
+    let undetermined = report.chosen.as_ref().and_then(|chosen| chosen.undetermined);
+    rows.extend(undetermined.map(|count| ("undetermined functions", "undetermined", count as u64)));
     rows.extend(rejected.map(|count| ("rejected points", "rejected", count)));
     rows.push(("seed", "seed", seed));
     rows.push(("output (bytes)", "output_bytes", output_bytes));

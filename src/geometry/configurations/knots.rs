@@ -14,7 +14,7 @@
 //! would have to sum to zero.
 
 use crate::delaunay2::{MAX_POINTS, distinct};
-use crate::predicates::{Point2, lexicographic};
+use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
 use spmesh_core::error::{Error, Result};
 use std::cmp::Ordering;
 
@@ -59,6 +59,17 @@ impl Knots {
     #[inline]
     pub(super) fn are_copies(&self, ids: &[u32]) -> bool {
         self.has_copies() && ids.iter().all(|&id| self.at(id) == self.at(ids[0]))
+    }
+
+    /// Whether all knots, at least one, are on one line.
+    #[must_use]
+    pub fn are_collinear(&self, ids: &[u32]) -> bool {
+        let first = self.at(ids[0]);
+        let Some(second) = ids.iter().map(|&id| self.at(id)).find(|&other| other != first) else {
+            return true;
+        };
+        let mut predicates = FiniteFloatPredicates::default();
+        ids.iter().all(|&id| predicates.orient2d(first, second, self.at(id)) == Sign::Zero)
     }
 
     /// Positions by id.

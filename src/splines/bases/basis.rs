@@ -2,6 +2,8 @@
 
 mod bends;
 
+pub(crate) use bends::Bend;
+
 use super::directional_limit::DirectionalLimit;
 use super::domain::Domain;
 use super::elements::{Elements, Share};

@@ -46,7 +46,7 @@ impl Elements {
         for (number, (boundary, interior)) in (0..).zip(configurations.iter()) {
             all.clear();
             all.extend(boundary.iter().chain(interior));
-            if is_flat(knots, &all) {
+            if knots.are_collinear(&all) {
                 continue;
             }
             let element = gathered.element(&mut all);
@@ -171,14 +171,6 @@ fn cancel(shares: &mut Vec<(u32, Share)>) {
         is_same
     });
     shares.retain(|(_, share)| share.factor != 0.0 && share.edge[0] != share.edge[1]);
-}
-
-/// Whether all knots are on one line.
-fn is_flat(knots: &Knots, all: &[u32]) -> bool {
-    let first = knots.at(all[0]);
-    let Some(second) = all.iter().map(|&id| knots.at(id)).find(|&other| other != first) else { return true };
-    let mut predicates = FiniteFloatPredicates::default();
-    all.iter().all(|&id| predicates.orient2d(first, second, knots.at(id)) == Sign::Zero)
 }
 
 /// The edges of the strict convex hull, from corner to corner, with the hull on their left. Domain: knots

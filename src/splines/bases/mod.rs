@@ -13,6 +13,7 @@
 //! | `elements` | turns configurations into simplex splines with shares of functions |
 //! | `build` | builds a basis from elements |
 //! | `domain` | the region where functions sum to one |
+//! | `narrow` | finds functions whose knots are on one line except for rounding |
 //! | `tree` | finds the elements near a point |
 //! | `raster` | evaluates splines row by row |
 
@@ -25,10 +26,12 @@ mod factors;
 mod function_sets;
 mod jet;
 mod linear_simplex;
+mod narrow;
 mod raster;
 mod simplex;
 mod tree;
 
+pub(crate) use basis::Bend;
 pub use basis::{Basis, Scratch};
 pub use directional_limit::DirectionalLimit;
 pub use jet::Jet;

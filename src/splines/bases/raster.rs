@@ -288,7 +288,7 @@ impl Basis {
         &self.linear_simplices
     }
 
-    pub(super) fn domain_lines(&self) -> &[[Point2; 2]] {
+    pub(crate) fn domain_lines(&self) -> &[[Point2; 2]] {
         &self.domain.lines
     }
 

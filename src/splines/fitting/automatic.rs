@@ -10,11 +10,11 @@ use super::cross_validation::{Folds, fold_of, generalised_cross_validation};
 use super::likelihood::restricted_likelihood;
 use super::normal_equations::{NormalEquations, Parts};
 use super::observations::Observations;
-use super::robust::{Loss, ROUNDS_FEW, Rounds, scale_min};
+use super::robust::{LEFT_OUT, Loss, ROUNDS_FEW, Rounds, scale_min};
 use super::solve::Equations;
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
-use spmesh_core::error::Result;
+use spmesh_core::error::{Error, Result};
 use std::num::NonZeroUsize;
 
 /// Most alternations of weights and `lambda`.
@@ -44,6 +44,8 @@ pub fn choose<O: Observations + ?Sized>(
 
 /// Chooses `lambda` with robust weights, from the normal equations of all observations.
 ///
+/// The choice is that of the last alternation, with the failed trials of all of them.
+///
 /// Cost: a few passes for each alternation, of which two or three are usual, and its choice.
 ///
 /// # Errors
@@ -56,23 +58,26 @@ pub fn choose_robustly<O: Observations + ?Sized>(
     method: Method,
     threads: NonZeroUsize,
 ) -> Result<Choice> {
-    let lambda = plain.default_lambda(basis);
+    let (lambda, least) = (plain.default_lambda(basis), scale_min(plain));
     let mut rounds = Rounds { basis, observations, energy: Some(energy), lambda, threads, most: ROUNDS_FEW };
     let mut fit = rounds.start(plain)?;
-    let mut alternation = 0;
+    let (mut alternation, mut failed) = (0, Vec::new());
     loop {
-        rounds.improve(&mut fit, Loss::Tukey, scale_min(plain))?;
+        rounds.improve(&mut fit, Loss::Tukey, least)?;
         let (parts, _) = match method {
             Method::Folds { count, seed } => {
-                rounds.weighted(&fit, Loss::Tukey, count, |index| fold_of(index, count, seed))?
+                rounds.weighted(&mut fit, Loss::Tukey, least, count, |index| fold_of(index, count, seed))?
             }
-            _ => rounds.weighted(&fit, Loss::Tukey, 1, |_| 0)?,
+            _ => rounds.weighted(&mut fit, Loss::Tukey, least, 1, |_| 0)?,
         };
-        let choice = of_parts(&parts, basis, energy, method)?;
+        let noted = |error: Error| if parts.count() < plain.count { error.noting(LEFT_OUT) } else { error };
+        let mut choice = of_parts(&parts, basis, energy, method).map_err(noted)?;
+        failed.append(&mut choice.failed);
         let change = (choice.best.lambda / rounds.lambda).ln().abs();
         alternation += 1;
         if change < CHANGE_MAX.ln() || alternation == ALTERNATIONS_MAX {
-            return Ok(choice);
+            failed.sort_by(|a, b| a.lambda.total_cmp(&b.lambda));
+            return Ok(Choice { failed, ..choice });
         }
         rounds.lambda = choice.best.lambda;
     }

@@ -23,12 +23,8 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 
 /// Added to a diagonal of ones: a few hundred times the rounding error of a pivot.
 pub(super) const RIDGE: f64 = 1e-13;
-/// The ridge is multiplied by this factor while some pivot is not positive: knots near one line make energies
-/// so stiff that their rounding errors exceed what other terms add.
-const RIDGE_STEP: f64 = 100.0;
-const RIDGE_MAX: f64 = 1e-6;
 /// Directions v with a lesser v'Mv / v'v are undetermined.
-const CURVATURE_MIN: f64 = 1e-12;
+pub(super) const CURVATURE_MIN: f64 = 1e-12;
 /// Steps of refinement. For pivots that are not weak, each step multiplies the error by the relative error
 /// that the ridge causes.
 const REFINEMENTS: usize = 3;
@@ -63,8 +59,7 @@ impl Elimination {
     /// Factors a matrix with this pattern.
     ///
     /// # Errors
-    /// Not enough memory; a pivot that is not positive even with the greatest ridge, which normal equations
-    /// do not have.
+    /// Not enough memory; a pivot that is not positive, which sums of squares do not have.
     pub(super) fn factor<'a>(&'a self, matrix: &'a Symmetric) -> Result<Factor<'a>> {
         debug_assert_eq!(self.entries, matrix.entries_len());
         let scale: Vec<f64> =
@@ -72,27 +67,23 @@ impl Elimination {
         let mut values = vec![0.0; self.symbolic.len_val()];
         let scratch = self.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| too_large(matrix.len()))?;
-        let ridges = std::iter::successors(Some(RIDGE), |ridge| Some(RIDGE_STEP * ridge));
-        for ridge in ridges.take_while(|&ridge| ridge <= RIDGE_MAX) {
-            let scaled = matrix.scaled(&scale, ridge);
-            let factored = self.symbolic.factorize_numeric_llt(
-                &mut values,
-                SparseColMatRef::new(pattern(&scaled), &scaled.values),
-                Side::Lower,
-                Default::default(),
-                Par::Seq,
-                MemStack::new(&mut memory),
-                Default::default(),
-            );
-            // The memory is allocated already, so that only a pivot can fail.
-            if factored.is_ok() {
-                return Ok(Factor { elimination: self, matrix, scale, values });
-            }
+        let scaled = matrix.scaled(&scale, RIDGE);
+        let factored = self.symbolic.factorize_numeric_llt(
+            &mut values,
+            SparseColMatRef::new(pattern(&scaled), &scaled.values),
+            Side::Lower,
+            Default::default(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        );
+        // The memory is allocated already, so that only a pivot can fail.
+        match factored {
+            Ok(_) => Ok(Factor { elimination: self, matrix, scale, values }),
+            Err(_) => Err(Error::usage(
+                "the equations are not positive definite: weights are too great for 64 bits",
+            )),
         }
-        Err(Error::usage(
-            "the equations are not positive definite: knots are too near to one line, or weights are too \
-             great for 64 bits",
-        ))
     }
 }
 

@@ -5,24 +5,33 @@
 //! creases. (The same holds along any edge between two knots that are pulled apart: an edge that cuts off a
 //! corner of the border lets the corner fold, and then functions other than planes have zero energy.)
 //!
+//! The matrix is a sum of weights above zero times products of the second derivatives that all functions have
+//! at one place. So it is positive semidefinite except for the rounding errors of the sum, which are small
+//! against the diagonal, wherever knots are.
+//!
 //! For degree 2 the matrix is exact except for rounding and for triangles that are almost flat: second
-//! derivatives are constants on triangles (`bases::basis::bends`), and the intersection of two triangles is a
-//! polygon with an area. For other degrees the matrix is a quadrature on parts of the triangles of a Delaunay
-//! triangulation of the knots. It is not exact, because functions have other borders than these triangles.
+//! derivatives are constant in the cells between knot lines (`bases::basis::bends`). For other degrees the
+//! matrix is a quadrature on parts of the triangles of a Delaunay triangulation of the knots. It is not
+//! exact, because functions have other borders than these triangles.
 
+use super::cells;
 use super::overlaps::{self, Rectangle};
 use super::polygon::{self, Clipper, Polygon};
 use super::rows::Rows;
 use super::symmetric::Symmetric;
-use crate::bases::{Basis, Scratch};
+use crate::bases::{Basis, Bend, Scratch};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2;
-use spmesh_geometry::predicates::Point2;
+use spmesh_geometry::delaunay2::{self, Triangle};
+use spmesh_geometry::predicates::{Point2, lexicographic};
 
-/// Triangles whose area is less than this part of the square of their longest side are left out. Three knots
-/// that are on a line except for rounding errors make second derivatives so great, on so little area, that
-/// their energy cannot be computed; it is the energy of a fold.
+/// The area of triangles is left out if it is less than this part of the square of their longest side. Three
+/// knots that are on a line except for rounding errors make second derivatives so great, on so little area,
+/// that their energy cannot be computed; it is the energy of a fold.
 const AREA_MIN: f64 = 1e-6;
+/// Parts of triangles in the domain are left out if they are less than this part of the triangle. Triangles
+/// outside of the domain often have sides on its border, and rounding leaves a part of them inside. Functions
+/// that are zero in the domain would get energies from such parts.
+const PART_MIN: f64 = 1e-12;
 /// Each triangle of knots is divided into the square of this number of triangles for quadrature.
 const DIVISIONS: usize = 4;
 /// A rule of degree 4 on triangles: barycentric coordinate of two of three points, and weight (Dunavant
@@ -45,62 +54,117 @@ pub fn thin_plate(basis: &Basis) -> Result<Symmetric> {
         let what = format!("splines of degree {} cannot be smoothed: degree 2 can", basis.degree());
         return Err(Error::usage(what));
     }
-    let domain = basis.domain_corners();
-    if polygon::area(&domain) <= 0.0 {
-        return Err(Error::usage(
-            "the domain of the knots has no area: pull the knots of their border apart",
-        ));
-    }
+    check_domain(basis)?;
+    let mesh = delaunay2::triangulate(basis.knots())?;
+    let corners = |triangle: &Triangle| triangle.vertices.map(|id| basis.knots()[id as usize]);
+    let triangles: Vec<[Point2; 3]> = mesh.triangles().iter().map(corners).collect();
     let mut rows = Rows::new(basis.len(), 1);
     if basis.degree() == 2 {
-        add_exact(basis, &domain, &mut rows);
+        add_exact(basis, &triangles, &mut rows);
     } else {
-        add_quadrature(basis, &domain, &mut rows)?;
+        add_quadrature(basis, &triangles, &mut rows);
     }
     Ok(Symmetric::of_rows(&rows, |_| true))
 }
 
-/// Second derivatives that are constant on a polygon.
-struct Plateau {
-    polygon: Polygon,
-    hessians: Vec<(u32, [f64; 3])>,
+/// Refuses knots over which no splines are whole.
+///
+/// # Errors
+/// Usage, if the domain has no area.
+pub(super) fn check_domain(basis: &Basis) -> Result<()> {
+    if polygon::area(&basis.domain_corners()) > 0.0 {
+        return Ok(());
+    }
+    Err(Error::usage("the domain of the knots has no area: use more knots, or repeat those of the border"))
 }
 
-fn add_exact(basis: &Basis, domain: &[Point2], rows: &mut Rows) {
+/// Adds the energy of quadratic functions, triangle by triangle of the Delaunay triangulation of the knots.
+/// Lines between knots that cross a triangle divide it into cells, in which second derivatives are constant.
+fn add_exact(basis: &Basis, triangles: &[[Point2; 3]], rows: &mut Rows) {
+    let bends: Vec<Bend> = basis.bends().collect();
     let mut clipper = Clipper::default();
-    let origin = domain[0];
-    let local = |point: Point2| [point[0] - origin[0], point[1] - origin[1]];
-    let plateaus: Vec<Plateau> = basis
-        .bends()
-        .filter(|bend| !is_flat(&bend.corners))
-        .filter_map(|bend| {
-            let is_inside = bend.corners.iter().all(|&corner| basis.is_in_domain(corner));
-            let whole = if is_inside { &bend.corners } else { clipper.common(&bend.corners, domain) };
-            let polygon: Polygon = whole.iter().map(|&point| local(point)).collect();
-            (polygon.len() > 2).then_some(Plateau { polygon, hessians: bend.hessians })
-        })
-        .collect();
-    for plateau in &plateaus {
-        let size = polygon::area(&plateau.polygon);
-        for (place, first) in plateau.hessians.iter().enumerate() {
-            plateau.hessians[place..].iter().for_each(|second| add(rows, first, second, size));
-        }
+    for (triangle, near) in triangles.iter().zip(bends_near(&bends, triangles)) {
+        let whole = in_domain(basis, triangle, &mut clipper).to_vec();
+        let near: Vec<&Bend> = near.into_iter().map(|at| &bends[at as usize]).collect();
+        add_cells(whole, triangle[0], &near, rows);
     }
-    let boxes: Vec<Rectangle> = plateaus.iter().map(|plateau| rectangle(&plateau.polygon)).collect();
+}
+
+/// For each triangle, the bends whose boxes meet its box.
+fn bends_near(bends: &[Bend], triangles: &[[Point2; 3]]) -> Vec<Vec<u32>> {
+    let all = bends.iter().map(|bend| &bend.corners).chain(triangles);
+    let boxes: Vec<Rectangle> = all.map(|corners| rectangle(corners)).collect();
+    let mut near = vec![Vec::new(); triangles.len()];
+    let is_bend = |at: u32| (at as usize) < bends.len();
     overlaps::for_each_pair(&boxes, &mut |a, b| {
-        let (a, b) = (&plateaus[a as usize], &plateaus[b as usize]);
-        let size = polygon::area(clipper.common(&a.polygon, &b.polygon));
-        if size <= 0.0 {
-            return;
+        if is_bend(a) && !is_bend(b) {
+            near[b as usize - bends.len()].push(a);
         }
-        for first in &a.hessians {
-            for second in &b.hessians {
-                // Off the diagonal, an entry stands for both orders of two functions; on the diagonal, both
-                // orders are one function.
-                let factor = if first.0 == second.0 { 2.0 } else { 1.0 };
-                add(rows, first, second, factor * size);
+    });
+    // Sums must not depend on the order of the search.
+    near.iter_mut().for_each(|some| some.sort_unstable());
+    near
+}
+
+/// The part of a triangle in the domain; empty if it is only the error of rounding.
+fn in_domain<'a>(basis: &Basis, corners: &'a [Point2; 3], clipper: &'a mut Clipper) -> &'a [Point2] {
+    if corners.iter().all(|&corner| basis.is_in_domain(corner)) {
+        return corners;
+    }
+    let part = clipper.right_of(corners, basis.domain_lines());
+    if polygon::area(part) > PART_MIN * polygon::area(corners) { part } else { &[] }
+}
+
+/// Adds the energy in a polygon, in which `near` may bend. Coordinates relative to `origin` have the least
+/// rounding errors.
+fn add_cells(polygon: Polygon, origin: Point2, near: &[&Bend], rows: &mut Rows) {
+    let local = |point: Point2| [point[0] - origin[0], point[1] - origin[1]];
+    let polygon: Polygon = polygon.into_iter().map(local).collect();
+    // Of the others, some side has the whole polygon on its right. Their lines need not divide it.
+    let is_left_of = |side: [Point2; 2]| {
+        let [p, q] = side.map(local);
+        polygon.iter().any(|&corner| polygon::twice_area(p, q, corner) > 0.0)
+    };
+    let near: Vec<&Bend> =
+        near.iter().copied().filter(|bend| bend.sides.into_iter().all(is_left_of)).collect();
+    let mut lines: Vec<[Point2; 2]> = near.iter().flat_map(|bend| bend.sides).map(from_left).collect();
+    let order = |a: &[Point2; 2], b: &[Point2; 2]| lexicographic(a[0], b[0]).then(lexicographic(a[1], b[1]));
+    lines.sort_unstable_by(order);
+    lines.dedup();
+    let number = |side| lines.partition_point(|line| order(line, &from_left(side)).is_lt());
+    let bounds = |bend: &&Bend| bend.sides.map(|side| (number(side), side == from_left(side)));
+    let bounds: Vec<[(usize, bool); 3]> = near.iter().map(bounds).collect();
+    let here: Vec<[Point2; 2]> = lines.iter().map(|line| line.map(local)).collect();
+    let mut hessians = Vec::new();
+    cells::for_each_cell(polygon, &here, &mut |cell, is_left| {
+        let covers = |bounds: &[(usize, bool); 3]| bounds.iter().all(|&(line, side)| is_left[line] == side);
+        let covering = near.iter().zip(&bounds).filter(|(_, bounds)| covers(bounds)).map(|(bend, _)| bend);
+        hessians.clear();
+        for bend in covering {
+            if is_flat(&bend.corners) {
+                return;
             }
+            hessians.extend_from_slice(&bend.hessians);
         }
+        sum_by_function(&mut hessians);
+        add_products(rows, &hessians, polygon::area(cell));
+    });
+}
+
+/// A line through two points, directed from the left one.
+fn from_left([p, q]: [Point2; 2]) -> [Point2; 2] {
+    if lexicographic(p, q).is_le() { [p, q] } else { [q, p] }
+}
+
+fn sum_by_function(hessians: &mut Vec<(u32, [f64; 3])>) {
+    // Stable, so that sums do not depend on the way of sorting.
+    hessians.sort_by_key(|&(function, _)| function);
+    hessians.dedup_by(|next, kept| {
+        let is_same = next.0 == kept.0;
+        if is_same {
+            (0..3).for_each(|place| kept.1[place] += next.1[place]);
+        }
+        is_same
     });
 }
 
@@ -109,12 +173,15 @@ fn is_flat(corners: &[Point2; 3]) -> bool {
     polygon::area(corners).abs() < AREA_MIN * square(0).max(square(1)).max(square(2))
 }
 
-/// Adds the product of the second derivatives of two functions, where these are constant on an area of
-/// `size`.
-fn add(rows: &mut Rows, first: &(u32, [f64; 3]), second: &(u32, [f64; 3]), size: f64) {
-    let ((i, a), (j, b)) = (first, second);
-    let product = a[0] * b[0] + 2.0 * a[1] * b[1] + a[2] * b[2];
-    rows.add(*i.min(j) as usize, 0, size, &[(*i.max(j), product)]);
+/// Adds the products of the second derivatives of functions at one place, in order of functions.
+fn add_products(rows: &mut Rows, hessians: &[(u32, [f64; 3])], weight: f64) {
+    let mut products = Vec::with_capacity(hessians.len());
+    for (at, (first, a)) in hessians.iter().enumerate() {
+        products.clear();
+        let product = |b: &[f64; 3]| a[0] * b[0] + 2.0 * a[1] * b[1] + a[2] * b[2];
+        products.extend(hessians[at..].iter().map(|(second, b)| (*second, product(b))));
+        rows.add(*first as usize, 0, weight, &products);
+    }
 }
 
 fn rectangle(polygon: &[Point2]) -> Rectangle {
@@ -124,24 +191,20 @@ fn rectangle(polygon: &[Point2]) -> Rectangle {
     [bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY)]
 }
 
-fn add_quadrature(basis: &Basis, domain: &[Point2], rows: &mut Rows) -> Result<()> {
-    let mesh = delaunay2::triangulate(basis.knots())?;
-    let (mut clipper, mut scratch) = (Clipper::default(), Scratch::default());
-    for triangle in mesh.triangles() {
-        let corners = triangle.vertices.map(|id| basis.knots()[id as usize]);
-        let inside = clipper.common(&corners, domain);
+fn add_quadrature(basis: &Basis, triangles: &[[Point2; 3]], rows: &mut Rows) {
+    let (mut clipper, mut scratch, mut hessians) = (Clipper::default(), Scratch::default(), Vec::new());
+    for triangle in triangles {
+        let inside = in_domain(basis, triangle, &mut clipper).to_vec();
         for edge in inside.get(1..).unwrap_or_default().windows(2) {
             for_each_node([inside[0], edge[0], edge[1]], &mut |x, weight| {
-                let jets = basis.jets_at(x, &mut scratch);
-                for (place, (first, of_first)) in jets.iter().enumerate() {
-                    for (second, of_second) in &jets[place..] {
-                        add(rows, &(*first, of_first.hessian), &(*second, of_second.hessian), weight);
-                    }
-                }
+                let jets = basis.jets_at(x, &mut scratch).iter();
+                hessians.clear();
+                hessians.extend(jets.map(|(function, jet)| (*function, jet.hessian)));
+                // Rounding may turn a part of almost no area over.
+                add_products(rows, &hessians, weight.max(0.0));
             });
         }
     }
-    Ok(())
 }
 
 /// The nodes of quadrature in a triangle, with weights.

@@ -32,6 +32,7 @@ impl<'a> Interpolation<'a> {
     ///
     /// Cost: a sparse LU factorisation.
     ///
+    /// # Errors
     /// Two sites at one place, a function that is zero at all sites, or functions that depend on each other
     /// at the sites, each with its place; not enough memory.
     pub fn new(basis: &'a Basis) -> Result<Interpolation<'a>> {
@@ -44,16 +45,18 @@ impl<'a> Interpolation<'a> {
             }
             offsets.push(functions.len());
         }
-        check_sites(basis, &functions, &values)?;
+        check_sites(basis, &functions, &values).map_err(|error| narrow(basis).unwrap_or(error))?;
         let count = basis.len();
         let pattern = SymbolicSparseColMatRef::new_checked(count, count, &offsets, None, &functions);
-        let singular =
-            || Error::usage("functions depend on each other at Greville sites: least squares can tell where");
+        let singular = || {
+            let what = "functions depend on each other at Greville sites: use least squares, or move knots";
+            narrow(basis).unwrap_or_else(|| Error::usage(what))
+        };
         let symbolic = SymbolicLu::try_new(pattern).map_err(|_| too_large(count))?;
         let matrix = SparseColMatRef::new(pattern, &values);
         let factors = Lu::try_new_with_symbolic(symbolic, matrix).map_err(|_| singular())?;
         let interpolation = Interpolation { basis, offsets, functions, values, factors };
-        interpolation.check_condition()?;
+        interpolation.check_condition().map_err(|error| narrow(basis).unwrap_or(error))?;
         Ok(interpolation)
     }
 
@@ -105,8 +108,8 @@ impl<'a> Interpolation<'a> {
         let mut outside = sites.iter().zip(&found).filter(|(_, value)| value.is_none());
         if let Some(([x, y], _)) = outside.next() {
             let what = format!(
-                "{} of {} Greville sites are outside of the hull of the points: use least squares, or \
-                 knots inside",
+                "{} of {} Greville sites are outside of the hull of the points: use least squares, or knots \
+                 inside",
                 outside.count() + 1,
                 sites.len()
             );
@@ -207,8 +210,7 @@ impl<'a> Interpolation<'a> {
         let [x, y] = self.basis.greville(function);
         let what = format!(
             "functions depend on each other at Greville sites (condition {condition:.0e}): use least \
-             squares, or \
-             move knots"
+             squares, or move knots"
         );
         Err(Error::usage(what).at(format!("site {x} {y}")))
     }
@@ -238,7 +240,10 @@ fn check_sites(basis: &Basis, functions: &[usize], values: &[f64]) -> Result<()>
         format!("site {x} {y}")
     };
     if let Some(dead) = is_alive.iter().position(|&is_alive| !is_alive) {
-        return Err(Error::usage(format!("function {dead} is zero at all Greville sites")).at(at(dead)));
+        return Err(Error::usage(format!(
+            "function {dead} is zero at all Greville sites: use least squares, or move knots"
+        ))
+        .at(at(dead)));
     }
     let sites: Vec<Point2> = (0..basis.len()).map(|site| basis.greville(site)).collect();
     let firsts = spmesh_geometry::delaunay2::distinct(&sites);
@@ -249,6 +254,20 @@ fn check_sites(basis: &Basis, functions: &[usize], values: &[f64]) -> Result<()>
         .at(at(site))),
         None => Ok(()),
     }
+}
+
+/// The error for functions whose knots are on one line except for rounding, if there are any: their sites are
+/// no farther apart than rounding errors, and may be outside of their supports.
+fn narrow(basis: &Basis) -> Option<Error> {
+    let narrow = basis.narrow();
+    let [x, y] = basis.greville(*narrow.first()?);
+    let what = format!(
+        "{} of {} functions have knots that are on one line except for rounding, so values at Greville sites \
+         do not determine them: use least squares, or move these knots off the line",
+        narrow.len(),
+        basis.len()
+    );
+    Some(Error::usage(what).at(format!("site {x} {y}")))
 }
 
 fn greatest(values: &[f64]) -> usize {

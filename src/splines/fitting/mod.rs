@@ -10,17 +10,21 @@
 //! |---|---|
 //! | `observations`, `blocks` | the data, and parallel passes over them |
 //! | `normal_equations`, `rows`, `symmetric`, `cholesky`, `solve` | equations, matrices and their solution |
+//! | `least_energy` | functions that observations leave undetermined |
 //! | `factor_blocks`, `selected_inverse` | entries of inverses, for traces |
 //! | `trend` | the linear part of a fit, which is solved on its own |
-//! | `energy`, `overlaps`, `polygon`, `control_energy` | energies for smoothing: thin plate, control mesh |
+//! | `energy`, `cells`, `overlaps`, `polygon` | the thin-plate energy for smoothing |
+//! | `control_energy` | the energy of control meshes |
 //! | `choice`, `likelihood`, `cross_validation`, `automatic` | the choice of the smoothing parameter |
 //! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
 //! | `interpolation` | interpolation at Greville sites |
 //! | `mesh`, `spline_space` | triangulated knots, and the functions over them |
-//! | `spacing`, `goal`, `knot_placement`, `triangle_residuals`, `refine` | knots on grids, and the search for knots |
+//! | `spacing`, `knot_placement` | knots on grids |
+//! | `goal`, `triangle_residuals`, `refine` | the search for knots |
 
 mod automatic;
 mod blocks;
+mod cells;
 mod choice;
 mod cholesky;
 mod control_energy;
@@ -30,6 +34,7 @@ mod factor_blocks;
 mod goal;
 mod interpolation;
 mod knot_placement;
+mod least_energy;
 mod likelihood;
 mod mesh;
 mod normal_equations;
@@ -65,7 +70,7 @@ pub use quantile_sketch::QuantileSketch;
 pub use refine::{Refined, refine};
 pub use residuals::{Residual, Summary, for_each_residual, summarise};
 pub use robust::{Loss, RobustFit, robust, robust_from};
-pub use solve::{Equations, Undetermined, least_squares};
+pub use solve::{Equations, Solution, Undetermined, least_squares};
 pub use spacing::spacing;
 pub use spline_space::SplineSpace;
 pub use symmetric::Symmetric;

@@ -71,8 +71,11 @@ impl NormalEquations {
         self.weight * area / (self.count as f64 * std::f64::consts::PI.powi(2)).powi(2)
     }
 
-    /// Refuses equations without observations.
+    /// Refuses equations without observations, and values whose squares exceed f64.
     pub(super) fn check(&self) -> Result<()> {
+        if !self.square.is_finite() {
+            return Err(Error::usage("the squares of the values are too great for f64: scale the values"));
+        }
         if self.count > 0 {
             return Ok(());
         }
@@ -150,6 +153,11 @@ impl Parts {
             residual: None,
         };
         Parts::of(basis, observations, threads, count, part_of, weigh, |_| ())
+    }
+
+    /// Number of observations in the domain whose weight is not zero.
+    pub(super) fn count(&self) -> u64 {
+        self.totals.iter().map(|totals| totals.count).sum()
     }
 
     /// Like [`Parts::unweighed`], with other weights: `weigh` gets the number of an observation, the

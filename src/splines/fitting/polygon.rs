@@ -7,7 +7,7 @@ pub(super) type Polygon = Vec<Point2>;
 
 /// Twice the signed area of a triangle.
 #[inline]
-fn twice_area(a: Point2, b: Point2, c: Point2) -> f64 {
+pub(super) fn twice_area(a: Point2, b: Point2, c: Point2) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
@@ -31,16 +31,11 @@ pub(super) struct Clipper {
 }
 
 impl Clipper {
-    /// The intersection of two convex polygons.
-    pub(super) fn common(&mut self, subject: &[Point2], with: &[Point2]) -> &[Point2] {
+    /// The part of a convex polygon that is not to the left of any of some lines.
+    pub(super) fn right_of(&mut self, subject: &[Point2], lines: &[[Point2; 2]]) -> &[Point2] {
         self.current.clear();
         self.current.extend_from_slice(subject);
-        for (at, &p) in with.iter().enumerate() {
-            if self.current.is_empty() {
-                break;
-            }
-            self.keep_left(p, with[(at + 1) % with.len()]);
-        }
+        lines.iter().for_each(|&[p, q]| self.keep_left(q, p));
         &self.current
     }
 
@@ -69,13 +64,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn squares_have_rectangles_in_common() {
-        let square = |x: f64, y: f64| [[x, y], [x + 2.0, y], [x + 2.0, y + 2.0], [x, y + 2.0]];
+    fn the_part_right_of_lines_is_kept() {
+        let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
         let mut clipper = Clipper::default();
-        let mut common = |x, y| area(clipper.common(&square(0.0, 0.0), &square(x, y)));
-        assert_eq!(common(0.0, 0.0), 4.0);
-        assert_eq!(common(1.5, 0.5), 0.75);
-        assert_eq!(common(2.0, 0.0), 0.0);
-        assert_eq!(common(5.0, 5.0), 0.0);
+        let mut right_of = |lines: &[[Point2; 2]]| area(clipper.right_of(&square, lines));
+        assert_eq!(right_of(&[]), 4.0);
+        assert_eq!(right_of(&[[[1.5, 0.0], [1.5, 1.0]]]), 1.0);
+        assert_eq!(right_of(&[[[1.5, 1.0], [1.5, 0.0]], [[0.0, 1.0], [2.0, 1.0]]]), 1.5);
+        assert_eq!(right_of(&[[[2.0, 0.0], [2.0, 1.0]]]), 0.0);
     }
 }

@@ -4,7 +4,7 @@ use super::normal_equations::{NormalEquations, Parts, Weighed};
 use super::observations::Observations;
 use super::quantile_sketch::QuantileSketch;
 use super::residuals::{self, Residual};
-use super::solve::Equations;
+use super::solve::{Equations, Solution};
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
 use spmesh_core::error::{Error, Result};
@@ -21,6 +21,8 @@ const DEVIATIONS: f64 = 1.482_602_218_505_602;
 const SCALE_MIN: f64 = 1e-12;
 /// The rounds end when the root of the mean square change of coefficients is at most this number of scales.
 const CHANGE_MAX: f64 = 1e-2;
+/// Added to errors that weights cause: with all observations, there was none.
+pub(super) const LEFT_OUT: &str = "robust weights leave out the other observations";
 /// Greatest number of rounds for one loss...
 const ROUNDS_MAX: usize = 50;
 /// ...and for fits to which knots will be added: coefficients may still change, but gross errors can be told
@@ -62,6 +64,8 @@ pub struct RobustFit {
     pub passes: usize,
     /// Whether the coefficients converged.
     pub has_converged: bool,
+    /// Whether the last round solved its equations: see [`Solution::has_converged`].
+    pub is_solved: bool,
 }
 
 /// Fits with a loss; `energy` is multiplied by `lambda`.
@@ -159,10 +163,10 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
     /// # Errors
     /// Those of [`robust()`].
     pub(super) fn start(&self, plain: &NormalEquations) -> Result<RobustFit> {
-        let coefficients = self.solve(plain)?;
+        let Solution { coefficients, has_converged: is_solved } = self.solve(plain)?;
         let scale_min = scale_min(plain);
         let scale = self.scale(&coefficients, scale_min)?;
-        let mut found = RobustFit { coefficients, scale, passes: 2, has_converged: false };
+        let mut found = RobustFit { coefficients, scale, passes: 2, has_converged: false, is_solved };
         self.improve(&mut found, Loss::Huber, scale_min)?;
         Ok(found)
     }
@@ -172,13 +176,15 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
     pub(super) fn improve(&self, fit: &mut RobustFit, loss: Loss, scale_min: f64) -> Result<()> {
         fit.has_converged = false;
         for _ in 0..self.most {
-            let (parts, scale) = self.weighted(fit, loss, 1, |_| 0)?;
-            let coefficients = self.solve(&parts.sum(|_| true))?;
+            let (parts, scale) = self.weighted(fit, loss, scale_min, 1, |_| 0)?;
+            let normal = parts.sum(|_| true);
+            let Solution { coefficients, has_converged: is_solved } =
+                self.solve(&normal).map_err(|error| error.noting(LEFT_OUT))?;
             let squares = coefficients.iter().zip(&fit.coefficients).map(|(a, b)| (a - b) * (a - b));
             let change = (squares.sum::<f64>() / coefficients.len() as f64).sqrt();
             // While the scale still shrinks, coefficients have not converged, however slowly they change.
             let is_still = change <= CHANGE_MAX * scale.max(scale_min) && scale >= 0.98 * fit.scale;
-            fit.coefficients = coefficients;
+            (fit.coefficients, fit.is_solved) = (coefficients, is_solved);
             fit.passes += 1;
             let is_least = fit.scale <= scale_min && scale <= scale_min;
             fit.scale = scale.max(scale_min);
@@ -191,7 +197,27 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
     }
 
     /// The normal equations, weighted by residuals, in several parts; and the scale of the residuals.
+    ///
+    /// If residuals were rounding errors and are greater now, no observation keeps a weight. They are then
+    /// weighed again by their own scale, within which half of them are.
     pub(super) fn weighted(
+        &self,
+        fit: &mut RobustFit,
+        loss: Loss,
+        scale_min: f64,
+        count: usize,
+        part_of: impl Fn(u64) -> usize + Sync,
+    ) -> Result<(Parts, f64)> {
+        let (parts, scale) = self.weighted_by_scale(fit, loss, count, &part_of)?;
+        if parts.count() > 0 {
+            return Ok((parts, scale));
+        }
+        fit.scale = scale.max(scale_min);
+        fit.passes += 1;
+        self.weighted_by_scale(fit, loss, count, &part_of)
+    }
+
+    fn weighted_by_scale(
         &self,
         fit: &RobustFit,
         loss: Loss,
@@ -226,8 +252,8 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
         Ok(scale_of(&sketch)?.max(scale_min))
     }
 
-    fn solve(&self, normal: &NormalEquations) -> Result<Vec<f64>> {
-        Equations::new(self.basis, normal, self.energy)?.solve(self.lambda)
+    fn solve(&self, normal: &NormalEquations) -> Result<Solution> {
+        Equations::new(self.basis, normal, self.energy)?.solution(self.lambda)
     }
 }
 
@@ -239,4 +265,27 @@ pub(super) fn scale_min(plain: &NormalEquations) -> f64 {
 fn scale_of(sketch: &QuantileSketch) -> Result<f64> {
     let median = sketch.median().ok_or_else(|| Error::usage("no observations: nothing can be fitted"))?;
     Ok(DEVIATIONS * median)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fitting::{Observation, SplineSpace};
+
+    #[test]
+    fn some_observations_always_keep_a_weight() {
+        let space = SplineSpace::of(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]).expect("a space");
+        let (basis, threads) = (&space.basis, NonZeroUsize::MIN);
+        let at = |i: u32| [f64::from(i % 7) / 7.0, f64::from(i % 11) / 11.0];
+        let observations: Vec<_> = (0..77).map(|i| Observation::new(at(i), 1.0 + f64::from(i % 3))).collect();
+        let rounds =
+            Rounds { basis, observations: &observations, energy: None, lambda: 0.0, threads, most: 1 };
+        // All residuals are far beyond the scale, as if they had been rounding errors one round before.
+        let zero = vec![0.0; basis.len()];
+        let mut fit =
+            RobustFit { coefficients: zero, scale: 1e-12, passes: 2, has_converged: false, is_solved: true };
+        let (parts, scale) = rounds.weighted(&mut fit, Loss::Tukey, 1e-12, 1, |_| 0).expect("weights");
+        assert_eq!((parts.count(), fit.passes), (77, 3));
+        assert!((scale / (2.0 * DEVIATIONS) - 1.0).abs() < 0.01 && fit.scale == scale, "{scale}");
+    }
 }

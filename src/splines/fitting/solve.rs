@@ -2,14 +2,26 @@
 
 use super::cholesky::{Elimination, Factor};
 use super::control_energy::bending;
+use super::energy::check_domain;
+use super::least_energy;
 use super::normal_equations::NormalEquations;
 use super::observations::Observations;
 use super::symmetric::Symmetric;
-use super::trend::trend;
+use super::trend::{Trend, trend};
 use crate::bases::Basis;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 use std::num::NonZeroUsize;
+
+/// Coefficients that solve equations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// One for each function.
+    pub coefficients: Vec<f64>,
+    /// Whether they solve the equations except for rounding. The steps that lead to the least energy may not
+    /// get there; all other solutions do.
+    pub has_converged: bool,
+}
 
 /// A function that observations do not determine.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,8 +46,8 @@ pub struct Equations<'a> {
     normal: &'a NormalEquations,
     energy: Option<&'a Symmetric>,
     elimination: Elimination,
-    /// Coefficients of the linear function that is nearest to the observations.
-    trend: Vec<f64>,
+    /// The linear function that is nearest to the observations.
+    trend: Trend,
     /// The right side of the equations for the difference from the trend.
     right: Vec<f64>,
 }
@@ -57,13 +69,16 @@ impl<'a> Equations<'a> {
                 basis.len()
             )));
         }
+        if normal.count == 0 {
+            check_domain(basis)?;
+        }
         normal.check()?;
         let elimination = match energy {
             Some(energy) => Elimination::of(&normal.matrix.plus(0.0, energy))?,
             None => Elimination::of(&normal.matrix)?,
         };
         let trend = trend(basis, normal);
-        let done = normal.matrix.times(&trend);
+        let done = normal.matrix.times(&trend.coefficients);
         let right = normal.right.iter().zip(done).map(|(right, done)| right - done).collect();
         Ok(Equations { basis, normal, energy, elimination, trend, right })
     }
@@ -80,17 +95,32 @@ impl<'a> Equations<'a> {
         self.normal.default_lambda(self.basis)
     }
 
-    /// The coefficients for a `lambda`.
+    /// The coefficients for a `lambda`, whether they have converged or not: see [`Equations::solution`].
+    ///
+    /// # Errors
+    /// Those of [`Equations::solution`].
+    pub fn solve(&self, lambda: f64) -> Result<Vec<f64>> {
+        Ok(self.solution(lambda)?.coefficients)
+    }
+
+    /// The solution for a `lambda`. If it is zero and there is an energy, it is that of least squares; if
+    /// observations do not determine all functions, the one with the least energy.
     ///
     /// # Errors
     /// Functions that are not determined, with their number and the place of the first one; a `lambda` that
     /// is negative or not finite, or above zero without an energy.
-    pub fn solve(&self, lambda: f64) -> Result<Vec<f64>> {
-        self.with_factor(lambda, |factor| {
+    pub fn solution(&self, lambda: f64) -> Result<Solution> {
+        // Least energy: so much of it as makes equations regular.
+        let is_least = lambda == 0.0 && self.energy.is_some();
+        let factored = if is_least { least_energy::SHARE * self.unit() } else { lambda };
+        self.with_factor(factored, |factor| {
             self.check(factor, lambda)?;
-            let coefficients = self.coefficients(factor);
-            if coefficients.iter().all(|c| c.is_finite()) {
-                return Ok(coefficients);
+            let found = match is_least {
+                true => self.of_least_energy(factor),
+                false => Solution { coefficients: self.coefficients(factor), has_converged: true },
+            };
+            if found.coefficients.iter().all(|c| c.is_finite()) {
+                return Ok(found);
             }
             Err(Error::malformed("coefficients are too great for 64 bits: scale the values"))
         })
@@ -140,17 +170,27 @@ impl<'a> Equations<'a> {
     pub(super) fn deviance(&self, factor: &Factor) -> f64 {
         let rest = factor.solve(&self.right);
         let explained: f64 = rest.iter().zip(&self.right).map(|(c, right)| c * right).sum();
-        (self.normal.residual_square(&self.trend) - explained).max(0.0)
+        (self.normal.residual_square(&self.trend.coefficients) - explained).max(0.0)
     }
 
     /// The coefficients from the factored equations.
     pub(super) fn coefficients(&self, factor: &Factor) -> Vec<f64> {
-        let rest = factor.solve(&self.right);
-        self.trend.iter().zip(rest).map(|(trend, rest)| trend + rest).collect()
+        self.with_trend(factor.solve(&self.right))
+    }
+
+    fn of_least_energy(&self, factor: &Factor) -> Solution {
+        let size = self.normal.square.sqrt();
+        let rest = least_energy::solve(&self.normal.matrix, factor, &self.right, size);
+        Solution { coefficients: self.with_trend(rest.coefficients), ..rest }
+    }
+
+    fn with_trend(&self, rest: Vec<f64>) -> Vec<f64> {
+        self.trend.coefficients.iter().zip(rest).map(|(trend, rest)| trend + rest).collect()
     }
 
     /// Refuses factored equations that leave functions undetermined.
     pub(super) fn check(&self, factor: &Factor, lambda: f64) -> Result<()> {
+        self.check_trend()?;
         self.refuse(&self.named(factor), lambda)
     }
 
@@ -162,10 +202,27 @@ impl<'a> Equations<'a> {
         factor.weak().into_iter().map(named).collect()
     }
 
+    /// Refuses observations that determine no linear function, however smooth the spline is.
+    fn check_trend(&self) -> Result<()> {
+        if self.energy.is_none() || self.trend.is_determined {
+            return Ok(());
+        }
+        Err(Error::usage(format!(
+            "the {} observations in the domain are on one line, or nearly all of their weight is, so no \
+             slope across it is determined: give some off the line",
+            self.normal.count
+        )))
+    }
+
     fn refuse(&self, undetermined: &[Undetermined], lambda: f64) -> Result<()> {
         let Some(first) = undetermined.first() else { return Ok(()) };
         let empty = undetermined.iter().filter(|weak| self.is_empty_at(weak.function)).count();
-        let remedy = if self.energy.is_some() && lambda > self.unit() {
+        let narrow = self.basis.narrow();
+        let narrow = undetermined.iter().filter(|weak| narrow.binary_search(&weak.function).is_ok()).count();
+        let remedy = if narrow > 0 {
+            "knots that are on one line except for rounding leave narrow functions between them: smooth with \
+             a lambda above zero, or move these knots off the line"
+        } else if self.energy.is_some() && lambda > self.unit() {
             "smooth with a lesser lambda, which leaves observations some weight"
         } else if self.energy.is_some() {
             "smooth with a greater lambda, or give more observations"
@@ -174,8 +231,7 @@ impl<'a> Equations<'a> {
         };
         Err(Error::usage(format!(
             "{} of {} functions are not determined by {} observations, {empty} of them have none at all; \
-             the first \
-             one is at {} {}: {remedy}",
+             the first one is at {} {}: {remedy}",
             undetermined.len(),
             self.basis.len(),
             self.normal.count,

@@ -1,18 +1,22 @@
 //! The least and the greatest value of a spline.
 //!
-//! Values are compared at all Greville sites and knots in the domain. From the best of them, a search goes to
-//! better neighbours (Hooke and Jeeves 1961).
+//! Values are compared at all Greville sites and knots in the domain. From each of the best, a search goes to
+//! better neighbours (Hooke and Jeeves 1961): the best one alone may be below a higher peak beside others.
 
 use super::layout::Spline;
 use spmesh_geometry::predicates::Point2;
 use spmesh_splines::bases::Scratch;
 
+/// Places from which an extreme is searched.
+const STARTS: usize = 16;
 /// Halvings of the step of the search for an extreme.
 const HALVINGS: usize = 12;
 /// Steps of the same length.
 const STEPS_MAX: usize = 64;
 /// Splines that leave the range of elevations by more than this share of it get a warning.
 pub const EXCESS_MAX: f64 = 0.25;
+/// Values that leave the range by less than this part of the greatest magnitude do so by rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// The least and the greatest value of a spline, each with its place in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,22 +53,16 @@ impl Extent {
         };
         let sites = (0..basis.len()).map(|function| basis.greville(function));
         let knots = spline.layout.knots.points().iter().copied();
-        let (mut least, mut greatest) = ((f64::INFINITY, [0.0; 2]), (f64::NEG_INFINITY, [0.0; 2]));
-        for x in sites.chain(knots) {
-            let Some(value) = value(x) else { continue };
-            if value < least.0 {
-                least = (value, x);
-            }
-            if value > greatest.0 {
-                greatest = (value, x);
-            }
-        }
-        if !least.0.is_finite() || !greatest.0.is_finite() {
-            return None;
-        }
+        let mut all: Vec<_> = sites.chain(knots).filter_map(|x| Some((value(x)?, x))).collect();
+        all.retain(|(value, _)| value.is_finite());
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let step = step(basis.domain_corners(), basis.len());
-        let least = climbed((-least.0, least.1), step, &mut |x| value(x).map(|value| -value));
-        let greatest = climbed(greatest, step, &mut value);
+        let order = |a: &(f64, Point2), b: &(f64, Point2)| a.0.total_cmp(&b.0);
+        let lowest = all.iter().take(STARTS).map(|&(value, x)| (-value, x));
+        let least =
+            lowest.map(|start| climbed(start, step, &mut |x| value(x).map(|value| -value))).max_by(order)?;
+        let highest = all.iter().rev().take(STARTS);
+        let greatest = highest.map(|&start| climbed(start, step, &mut value)).max_by(order)?;
         let to_world = |x| spline.layout.frame.to_decimal(x);
         Some(Extent { least: (-least.0, to_world(least.1)), greatest: (greatest.0, to_world(greatest.1)) })
     }
@@ -74,7 +72,8 @@ impl Extent {
     pub fn excess(&self, [low, high]: [f64; 2]) -> Option<Excess> {
         let (below, above) = (low - self.least.0, self.greatest.0 - high);
         let ((value, place), by) = if below > above { (self.least, below) } else { (self.greatest, above) };
-        (by > 0.0).then_some(Excess { value, place, share: by / (high - low) })
+        let rounding = ROUNDING * low.abs().max(high.abs());
+        (by > rounding).then_some(Excess { value, place, share: by / (high - low) })
     }
 }
 

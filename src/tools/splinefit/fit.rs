@@ -12,7 +12,8 @@ use super::{breaklines, given_knots, residual_lists};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::Opened;
 use spmesh_splines::fitting::{
-    self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, RobustFit, Round, SplineSpace,
+    self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, RobustFit, Round, Solution,
+    SplineSpace,
 };
 
 /// The default tolerance, as a part of the range of elevations.
@@ -84,8 +85,7 @@ pub fn fit(
 ) -> Result<Fitted> {
     if options.interpolates && (options.loss.is_some() || options.smoothing.is_some()) {
         let what = "a spline that interpolates is not smoothed, and has no residuals to weigh: leave out \
-         --interpolate, or \
-                    --lambda and --robust";
+                    --interpolate, or --lambda and --robust";
         return Err(Error::usage(what));
     }
     let (mut layout, mut found) = match (knots, options.step) {
@@ -212,11 +212,13 @@ fn approximate(
 ) -> Result<(Vec<f64>, SmoothingChoice, Option<RobustFit>)> {
     let problem = choose_smoothing(layout, all, options, are_given)?;
     let Some(loss) = options.loss else {
-        return Ok((problem.solve(&layout.basis)?, problem.chosen, None));
+        let Solution { coefficients, has_converged } = problem.solve(&layout.basis)?;
+        return Ok((coefficients, SmoothingChoice { is_solved: has_converged, ..problem.chosen }, None));
     };
     let Problem { normal, energy, lambda, chosen } = problem;
     let (basis, threads) = (&layout.basis, options.threads);
     let robust = fitting::robust_from(&normal, basis, all, loss, energy.as_ref(), lambda, threads)?;
+    let chosen = SmoothingChoice { is_solved: robust.is_solved, ..chosen };
     Ok((robust.coefficients.clone(), chosen, Some(robust)))
 }
 

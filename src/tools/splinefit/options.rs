@@ -9,8 +9,8 @@ use spmesh_splines::fitting::Loss;
 /// Options of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// How to smooth. If `None`, given knots are smoothed only if points do not determine all functions,
-    /// other knots always, both by restricted maximum likelihood.
+    /// How to smooth. If `None`, other knots than given ones are smoothed by restricted maximum likelihood.
+    /// Over given knots, only the functions that points do not determine are smoothed.
     pub smoothing: Option<Smoothing>,
     /// The loss function of a robust fit; `None` for least squares.
     pub loss: Option<Loss>,

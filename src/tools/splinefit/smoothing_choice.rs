@@ -5,7 +5,7 @@ use super::options::{Options, Smoothing};
 use super::points::PointsInFrame;
 use spmesh_core::error::Result;
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{self, Choice, Equations, Method, NormalEquations, Symmetric};
+use spmesh_splines::fitting::{self, Choice, Equations, Method, NormalEquations, Solution, Symmetric};
 
 /// The smoothing of a fit, and the reason for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +14,8 @@ pub struct SmoothingChoice {
     pub lambda: f64,
     /// Number of functions that points leave undetermined without smoothing; `None` if it was not needed.
     pub undetermined: Option<usize>,
+    /// Whether the equations were solved: the steps to the least energy may not get there.
+    pub is_solved: bool,
     /// The trials of the choice; `lambda` in world coordinates.
     pub choice: Option<Choice>,
 }
@@ -28,13 +30,14 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    pub(super) fn solve(&self, basis: &Basis) -> Result<Vec<f64>> {
-        Equations::new(basis, &self.normal, self.energy.as_ref())?.solve(self.lambda)
+    pub(super) fn solve(&self, basis: &Basis) -> Result<Solution> {
+        Equations::new(basis, &self.normal, self.energy.as_ref())?.solution(self.lambda)
     }
 }
 
-/// Sets up the equations of points, and chooses `lambda`. Without an option, given knots are smoothed only if
-/// points do not determine all functions, other knots always, both by restricted maximum likelihood.
+/// Sets up the equations of points, and chooses `lambda`. Without an option, given knots are not smoothed: if
+/// points do not determine all functions, the energy counts only for the others. Other knots are smoothed by
+/// restricted maximum likelihood.
 ///
 /// In stored coordinates, second derivatives are those of the world times the step squared, and areas are
 /// those of the world divided by the step squared. So the energy is that of the world times the step squared,
@@ -54,11 +57,15 @@ pub(super) fn choose_smoothing(
     if options.smoothing.is_none() && are_given {
         undetermined = Some(Equations::new(basis, &normal, None)?.undetermined(0.0)?.len());
     }
-    let needs_none = options.smoothing == Some(Smoothing::Lambda(0.0)) || undetermined == Some(0);
+    // Robust weights may leave further functions undetermined.
+    let is_determined = undetermined == Some(0) && options.loss.is_none();
+    let needs_none = options.smoothing == Some(Smoothing::Lambda(0.0)) || is_determined;
     let energy = if needs_none { None } else { Some(fitting::bending(basis)?) };
     let area = layout.frame.step().powi(2);
     let method = match options.smoothing {
         Some(Smoothing::Lambda(_)) => None,
+        // Least squares, with the least energy where points determine nothing.
+        None if are_given => None,
         None | Some(Smoothing::Likelihood) => Some(Method::Likelihood),
         Some(Smoothing::Generalised) => Some(Method::Generalised),
         Some(Smoothing::Folds(count)) => Some(Method::Folds { count, seed: options.seed }),
@@ -77,6 +84,6 @@ pub(super) fn choose_smoothing(
         choice.trials.iter_mut().for_each(|trial| trial.lambda *= area);
         choice.failed.iter_mut().for_each(|trial| trial.lambda *= area);
     }
-    let chosen = SmoothingChoice { lambda: lambda * area, undetermined, choice };
+    let chosen = SmoothingChoice { lambda: lambda * area, undetermined, is_solved: true, choice };
     Ok(Problem { normal, energy, lambda, chosen })
 }

@@ -26,8 +26,8 @@ pub struct Statistics {
     pub greatest: f64,
     /// The place of the first point with the greatest magnitude, in world coordinates.
     pub worst: Option<Point2>,
-    /// The least and greatest elevation of the points in the domain, without rejected ones; `None` without
-    /// points.
+    /// The least and greatest elevation of the points in the domain. Those of weight zero do not count, nor,
+    /// unless all are, rejected ones. `None` without points.
     pub range: Option<[f64; 2]>,
     /// The least and the greatest value of the spline; `None` if it has no domain.
     pub extent: Option<Extent>,
@@ -56,7 +56,7 @@ impl Statistics {
     ) -> Result<Statistics> {
         let frame = &spline.layout.frame;
         let (mut count, mut sum, mut square, mut sketch) = (0u64, 0.0, 0.0, QuantileSketch::default());
-        let (mut greatest, mut worst, mut range) = (0f64, None, None::<[f64; 2]>);
+        let (mut greatest, mut worst, mut range, mut kept) = (0f64, None, None, None);
         let all = points.in_frame(frame, done);
         let (basis, coefficients) = (&spline.layout.basis, &spline.coefficients);
         let outside = fitting::for_each_residual(basis, coefficients, &all, threads, |found| {
@@ -64,11 +64,17 @@ impl Statistics {
             sum += found.residual;
             square += found.residual * found.residual;
             sketch.add(found.residual);
-            if found.residual.abs() * found.weight.sqrt() <= limit {
-                // Without the sign of a negative zero.
-                let value = found.value + 0.0;
+            // Without the sign of a negative zero.
+            let value = found.value + 0.0;
+            let with = |range: Option<[f64; 2]>| {
                 let [low, high] = range.unwrap_or([value; 2]);
-                range = Some([low.min(value), high.max(value)]);
+                Some([low.min(value), high.max(value)])
+            };
+            if found.weight > 0.0 {
+                range = with(range);
+                if found.residual.abs() * found.weight.sqrt() <= limit {
+                    kept = with(kept);
+                }
             }
             if worst.is_none() || found.residual.abs() > greatest {
                 (greatest, worst) = (found.residual.abs(), Some(frame.to_decimal(found.point)));
@@ -82,7 +88,7 @@ impl Statistics {
             root_mean_square: (square / divisor).sqrt(),
             greatest,
             worst,
-            range,
+            range: kept.or(range),
             extent: Extent::of(spline),
             // A class may end above the greatest magnitude, so quantiles are limited to it.
             percentiles: PERCENTILES.map(|part| sketch.quantile(part).unwrap_or(0.0).min(greatest)),

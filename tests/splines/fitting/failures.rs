@@ -1,12 +1,13 @@
 //! Fits that are impossible: the error says why and where.
 
 use super::bases::{ONE, cubic, grid, pulled_apart, scattered};
+use super::random_knots::{Border, over};
 use spmesh_geometry::configurations::special::{Features, features};
 use spmesh_geometry::configurations::{self, Knots};
 use spmesh_splines::bases::Basis;
 use spmesh_splines::fitting::{
-    Equations, Interpolation, Loss, Mesh, NormalEquations, Observation, for_each_residual, interpolate,
-    least_squares, robust, thin_plate,
+    Equations, Interpolation, Loss, Mesh, NormalEquations, Observation, bending, for_each_residual,
+    generalised_cross_validation, interpolate, least_squares, restricted_likelihood, robust, thin_plate,
 };
 
 fn message<T>(result: spmesh_core::error::Result<T>) -> String {
@@ -42,18 +43,50 @@ fn too_few_observations_are_not_enough() {
     let basis = pulled_apart(&grid(3, 0.2));
     let one = vec![Observation::new([0.5, 0.5], 1.0)];
     assert!(message(least_squares(&basis, &one, 0.0, ONE)).contains("not determined"));
-    assert!(message(least_squares(&basis, &one, 1.0, ONE)).contains("not determined"), "a plane has three");
+    assert!(message(least_squares(&basis, &one, 1.0, ONE)).contains("on one line"), "a plane has three");
     let three: Vec<Observation> =
         [[0.1, 0.1], [0.9, 0.2], [0.3, 0.8]].map(|x| Observation::new(x, x[0])).to_vec();
     let coefficients = least_squares(&basis, &three, 1e-5, ONE).expect("a plane");
     for (function, c) in coefficients.iter().enumerate() {
         assert!((c - basis.greville(function)[0]).abs() < 1e-6);
     }
-    let line: Vec<Observation> = (0..50).map(|i| Observation::new([0.02 * f64::from(i), 0.5], 1.0)).collect();
-    assert!(
-        message(least_squares(&basis, &line, 1.0, ONE)).contains("not determined"),
-        "tilted around the line"
-    );
+}
+
+/// Splines over a grid with clamped corners, or with the border pulled apart, of degrees 1 to 3.
+fn over_grids() -> [Basis; 3] {
+    let points = grid(2, 0.0);
+    [over(&points, 1, Border::Clamped), pulled_apart(&grid(6, 0.2)), cubic(&points)]
+}
+
+#[test]
+fn observations_on_a_line_are_refused_whatever_lambda() {
+    let at = |i: i32| 0.02 * f64::from(i);
+    for basis in over_grids() {
+        let energy = bending(&basis).expect("an energy");
+        for place in [|x| [x, x], |x| [x, 0.5], |x| [0.3 * x + 0.1, 0.7 - 0.6 * x], |_| [0.3, 0.6]]
+            as [fn(f64) -> [f64; 2]; 4]
+        {
+            let line: Vec<_> = (0..50).map(|i| Observation::new(place(at(i)), 1.0 + at(i))).collect();
+            let normal = NormalEquations::of(&basis, &line, ONE).expect("equations");
+            let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
+            for lambda in [0.0, 1e-15, 1e-6, 1e-3, 1.0, 1e9] {
+                let said = message(equations.solve(lambda));
+                assert!(said.contains("50 observations in the domain are on one line"), "{lambda}: {said}");
+            }
+            assert!(message(restricted_likelihood(&equations)).contains("on one line"));
+            assert!(message(generalised_cross_validation(&equations)).contains("on one line"));
+        }
+        // A thousandth of the domain aside is enough.
+        let mut near: Vec<_> = (0..50).map(|i| Observation::new([at(i), 0.5], at(i))).collect();
+        near.push(Observation::new([0.5, 0.501], 0.501));
+        let normal = NormalEquations::of(&basis, &near, ONE).expect("equations");
+        let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
+        let found = equations.solve(normal.default_lambda(&basis)).expect("coefficients");
+        for (function, c) in found.iter().enumerate() {
+            let [x, y] = basis.greville(function);
+            assert!((c - x - (y - 0.5)).abs() < 1e-3, "{c} at {x} {y}");
+        }
+    }
 }
 
 #[test]

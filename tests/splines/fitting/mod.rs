@@ -2,6 +2,7 @@
 
 mod bases;
 mod choices;
+mod clamped;
 mod elevations;
 mod energies;
 mod failures;
@@ -9,6 +10,8 @@ mod figure;
 mod interpolation;
 mod likelihood;
 mod normal_equations;
+mod random_knots;
 mod refinement;
 mod robustness;
 mod smoothing;
+mod undetermined;

@@ -2,7 +2,9 @@
 
 use super::bases::{ONE, deviation, grid, pulled_apart, scattered};
 use spmesh_reference::sets::Random;
-use spmesh_splines::fitting::{Loss, Observation, least_squares, robust};
+use spmesh_splines::fitting::{
+    Loss, Method, NormalEquations, Observation, bending, choose_robustly, least_squares, robust,
+};
 use std::num::NonZeroUsize;
 
 fn plane([x, y]: [f64; 2]) -> f64 {
@@ -77,4 +79,58 @@ fn weights_count() {
     let fit = robust(&basis, &all, Loss::Tukey, None, 0.0, ONE).expect("a fit");
     assert!(deviation(&basis, &fit.coefficients, 21, plane) < 0.01);
     assert_eq!(fit.rejected(&basis, &all, ONE, |_| ()).expect("residuals"), 0);
+}
+
+/// Observations of the plane at three places only, `times` at each, with errors.
+fn at_three_places(times: [usize; 3]) -> Vec<Observation> {
+    let places = [[0.2, 0.2], [0.8, 0.3], [0.4, 0.8]];
+    let all = places.into_iter().zip(times).flat_map(|(place, times)| {
+        let error = |i: usize| 0.01 * ((i % 7) as f64 - 3.0);
+        (0..times).map(move |i| Observation::new(place, plane(place) + error(i)))
+    });
+    all.collect()
+}
+
+#[test]
+fn three_places_make_a_plane() {
+    let basis = pulled_apart(&grid(4, 0.2));
+    let energy = bending(&basis).expect("an energy");
+    let all = at_three_places([40; 3]);
+    for (loss, lambda) in [(Loss::Huber, 0.0), (Loss::Tukey, 0.0), (Loss::Tukey, 1e-3)] {
+        let fit = robust(&basis, &all, loss, Some(&energy), lambda, ONE).expect("a fit");
+        assert!(fit.has_converged && fit.is_solved);
+        let error = deviation(&basis, &fit.coefficients, 21, plane);
+        assert!(error < 0.05, "{loss:?}, {lambda}: {error}");
+    }
+}
+
+#[test]
+fn weights_that_leave_too_little_are_the_reason_given() {
+    let basis = pulled_apart(&grid(4, 0.2));
+    let energy = bending(&basis).expect("an energy");
+    // Most observations are equal. The others differ at each place, so they are far beyond the median of
+    // residuals.
+    let mut all = at_three_places([2; 3]);
+    all.extend(vec![Observation::new([0.5, 0.5], plane([0.5, 0.5])); 100]);
+    let normal = NormalEquations::of(&basis, &all, ONE).expect("equations");
+    let said =
+        |message: String| message.contains("on one line") && message.contains("robust weights leave out");
+    let fit = robust(&basis, &all, Loss::Tukey, Some(&energy), 1e-3, ONE);
+    assert!(fit.is_err_and(|error| said(error.to_string())));
+    for method in [Method::Likelihood, Method::Generalised] {
+        let choice = choose_robustly(&normal, &basis, &all, &energy, method, ONE);
+        assert!(choice.is_err_and(|error| said(error.to_string())), "{method:?}");
+    }
+}
+
+#[test]
+fn trials_that_all_fail_are_an_error() {
+    let basis = pulled_apart(&grid(2, 0.2));
+    let energy = bending(&basis).expect("an energy");
+    // As many observations as linear functions.
+    let all = at_three_places([1; 3]);
+    let normal = NormalEquations::of(&basis, &all, ONE).expect("equations");
+    let choice = choose_robustly(&normal, &basis, &all, &energy, Method::Likelihood, ONE);
+    let error = choice.expect_err("nothing is left to choose").to_string();
+    assert!(error.contains("no more observations than effective coefficients"), "{error}");
 }

@@ -46,12 +46,14 @@ impl Places {
         is_tent.then_some(FunctionKind::Tent([p.min(q), p.max(q)]))
     }
 
-    /// Whether the edges of a link cancel as directed edges between places, as for links of copies. Then its
-    /// B-spline is zero.
-    fn encloses_nothing(&self, link: &Link) -> bool {
-        let at_places =
-            link.edges().map(|edge| edge.map(|id| (id != FARAWAY).then(|| self.firsts[id as usize])));
-        let mut edges: Vec<[Option<u32>; 2]> = at_places.filter(|[a, b]| a != b).collect();
+    /// Whether the B-spline of a link is zero everywhere. Infinite configurations and those whose knots are
+    /// on one line add nothing to it, as on a straight border with clamped corners. Of the other
+    /// configurations, the edges of the link cancel as directed edges between places, as for links of copies.
+    fn is_zero(&self, knots: &Knots, link: &Link) -> bool {
+        let finite = link.edges().filter(|edge| !edge.contains(&FARAWAY));
+        let with_area = finite.filter(|&[a, b]| !knots.are_collinear(&[link.set, &[a, b]].concat()));
+        let at_places = with_area.map(|edge| edge.map(|id| self.firsts[id as usize]));
+        let mut edges: Vec<[u32; 2]> = at_places.filter(|[a, b]| a != b).collect();
         while let Some([a, b]) = edges.pop() {
             match edges.iter().position(|&edge| edge == [b, a]) {
                 Some(back) => drop(edges.swap_remove(back)),
@@ -71,7 +73,7 @@ impl Collection {
         let places = Places::of(knots);
         let special = self.by_edge();
         let mut terms: BTreeMap<FunctionKind, Vec<([u32; 2], f64)>> = BTreeMap::new();
-        for link in links.iter().filter(|link| !places.encloses_nothing(link)) {
+        for link in links.iter().filter(|link| !places.is_zero(knots, link)) {
             let edge = [link.set[0], link.set[1]];
             let mut add = |kind, share| terms.entry(kind).or_default().push((edge, share));
             if let Some(kind) = places.kind(edge) {

@@ -17,6 +17,9 @@ use spmesh_geometry::predicates::{Point2, area};
 pub(crate) struct Bend {
     /// Counterclockwise.
     pub(crate) corners: [Point2; 3],
+    /// The lines along the sides, each through two knots, with the triangle on their left. Neighbours have
+    /// lines with equal ends, whatever the rounding of the apex.
+    pub(crate) sides: [[Point2; 2]; 3],
     /// By x twice, by x and y, by y twice; in order of functions.
     pub(crate) hessians: Vec<(u32, [f64; 3])>,
 }
@@ -30,12 +33,14 @@ impl Basis {
             let knots: Vec<Point2> = knots.collect();
             let edges = hull_edges(&knots);
             let apex = apex(&knots, &edges);
-            edges.into_iter().filter_map(move |edge| {
+            edges.clone().into_iter().filter_map(move |edge| {
                 let corners = [edge[0], edge[1], apex?];
+                let beyond = |corner: Point2| if edges.len() == 4 { opposite(&edges, corner) } else { apex };
+                let sides = [edge, [edge[1], beyond(edge[1])?], [beyond(edge[0])?, edge[0]]];
                 let slope = slope(&knots, edge)?;
                 let gradient = gradient_of_area(edge).map(|part| part * slope);
                 let is_flat = area(corners[0], corners[1], corners[2]) <= 0.0;
-                (!is_flat).then(|| Bend { corners, hessians: self.hessians(element, gradient) })
+                (!is_flat).then(|| Bend { corners, sides, hessians: self.hessians(element, gradient) })
             })
         })
     }
@@ -72,6 +77,12 @@ impl Basis {
     fn slope(&self, share: &Share) -> Point2 {
         gradient_of_area(share.edge.map(|id| self.points[id as usize])).map(|part| part * share.factor)
     }
+}
+
+/// The corner of a quadrilateral opposite to a corner: the line between them passes through the apex.
+fn opposite(edges: &[[Point2; 2]], corner: Point2) -> Option<Point2> {
+    let next = |corner: Point2| edges.iter().find(|edge| edge[0] == corner).map(|edge| edge[1]);
+    next(next(corner)?)
 }
 
 /// The point that all triangles of an element have as a corner.
