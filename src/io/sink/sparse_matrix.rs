@@ -128,7 +128,7 @@ fn array<W: Write>(
     shape: &[u64],
     write: impl FnOnce(&mut dyn Write) -> Result<()>,
 ) -> Result<()> {
-    let (mut entry, config) = archive.new_file(&format!("{name}.npy")).start().map_err(zip_error)?;
+    let (mut entry, config) = archive.new_file(format!("{name}.npy")).start().map_err(zip_error)?;
     let mut data: ZipDataWriter<_> = config.wrap(&mut entry);
     data.write_all(&npy_header(dtype, shape)).map_err(write_error)?;
     write(&mut data)?;
