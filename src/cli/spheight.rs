@@ -1,6 +1,5 @@
 //! `spheight`: flags, and the counts of `--stats`.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -11,7 +10,7 @@ use super::reduction::open_stream;
 use super::rows::{self, Row};
 use super::{Common, StatsFormat, notice, parse_size, peak_memory, read_list, threads};
 use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_core::output::Output;
+use spmesh_core::output::{Output, create_folder};
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_height::{Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights};
@@ -152,8 +151,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let outputs = flags.outputs(&inputs)?;
     // Before the check, which needs the folder to tell its files.
     if let Some(folder) = &flags.out_dir {
-        let name = folder.display().to_string();
-        fs::create_dir_all(folder).map_err(|e| Error::io("creating the folder", e).of_input(name))?;
+        create_folder(folder)?;
     }
     let flag = if flags.output.is_some() { "--output" } else { "--out-dir" };
     let named: Vec<_> = outputs.iter().map(|output| (flag, output.as_path())).collect();

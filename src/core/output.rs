@@ -165,6 +165,15 @@ impl Seek for Output {
     }
 }
 
+/// Makes a folder for outputs, and the folders it is in, unless they exist.
+///
+/// # Errors
+/// If the system refuses it.
+pub fn create_folder(folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder)
+        .map_err(|e| Error::io("creating the folder", e).of_input(folder.display().to_string()))
+}
+
 /// Stdout.
 ///
 /// # Errors

@@ -20,23 +20,23 @@ use spmesh_splinefit::{Attribute, Layout, Spline};
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
-Splines are not extrapolated: outside of the domain, sites get nan and cells no data (-9999). A cell has \
-the value at its centre.
+Splines are not extrapolated: outside of the domain, sites and arrays get nan, cells of rasters no data, \
+and cells as text are left out. A cell has the value at its centre.
 
 Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north. \
 Curvatures are those of normal sections along the steepest descent (profile) and across it (tangential), \
 in one over the unit of coordinates; they are positive where the surface is convex upwards. Level places \
 have neither aspect nor curvature. Elevations and coordinates are taken to be in the same unit. Second \
-derivatives of splines of degree 2 jump.
+derivatives of splines of degree 2 jump at knot lines.
 
 Tables start with a line of # and the names of columns, which numpy.loadtxt and \
 numpy.genfromtxt(names=True) read. Arrays (.npy) have the numbers alone: shape (sites,) or, for gradients \
 and Hessians, (sites, numbers); of cells (rows, columns) or (rows, columns, numbers), with the top row \
-first. What is outside of the domain is nan.
+first.
 
 Functions of the basis are numbered from 0. The collocation matrix, or design matrix, has a row for each \
-site and a column for each function: times the coefficients, it is the values. Rows of sites outside of \
-the domain are empty. Its entries wait in temporary files, because both formats state their number first.";
+site and a column for each function: multiplied by the coefficients, it gives the values. Rows of sites \
+outside of the domain are empty. Its entries wait in temporary files, because both formats state their number first.";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -46,7 +46,7 @@ Examples:
     splinefit eval terrain.spline.spm --at sites.txt --kind hessian -o hessians.txt
   A raster as an array:
     splinefit eval terrain.spline.spm --step 0.5 -o terrain.npy
-  The function of the basis with number 17, as a raster:
+  Basis function 17, as a raster:
     splinefit eval terrain.spline.spm --basis-function 17 --columns 500 -o function.tif
   The collocation matrix, for scipy.sparse.load_npz or scipy.io.mmread:
     splinefit eval terrain.spline.spm --at sites.npy --collocation -o matrix.npz
@@ -65,8 +65,8 @@ pub(super) struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// Sites, such as text or .npy of shape (n, 2): the output has a line for each, in their order; - is
-    /// stdin
+    /// Sites, such as text or .npy of shape (n, 2): the output has a line or row for each, in their order; -
+    /// is stdin
     #[arg(long, value_name = "SITES", conflicts_with_all = ["step", "columns", "rows", "bounds", "like"])]
     at: Option<PathBuf>,
 
@@ -133,9 +133,7 @@ impl Flags {
         output.commit()?;
         drop(progress);
         sites.withheld_notice().iter().for_each(|text| say(common, text));
-        if outside > 0 {
-            say(common, &format!("{outside} of {count} sites are outside of the domain"));
-        }
+        about_outside(common, [count, outside], "");
         Ok(())
     }
 
@@ -152,13 +150,7 @@ impl Flags {
         drop(progress);
         sites.withheld_notice().iter().for_each(|text| say(common, text));
         say(common, &format!("{} by {} matrix, {} entries", counts.sites, counts.functions, counts.entries));
-        if counts.outside > 0 {
-            let (outside, count) = (counts.outside, counts.sites);
-            say(
-                common,
-                &format!("{outside} of {count} sites are outside of the domain: their rows are empty"),
-            );
-        }
+        about_outside(common, [counts.sites, counts.outside], ": their rows are empty");
         Ok(())
     }
 
@@ -197,7 +189,7 @@ impl Flags {
     fn output(&self, form: Form, attribute: Attribute) -> Result<Output> {
         match form {
             Form::Raster(_) if !attribute.is_single() => Err(Error::usage(format!(
-                "{} numbers in each place, and a cell of a raster has one: take .npy or --format text",
+                "{} numbers at each place, but a cell of a raster has one: take .npy or --format text",
                 attribute.columns().len()
             ))),
             Form::Raster(format) => cells::create(&self.output, format),
@@ -206,6 +198,13 @@ impl Flags {
                 Output::create(&self.output, form == Form::Array)
             }
         }
+    }
+}
+
+/// Says how many sites are outside of the domain.
+fn about_outside(common: &Common, [count, outside]: [u64; 2], consequence: &str) {
+    if outside > 0 {
+        say(common, &format!("{outside} of {count} sites are outside of the domain{consequence}"));
     }
 }
 

@@ -64,12 +64,10 @@ pub(super) fn format_of(
         Some(FormatFlag::Mtx) => Form::Matrix(MatrixFormat::MatrixMarket),
         Some(FormatFlag::Npz) => Form::Matrix(MatrixFormat::Npz),
         None => match of_ending(output) {
-            Some(form @ Form::Matrix(_)) if !is_collocation => {
-                return Err(only_for_collocation(form, output));
-            }
-            _ if is_collocation => {
+            Some(form @ Form::Matrix(_)) => form,
+            of_ending if is_collocation => {
                 endings::check(output, &[endings::MATRIX])?;
-                of_ending(output).unwrap_or(Form::Matrix(MatrixFormat::MatrixMarket))
+                of_ending.unwrap_or(Form::Matrix(MatrixFormat::MatrixMarket))
             }
             of_ending => {
                 let rasters = if has_sites { &[] } else { endings::RASTER };

@@ -31,7 +31,7 @@ impl InvalidAdvice {
         match self {
             InvalidAdvice::Spfinalize => "spfinalize --skip-invalid drops and counts such points",
             InvalidAdvice::SkipInvalid => "--skip-invalid drops and counts such points",
-            InvalidAdvice::LeaveOut => "leave it out: the output has a line for each point",
+            InvalidAdvice::LeaveOut => "leave it out: the output has a line or row for each point",
         }
     }
 }

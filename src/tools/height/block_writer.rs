@@ -22,8 +22,8 @@ const PIECES_MAX: u64 = 2;
 
 /// Divides triangles into blocks on a thread of its own, and writes these.
 ///
-/// A piece of a mesh in spatial order is small already, and is divided along a curve. Other meshes get greater blocks,
-/// which takes time but changes no height.
+/// A piece of a mesh in spatial order is small already, and is divided along a curve. Blocks of other meshes
+/// are wider, which takes time but changes no height.
 ///
 /// Memory: three pieces of 6 MB, and what the thread has encoded.
 pub(super) struct BlockWriter {

@@ -133,8 +133,14 @@ impl LoadedBlock {
         &self.corners
     }
 
+    /// The triangle with these corners.
+    #[inline]
+    pub(super) fn triangle(&self, corners: Corners) -> Triangle {
+        corners.map(|corner| self.vertices[usize::from(corner)])
+    }
+
     /// The triangles.
     pub(super) fn triangles(&self) -> impl Iterator<Item = Triangle> + '_ {
-        self.corners.iter().map(|corners| corners.map(|corner| self.vertices[usize::from(corner)]))
+        self.corners.iter().map(|&corners| self.triangle(corners))
     }
 }

@@ -18,8 +18,8 @@ const SHARE_MIN: usize = 1 << 12;
 /// The unit of heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unit {
-    /// Integers that count this many steps of the ground's z, from 1 to 2^21, rounded half away from zero: once,
-    /// and exactly. Domain: the ground has integer coordinates, and so have the points.
+    /// Integers that count this many steps of the ground's z, from 1 to 2^21, rounded half away from zero:
+    /// once, and exactly. Domain: the ground has integer coordinates, and so have the points.
     Steps(f64),
     /// The unit of the ground's stored z, not rounded to integers.
     Stored,
@@ -46,8 +46,8 @@ pub enum Outside {
 
 /// Finds heights above a ground, batch by batch, on several threads.
 ///
-/// Cost of a batch: a few nanoseconds for each pair of a point and a triangle in neighbouring cells of a grid over
-/// the batch; blocks of triangles without a point nearby are not read.
+/// Cost of a batch: a few nanoseconds for each pair of a point and a triangle in neighbouring cells of a grid
+/// over the batch; blocks of triangles without a point nearby are not read.
 ///
 /// Memory: 36 bytes for each point of a batch; one block of triangles for each thread.
 #[derive(Debug)]
@@ -108,11 +108,11 @@ fn search(blocks: &Blocks, rows: &Rows, points: &mut [Point], unit: Unit) -> Res
         blocks.read(number, &mut block)?;
         cells.clear();
         cells.extend(block.vertices().iter().map(|vertex| rows.cell_of(vertex)));
-        for corners in block.corners() {
+        for &corners in block.corners() {
             let [a, b, c] = corners.map(|corner| cells[usize::from(corner)]);
             let min = [0, 1].map(|axis| a[axis].min(b[axis]).min(c[axis]));
             let max = [0, 1].map(|axis| a[axis].max(b[axis]).max(c[axis]));
-            let triangle = corners.map(|corner| block.vertices()[usize::from(corner)]);
+            let triangle = block.triangle(corners);
             for range in rows.ranges(min, max) {
                 meet(&triangle, &mut points[range], unit)?;
             }
@@ -133,8 +133,8 @@ fn meet(triangle: &Triangle, points: &mut [Point], unit: Unit) -> Result<()> {
     Ok(())
 }
 
-/// Sets the height of a point, if the triangle contains it. What it needs of the triangle is computed for each point:
-/// most triangles need it for a point or two.
+/// Sets the height of a point, if the triangle contains it. What it needs of the triangle is computed for
+/// each point: most triangles need it for a point or two.
 #[inline(never)]
 fn meet_point(triangle: &Triangle, bounds: &Box2, point: &mut Point, unit: Unit) -> Result<()> {
     let is_plain = matches!(unit, Unit::Steps(_)) && bounds.longer_side() <= PLAIN_MAX;

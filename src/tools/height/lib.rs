@@ -1,10 +1,10 @@
 //! `spheight`: heights of points above a triangle mesh of the ground.
 //!
-//! `ground` puts the triangles of the mesh into blocks of neighbours, in a temporary file (`block_writer`). For a
-//! batch of points, the blocks around them come back one by one (`blocks`), and each triangle meets the points near
-//! it (`point_grid`). `surface` has the elevation at a place of a triangle; `nearest` finds the place nearest to a
-//! point outside of the mesh. `files` reads and writes LAS and LAZ files; `points`
-//! holds heights for `spcanopy`.
+//! `ground` puts the triangles of the mesh into blocks of neighbours, in a temporary file (`block_writer`).
+//! For a batch of points, `heights` reads the blocks around them one by one (`blocks`), and each triangle
+//! meets the points near it (`point_grid`). `surface` has the elevation at a place of a triangle; `nearest` finds the
+//! place nearest to a point outside of the mesh. `files` reads and writes LAS and LAZ files; `points` holds
+//! heights for `spcanopy`.
 
 mod block_writer;
 mod blocks;
@@ -22,14 +22,13 @@ pub use ground::Ground;
 pub use heights::{Outside, Unit};
 pub use points::{HeightPoints, LayerReader};
 
-/// A warning if most of some points are `below` the ground, which happens when z is not the elevation that it is
-/// taken for.
+/// A warning if most of some points are `below` the ground, which happens when z is not the elevation that it
+/// is taken for.
 #[must_use]
 pub fn about_below(below: u64, points: u64) -> Option<String> {
     let is_odd = below > points / 2;
     is_odd.then(|| {
-        format!(
-            "{below} of {points} points are below the ground: their z may be heights already, or in another unit"
-        )
+        let why = "their z may be heights already, or in another unit";
+        format!("{below} of {points} points are below the ground: {why}")
     })
 }

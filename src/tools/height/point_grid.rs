@@ -8,8 +8,8 @@ use spmesh_model::bounds::Point;
 /// Points per cell, on average over the box of the points.
 const POINTS_PER_CELL: usize = 2;
 
-/// A cell by column and row; those beside the grid may have any number below 0, or from the number of columns or
-/// rows on.
+/// A cell by column and row; those beside the grid may have any number below 0, or from the number of columns
+/// or rows on.
 pub(super) type Cell = [i32; 2];
 
 /// Points sorted by the cells of a grid over their box, row by row, that wait for their heights.
@@ -124,7 +124,8 @@ impl Cells {
         [0, 1].map(|axis| ((place[axis] - least[axis]) * self.cells_per_step[axis]) as i32)
     }
 
-    /// The index of the cell of a point inside of the bounds. Places on their upper sides are in the last cells.
+    /// The index of the cell of a point inside of the bounds. Places on their upper sides are in the last
+    /// cells.
     fn index_of(&self, point: &Point) -> usize {
         let [column, row] = self.of(point).map(|number| number as usize);
         row.min(self.rows - 1) * self.columns + column.min(self.columns - 1)

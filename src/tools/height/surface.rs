@@ -7,7 +7,8 @@ use spmesh_model::bounds::Point;
 /// Rounding makes a determinant of two products wrong by less than this part of their sum.
 const ROUNDING: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Products of two differences up to this are integers below 2^52, which are exact, and so is their difference.
+/// Products of two differences up to this are integers up to 2^52, which are exact, and so is their
+/// difference.
 pub(super) const PLAIN_MAX: f64 = (1u64 << 26) as f64;
 
 /// If a height in units is nearer than this to the middle between two integers, exact arithmetic rounds it.
@@ -86,7 +87,7 @@ pub(super) fn rounded(corners: &[Point; 3], point: &Point, height: f64, steps: f
     rounded_exactly(corners, point, steps)
 }
 
-/// [`rounded`] in integers. Few points need this, so it must not make others wait: its conversions would be made for
+/// [`rounded`] in integers. It is not inlined: few points need it, and its conversions would be made for
 /// every triangle.
 #[cold]
 #[inline(never)]

@@ -5,13 +5,9 @@
 //! simplex splines may still be smooth, so both sides are evaluated, and the greatest difference is stated.
 
 use super::layout::Layout;
-use super::smoothness::{Candidate, PARTS, is_certainly_outside, places};
+use super::smoothness::{BESIDE, Candidate, PARTS, is_certainly_outside, places};
 use spmesh_geometry::predicates::Point2;
 use spmesh_splines::bases::{Jet, Scratch};
-
-/// Distance of the places of comparison from a segment, relative to its length: a spline is one polynomial
-/// from there to the segment, unless another knot line is closer.
-const BESIDE: f64 = 1e-5;
 
 /// The jumps of a quantity across lines through knots.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -18,8 +18,9 @@ use spmesh_splines::bases::{Jet, Scratch};
 /// Parts of a segment at which derivatives are compared. They are not simple fractions, at which other lines
 /// may cross.
 pub(super) const PARTS: [f64; 3] = [0.216_541, 0.487_312, 0.809_733];
-/// Distance of the places of comparison from the segment, relative to its length.
-const BESIDE: f64 = 1e-5;
+/// Distance of the places of comparison from the segment, relative to its length: functions are one
+/// polynomial from there to the segment, unless another knot line is closer.
+pub(super) const BESIDE: f64 = 1e-5;
 /// Smaller changes of a derivative, relative to the magnitude of functions there, are rounding errors.
 const CHANGE_MIN: f64 = 1e-4;
 

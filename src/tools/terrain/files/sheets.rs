@@ -11,7 +11,7 @@ use super::part::{Part, write};
 use super::tile_store::TileStore;
 use super::tiles::{TilePlace, TileSource, TileTarget, places, tiles_of};
 use spmesh_core::error::{Error, Result};
-use spmesh_core::output::Output;
+use spmesh_core::output::{Output, create_folder};
 use spmesh_core::places::Inputs;
 use spmesh_io::raster::{Grid, RasterFile, RasterFormat, TILE};
 
@@ -42,10 +42,7 @@ impl Sheets {
         if path == Path::new("-") || path.file_name().is_none() {
             return Err(Error::usage("--tiles writes many files: give their name, as in -o folder/name.tif"));
         }
-        if let Some(folder) = path.parent() {
-            let name = folder.display().to_string();
-            fs::create_dir_all(folder).map_err(|e| Error::io("creating the folder", e).of_input(name))?;
-        }
+        path.parent().map_or(Ok(()), create_folder)?;
         // Fails now rather than after the work; it leaves no file.
         Output::create(path, format == RasterFormat::GeoTiff)?;
         Ok(Sheets { path: path.to_path_buf(), division, inputs, written: 0, blank: 0, bytes: 0 })

@@ -9,7 +9,7 @@ use super::summary::{DoneFile, Line, Written};
 use crate::heap::peak_during;
 use crate::{ModelName, Product, Report, job};
 use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_core::output::Output;
+use spmesh_core::output::{Output, create_folder};
 use spmesh_core::places::Inputs;
 use spmesh_io::source::panic_guard::guarded;
 use spmesh_io::source::structure::{Models, Structure, read_structure};
@@ -132,9 +132,7 @@ fn output_name(stem: &Path, product: Product, model: Option<i64>) -> PathBuf {
 }
 
 fn create_folder_of(path: &Path) -> Result<()> {
-    let Some(folder) = path.parent() else { return Ok(()) };
-    fs::create_dir_all(folder)
-        .map_err(|e| Error::io("creating the folder", e).of_input(folder.display().to_string()))
+    path.parent().map_or(Ok(()), create_folder)
 }
 
 /// Whether the outputs that an earlier run made of a file still exist, are complete, and are not older than

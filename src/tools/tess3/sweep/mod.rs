@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use super::{Options, Stats};
 use file::Job;
 use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_core::output::Output;
+use spmesh_core::output::{Output, create_folder};
 use spmesh_core::parallel;
 use spmesh_core::places::{Inputs, check_apart};
 use spmesh_io::source::structure::Format;
@@ -80,8 +80,7 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     let folder = &sweep.folder;
     let inputs: Vec<&Path> = sweep.files.iter().chain(&sweep.list).map(PathBuf::as_path).collect();
     check_apart(inputs.iter().copied(), &[("--summary", &sweep.summary)])?;
-    fs::create_dir_all(folder)
-        .map_err(|e| Error::io("creating the folder", e).of_input(folder.display().to_string()))?;
+    create_folder(folder)?;
     let mut done = if sweep.resume { Done::read(&sweep.summary)? } else { Done::default() };
     let mut outcome = Outcome::default();
     let mut seen = HashSet::new();
