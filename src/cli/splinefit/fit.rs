@@ -34,8 +34,8 @@ if residuals still exceed the tolerance, the knots are those of a grid with abou
 most 300,000), which predicts terrain best. With --step, knots form a grid with cells of this side. Points \
 as knots are for splines of degree 2 over their convex hull: the border is pulled apart.
 
-Without --lambda, given knots get the coefficients of least squares. Those that points do not determine \
-make the surface as smooth as possible. For other knots, lambda is chosen by restricted maximum likelihood \
+Without --lambda, given knots get the coefficients of least squares. Coefficients that the points leave \
+undetermined are those of least energy. For other knots, lambda is chosen by restricted maximum likelihood \
 (reml), which bridges gaps and adapts to noise. No choice is less than a floor that depends on the distance \
 of points. LAMBDA multiplies the thin-plate energy (plus a thousandth of the bending of the control mesh), \
 which is added to the sum of squares of residuals.
