@@ -11,6 +11,7 @@
 //! | [`configurations`] | configurations of one degree, and links of k-sets |
 //! | [`decimal`] | numbers as canonical decimals |
 //! | [`functions`] | functions of quadratic splines, as sums of B-splines |
+//! | [`network`] | breaklines as segments that meet at vertices only |
 //!
 //! `spmesh_stream` reads and writes these types, and `spmesh_geometry` computes them.
 //!
@@ -36,5 +37,6 @@ pub mod configurations;
 pub mod decimal;
 pub mod diagram4;
 pub mod functions;
+pub mod network;
 pub mod points;
 pub mod simplex;
