@@ -2,6 +2,7 @@
 //! dimensions.
 
 pub mod configurations;
+pub mod constrained2;
 pub mod delaunay2;
 pub mod delaunay3;
 #[cfg(feature = "experiments")]

@@ -2,6 +2,7 @@
 
 mod circle;
 mod configurations;
+mod constrained;
 #[cfg(feature = "experiments")]
 mod delaunay3_float;
 mod diagram4;

@@ -2,6 +2,7 @@
 
 pub mod clouds;
 pub mod configurations;
+pub mod constrained;
 pub mod diagram4;
 pub mod exact;
 pub mod exact3;

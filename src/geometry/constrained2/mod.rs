@@ -1,0 +1,97 @@
+//! Constrained Delaunay triangulation of a region: segments become edges, and every other edge is locally
+//! Delaunay with canonical ties.
+//!
+//! A [`Region`] starts as some triangles of a Delaunay triangulation. Its border stays. Vertices and segments are
+//! inserted; what comes out is the constrained Delaunay triangulation of the region, which is unique: ties on
+//! circles are broken by the perturbation of [`Predicates2::incircle_perturbed`]. So the order of insertion does
+//! not matter.
+//!
+//! Source: Chew, "Constrained Delaunay triangulations", 1989; Anglada, "An improved incremental algorithm for
+//! constructing restricted Delaunay triangulations", 1997, for the insertion of a segment.
+
+mod border;
+mod chord;
+mod mesh;
+mod vertex;
+mod walk;
+
+use crate::predicates::{Point2, Predicates2};
+use mesh::{Mesh, NONE};
+use spmesh_core::error::Result;
+pub use vertex::Host;
+
+/// A part of a triangulation that is triangulated anew.
+#[derive(Debug, Default)]
+pub struct Region {
+    mesh: Mesh,
+}
+
+/// A triangle of the result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Piece {
+    /// Numbers of its points, counterclockwise.
+    pub points: [u32; 3],
+    /// For each side, opposite to the point of the same place, the segment that it is on.
+    pub segments: [Option<u32>; 3],
+}
+
+impl Region {
+    /// The region of some triangles, which are counterclockwise and overlap nowhere. They are indices of
+    /// `points`, of which no two are equal.
+    #[must_use]
+    pub fn new(points: &[Point2], triangles: &[[u32; 3]]) -> Region {
+        Region { mesh: border::mesh_of(points, triangles) }
+    }
+
+    /// Where a place lies that is in the triangle with this number in the order of [`Region::new`]: the
+    /// triangle or edge of the present mesh.
+    ///
+    /// Domain: the place is in this triangle or on its border.
+    #[must_use]
+    pub fn host(&self, place: Point2, triangle: u32, predicates: &mut impl Predicates2) -> Host {
+        let from = self.mesh.origins[triangle as usize][0];
+        vertex::host(&self.mesh, from, place, predicates)
+    }
+
+    /// Inserts the point with number `point` at a place in the triangle with this number in the order of
+    /// [`Region::new`]. Does nothing if a point is there already.
+    ///
+    /// Domain: as of [`Region::host`].
+    pub fn insert(&mut self, point: u32, place: Point2, triangle: u32, predicates: &mut impl Predicates2) {
+        let from = self.mesh.origins[triangle as usize][0];
+        vertex::insert(&mut self.mesh, from, point, place, predicates);
+    }
+
+    /// Makes the parts of a segment edges that go from some of the points `on`, which all lie on it, towards its
+    /// second end. A part goes up to the next point on the segment. Parts that leave the region before are
+    /// left out; returns whether there is one.
+    ///
+    /// Cost: O(k log k) expected for a part that crosses k triangles.
+    ///
+    /// # Errors
+    /// Runtime, if the segment crosses another one.
+    pub fn constrain(
+        &mut self,
+        segment: u32,
+        to: Point2,
+        on: &[u32],
+        predicates: &mut impl Predicates2,
+    ) -> Result<bool> {
+        let mut leaves = false;
+        for &point in on {
+            let copies = self.mesh.copies(point);
+            for vertex in copies {
+                leaves |= chord::insert(&mut self.mesh, vertex, to, segment, predicates)?;
+            }
+        }
+        Ok(leaves)
+    }
+
+    /// The triangles now.
+    pub fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
+        self.mesh.triangles.iter().map(|triangle| Piece {
+            points: triangle.vertices.map(|vertex| self.mesh.vertices[vertex as usize].point),
+            segments: triangle.segments.map(|segment| (segment != NONE).then_some(segment)),
+        })
+    }
+}

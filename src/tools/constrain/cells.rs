@@ -1,0 +1,219 @@
+//! Square cells over a network of lines, and what lies in them.
+
+use super::pyramid::Pyramid;
+use spmesh_model::network::Network;
+use spmesh_model::points::Point2;
+
+/// Cells per segment and vertex, about, and their least and greatest number.
+const CELLS_PER_ITEM: f64 = 1.0;
+const CELLS: [f64; 2] = [4096.0, 4_194_304.0];
+
+/// Fine cells along the side of a cell: they say quickly that nothing is near.
+const FINE: usize = 4;
+
+/// Places are off by far less than this after they are put on the grid. Unit: cells.
+const TOLERANCE: f64 = 1e-6;
+
+/// What lies in a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Item {
+    Segment(u32),
+    Vertex(u32),
+}
+
+/// Cells over the box of a network, with the segments and vertices in each.
+///
+/// Memory: about 4 bytes a cell, and 4 for each segment and vertex in a cell. There are about as many cells as
+/// segments and vertices.
+#[derive(Debug)]
+pub(super) struct Cells {
+    origin: Point2,
+    /// Cells per unit.
+    scale: f64,
+    columns: usize,
+    rows: usize,
+    /// For each cell the place of its first item, and one more.
+    starts: Vec<u32>,
+    /// Numbers of segments; those of vertices come after all segments.
+    items: Vec<u32>,
+    segments: u32,
+    /// Fine cells that a segment or vertex meets, row by row.
+    fine: Vec<u64>,
+    pyramid: Pyramid,
+}
+
+/// A box in units of cells.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CellBox {
+    pub(super) min: Point2,
+    pub(super) max: Point2,
+}
+
+impl CellBox {
+    pub(super) fn of(places: &[Point2]) -> CellBox {
+        let mut bounds = CellBox { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
+        for place in places {
+            for axis in 0..2 {
+                bounds.min[axis] = bounds.min[axis].min(place[axis]);
+                bounds.max[axis] = bounds.max[axis].max(place[axis]);
+            }
+        }
+        bounds
+    }
+}
+
+impl Cells {
+    pub(super) fn new(network: &Network) -> Cells {
+        let places: Vec<Point2> = network.vertices.iter().map(|vertex| vertex.place).collect();
+        let bounds = CellBox::of(&places);
+        drop(places);
+        let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
+        let wanted = CELLS_PER_ITEM * (network.segments.len() + network.vertices.len()) as f64;
+        let wanted = wanted.clamp(CELLS[0], CELLS[1]);
+        // A long thin box has few cells across, and at most as many along as it may have in all.
+        let side = (width * height / wanted).sqrt().max(width.max(height) / wanted);
+        let side = if side > 0.0 { side } else { 1.0 };
+        let count = |length: f64| (length / side) as usize + 1;
+        let [columns, rows] = [count(width), count(height)];
+        let mut cells = Cells {
+            origin: bounds.min,
+            scale: 1.0 / side,
+            columns,
+            rows,
+            starts: vec![0; columns * rows + 1],
+            items: Vec::new(),
+            segments: network.segments.len() as u32,
+            fine: vec![0; (columns * rows * FINE * FINE).div_ceil(64)],
+            pyramid: Pyramid::default(),
+        };
+        cells.fill(network);
+        let is_occupied = |cell: usize| cells.starts[cell] < cells.starts[cell + 1];
+        cells.pyramid = Pyramid::new([columns, rows], is_occupied);
+        cells
+    }
+
+    /// Cells per unit.
+    pub(super) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// A place in units of cells.
+    pub(super) fn local(&self, place: Point2) -> Point2 {
+        [0, 1].map(|axis| (place[axis] - self.origin[axis]) * self.scale)
+    }
+
+    /// Counts the items of each cell, then puts them in.
+    fn fill(&mut self, network: &Network) {
+        let mut counts = vec![0u32; self.columns * self.rows];
+        self.for_each_place(network, |cell, _| counts[cell] += 1);
+        let mut sum = 0;
+        for (start, count) in self.starts.iter_mut().zip(counts.iter().chain([&0])) {
+            *start = sum;
+            sum += count;
+        }
+        let mut items = vec![0; sum as usize];
+        let mut next = counts;
+        next.copy_from_slice(&self.starts[..self.starts.len() - 1]);
+        self.for_each_place(network, |cell, item| {
+            items[next[cell] as usize] = item;
+            next[cell] += 1;
+        });
+        self.items = items;
+        let mut fine = std::mem::take(&mut self.fine);
+        let size = [self.columns, self.rows].map(|count| count * FINE);
+        for segment in &network.segments {
+            let ends = network.places(segment).map(|end| self.local(end).map(|x| x * FINE as f64));
+            along(ends, size, |cell| fine[cell / 64] |= 1 << (cell % 64));
+        }
+        for vertex in &network.vertices {
+            let [column, row] = self.local(vertex.place).map(|x| (x * FINE as f64) as usize);
+            let cell = row.min(size[1] - 1) * size[0] + column.min(size[0] - 1);
+            fine[cell / 64] |= 1 << (cell % 64);
+        }
+        self.fine = fine;
+    }
+
+    fn for_each_place(&self, network: &Network, mut found: impl FnMut(usize, u32)) {
+        let size = [self.columns, self.rows];
+        for (number, segment) in (0..).zip(&network.segments) {
+            let ends = network.places(segment).map(|end| self.local(end));
+            along(ends, size, |cell| found(cell, number));
+        }
+        for (number, vertex) in (self.segments..).zip(&network.vertices) {
+            let [column, row] = self.local(vertex.place).map(|x| x as usize);
+            found(row.min(self.rows - 1) * self.columns + column.min(self.columns - 1), number);
+        }
+    }
+
+    /// Whether nothing is in a box; `None` if it has many cells.
+    #[inline]
+    pub(super) fn is_free(&self, bounds: &CellBox) -> Option<bool> {
+        let size = [self.columns, self.rows].map(|count| count * FINE);
+        let scaled =
+            CellBox { min: bounds.min.map(|x| x * FINE as f64), max: bounds.max.map(|x| x * FINE as f64) };
+        let Some([columns, rows]) = range(&scaled, size) else { return Some(true) };
+        if (columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) > 64 {
+            return None;
+        }
+        Some((rows[0]..=rows[1]).all(|row| {
+            (columns[0]..=columns[1]).all(|column| {
+                let cell = row * size[0] + column;
+                self.fine[cell / 64] >> (cell % 64) & 1 == 0
+            })
+        }))
+    }
+
+    /// Calls `found` with the items of all cells that meet a box and that `meets` accepts, some of them several
+    /// times. `meets` takes a box and may accept too much.
+    pub(super) fn for_each_in(
+        &self,
+        bounds: &CellBox,
+        meets: impl Fn(&CellBox) -> bool,
+        mut found: impl FnMut(Item),
+    ) {
+        let Some(range) = range(bounds, [self.columns, self.rows]) else { return };
+        self.pyramid.for_each_in(range, meets, |cell| {
+            for &item in &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize] {
+                found(match item.checked_sub(self.segments) {
+                    None => Item::Segment(item),
+                    Some(vertex) => Item::Vertex(vertex),
+                });
+            }
+        });
+    }
+}
+
+/// The columns and rows that a box meets; `None` if it is outside.
+#[inline]
+fn range(bounds: &CellBox, size: [usize; 2]) -> Option<[[usize; 2]; 2]> {
+    let mut ranges = [[0; 2]; 2];
+    for axis in 0..2 {
+        let [low, high] = [bounds.min[axis] - TOLERANCE, bounds.max[axis] + TOLERANCE];
+        if high < 0.0 || low > size[axis] as f64 {
+            return None;
+        }
+        // Conversions saturate: what is below zero or not a number becomes zero.
+        ranges[axis] = [low as usize, high as usize].map(|cell| cell.min(size[axis] - 1));
+    }
+    Some(ranges)
+}
+
+/// Calls `found` with all cells that a segment meets, and perhaps others beside it; row by row.
+fn along(ends: [Point2; 2], size: [usize; 2], mut found: impl FnMut(usize)) {
+    let Some([columns, rows]) = range(&CellBox::of(&ends), size) else { return };
+    let [lower, upper] = if ends[0][1] <= ends[1][1] { ends } else { [ends[1], ends[0]] };
+    let height = upper[1] - lower[1];
+    let x_at = |y: f64| {
+        let part = ((y - lower[1]) / height).clamp(0.0, 1.0);
+        lower[0] + part * (upper[0] - lower[0])
+    };
+    for row in rows[0]..=rows[1] {
+        let [mut first, mut last] = columns;
+        if height > 0.0 {
+            let xs = [row as f64 - TOLERANCE, (row + 1) as f64 + TOLERANCE].map(x_at);
+            let [low, high] = [xs[0].min(xs[1]) - TOLERANCE, xs[0].max(xs[1]) + TOLERANCE];
+            [first, last] = [first.max(low as usize), last.min(high as usize)];
+        }
+        (first..=last).for_each(|column| found(row * size[0] + column));
+    }
+}

@@ -1,0 +1,240 @@
+//! Breaklines in a triangle mesh that streams: segments become edges, and the rest stays Delaunay.
+//!
+//! A triangle of the Delaunay triangulation that no segment divides, and whose circle contains no new vertex, is a
+//! triangle of the constrained Delaunay triangulation, because its circle is empty of all vertices. Such triangles
+//! pass at once. The others wait (`held`) until all that they are triangulated anew with have come (`strip`).
+//!
+//! `near` says what of the lines a triangle meets, with the help of `cells`; `writing` makes patches.
+
+mod cells;
+mod held;
+mod near;
+mod pyramid;
+mod strip;
+mod writing;
+
+use std::io::{Read, Write};
+
+use held::{Held, Holding};
+use near::{Lines, Meeting};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
+use spmesh_model::network::Network;
+use spmesh_stream::{Coordinates, Event, Header, Kind, LiveVertices, Patch, StreamReader, StreamWriter};
+use writing::Writing;
+
+/// Counts of a run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Triangles of the input, and of the output.
+    pub triangles: [u64; 2],
+    /// Segments of the network.
+    pub segments: u64,
+    /// Segments that are not wholly edges because they leave the mesh.
+    pub open_segments: u64,
+    /// Vertices of the network that the mesh had.
+    pub found: u64,
+    /// Vertices of the network that were added to the mesh.
+    pub added: u64,
+    /// Vertices of the network outside of the mesh.
+    pub outside: u64,
+    /// Vertices of the mesh that took the elevation of a line.
+    pub raised: u64,
+    /// Triangles that waited.
+    pub held: u64,
+    /// Components of triangles that waited.
+    pub strips: u64,
+    /// The most triangles that waited at once.
+    pub held_max: u64,
+}
+
+/// Makes the segments of `network` edges of a triangle mesh, and writes the mesh to `output`. Calls `progress`
+/// with the number of vertices done.
+///
+/// Vertices of the network that the mesh does not have are added to it, if they are inside of its triangles.
+/// Those without an elevation get that of the surface there. Vertices that the mesh has take the elevation of
+/// the line, if it states one.
+///
+/// Memory: the network and its cells, about 60 bytes for a segment; live vertices; and triangles that wait.
+///
+/// # Errors
+/// Usage, if the input is no triangle mesh or is constrained already; malformed, if it breaks a rule or segments
+/// cross; I/O.
+pub fn constrain<R: Read, W: Write>(
+    reader: &mut StreamReader<R>,
+    network: &Network,
+    output: W,
+    mut progress: impl FnMut(u64),
+) -> Result<(W, Stats)> {
+    check(reader.header())?;
+    let header = header_of(reader.header(), network);
+    let mut filter = Filter {
+        lines: Lines::new(network),
+        holding: Holding::default(),
+        live: LiveVertices::new(),
+        writing: Writing::new(StreamWriter::new(output, header)?, network)?,
+        coordinates: reader.header().coordinates,
+        numbers: Vec::new(),
+        open: Vec::new(),
+        stats: Stats { segments: network.segments.len() as u64, ..Stats::default() },
+    };
+    while let Some(event) = reader.next_event()? {
+        match event {
+            Event::Patch(patch) => {
+                filter.patch(patch, reader.rows()).map_err(|error| reader.locate(error))?;
+                progress(reader.totals().vertices);
+            }
+            Event::End(totals) => return filter.end(totals.points, totals.merged),
+            _ => return Err(reader.locate(Error::usage("expected a mesh of triangles only"))),
+        }
+    }
+    Err(reader.locate(Error::malformed("the stream has no END")))
+}
+
+fn check(header: &Header) -> Result<()> {
+    if header.kind != Kind::TriangleMesh {
+        let name = header.kind.name();
+        return Err(Error::usage(format!(
+            "a stream of {name}, expected a triangle mesh, as spdelaunay2d writes it"
+        )));
+    }
+    Ok(())
+}
+
+/// The header of the output. Elevations of lines may be outside of the box of the mesh.
+fn header_of(header: &Header, network: &Network) -> Header {
+    let elevations = network.vertices.iter().filter_map(|vertex| vertex.z);
+    let bounds = header.bounds.map(|mut bounds| {
+        if header.has_elevation {
+            elevations.for_each(|z| {
+                bounds.min[2] = bounds.min[2].min(z);
+                bounds.max[2] = bounds.max[2].max(z);
+            });
+        }
+        bounds
+    });
+    Header { bounds, points: None, tree: None, ..header.clone() }
+}
+
+struct Filter<'n, W: Write> {
+    lines: Lines<'n>,
+    holding: Holding,
+    live: LiveVertices<Point>,
+    writing: Writing<W>,
+    coordinates: Coordinates,
+    stats: Stats,
+    /// For each local vertex of a patch its number in `holding`.
+    numbers: Vec<Option<u32>>,
+    /// Segments that are not wholly edges.
+    open: Vec<u32>,
+}
+
+impl<W: Write> Filter<'_, W> {
+    /// Passes on what no line changes, and writes the components that are whole now.
+    fn patch(&mut self, mut patch: Patch, rows: &[u8]) -> Result<()> {
+        self.raise(&mut patch);
+        self.numbers.clear();
+        self.numbers.resize(patch.new.len(), None);
+        self.numbers.extend(patch.imported.iter().map(|&id| self.holding.number(id)));
+        let sides = self.divide(&mut patch)?;
+        patch.finalized.retain(|&local| {
+            let number = self.numbers[local as usize];
+            number.into_iter().for_each(|number| self.holding.finalize(number));
+            number.is_none()
+        });
+        self.writing.patch(patch, sides, rows)?;
+        while let Some(triangles) = self.holding.take_whole() {
+            self.strip(&triangles)?;
+        }
+        self.writing.flush()
+    }
+
+    /// Gives new vertices on lines the elevation of the line.
+    fn raise(&mut self, patch: &mut Patch) {
+        for point in &mut patch.new {
+            let Some(vertex) = self.lines.vertex_at([point[0], point[1]]) else { continue };
+            self.lines.found[vertex as usize] = true;
+            self.stats.found += 1;
+            if let Some(z) = self.lines.network.vertices[vertex as usize].z
+                && z != point[2]
+            {
+                point[2] = z;
+                self.stats.raised += 1;
+            }
+        }
+    }
+
+    /// Takes the triangles that lines change out of a patch. Returns the sides of the others that are on
+    /// segments.
+    fn divide(&mut self, patch: &mut Patch) -> Result<Vec<[u32; 3]>> {
+        let locals = self.live.enter(patch, |_, point| point)?;
+        let mut sides = Vec::new();
+        let mut kept = 0;
+        for first in (0..patch.simplices.len()).step_by(3) {
+            let corners = [0, 1, 2].map(|corner| patch.simplices[first + corner]);
+            let places = corners.map(|local| {
+                let [x, y, _] = locals[local as usize].1;
+                [x, y]
+            });
+            let meeting = self.lines.meeting(places);
+            if let Some(meeting) = meeting.as_ref().filter(|meeting| !meeting.changes()) {
+                let on = (0..).zip(meeting.on);
+                sides.extend(on.filter_map(|(place, on)| Some([kept as u32 / 3, place, on?])));
+            }
+            match meeting.filter(Meeting::changes) {
+                Some(meeting) => {
+                    let numbers = corners.map(|local| {
+                        let (id, point) = locals[local as usize];
+                        *self.numbers[local as usize].get_or_insert_with(|| self.holding.enter(id, point))
+                    });
+                    self.holding.hold(numbers, meeting);
+                    self.stats.held += 1;
+                }
+                None => {
+                    patch.simplices[kept..kept + 3].copy_from_slice(&corners);
+                    kept += 3;
+                }
+            }
+        }
+        patch.simplices.truncate(kept);
+        Ok(sides)
+    }
+
+    /// Triangulates a component anew.
+    fn strip(&mut self, triangles: &[Held]) -> Result<()> {
+        let strip = strip::triangulate(triangles, &self.holding, &mut self.lines, &self.coordinates)?;
+        self.stats.strips += 1;
+        self.stats.added += strip.new.len() as u64;
+        self.open.extend(&strip.open);
+        let ids: Vec<u64> = strip.corners.iter().map(|&corner| self.holding.vertex(corner).id).collect();
+        let mut finalized = Vec::new();
+        for corner in triangles.iter().flat_map(|held| held.corners) {
+            let id = self.holding.vertex(corner).id;
+            if self.holding.release(corner) {
+                finalized.push(id);
+            }
+        }
+        self.writing.add(&ids, &finalized, &strip);
+        Ok(())
+    }
+
+    /// Ends the stream.
+    fn end(mut self, points: u64, merged: u64) -> Result<(W, Stats)> {
+        if !self.holding.is_empty() {
+            return Err(Error::malformed("vertices of the mesh are not finalized at its end"));
+        }
+        let network = self.lines.network;
+        let is_outside = |vertex: u32| !self.lines.found[vertex as usize];
+        let outside =
+            (0..).zip(&network.segments).filter(|(_, segment)| segment.ends.into_iter().any(is_outside));
+        self.open.extend(outside.map(|(number, _)| number));
+        self.open.sort_unstable();
+        self.open.dedup();
+        self.stats.open_segments = self.open.len() as u64;
+        self.stats.outside = network.vertices.len() as u64 - self.stats.found - self.stats.added;
+        self.stats.held_max = self.holding.triangles_max as u64;
+        self.stats.triangles[1] = self.writing.triangles();
+        let output = self.writing.end(&self.open, points + self.stats.added, merged)?;
+        Ok((output, self.stats))
+    }
+}

@@ -1,0 +1,247 @@
+//! What of a network a triangle meets.
+
+use super::cells::{CellBox, Cells, Item};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
+use spmesh_model::network::Network;
+use spmesh_model::points::Point2;
+use std::cmp::Ordering;
+
+/// A network with its cells.
+#[derive(Debug)]
+pub(super) struct Lines<'n> {
+    pub(super) network: &'n Network,
+    cells: Cells,
+    /// For each vertex of the network whether it is a vertex of the mesh.
+    pub(super) found: Vec<bool>,
+    predicates: FiniteFloatPredicates,
+    segments: Vec<u32>,
+    vertices: Vec<u32>,
+}
+
+/// How lines meet a triangle.
+#[derive(Debug, Default)]
+pub(super) struct Meeting {
+    /// Segments that have more than points in common with the triangle.
+    pub(super) segments: Vec<u32>,
+    /// For each side, opposite to the corner of the same place, whether a segment crosses it.
+    pub(super) is_crossed: [bool; 3],
+    /// The segments that whole sides are on.
+    pub(super) on: [Option<u32>; 3],
+    /// Whether a segment crosses the interior.
+    pub(super) is_divided: bool,
+    /// Vertices of the network inside of the circle.
+    pub(super) vertices: Vec<u32>,
+}
+
+impl Meeting {
+    /// Whether the triangle may not be one of the constrained triangulation.
+    pub(super) fn changes(&self) -> bool {
+        self.is_divided || !self.vertices.is_empty()
+    }
+}
+
+impl<'n> Lines<'n> {
+    pub(super) fn new(network: &'n Network) -> Lines<'n> {
+        Lines {
+            network,
+            cells: Cells::new(network),
+            found: vec![false; network.vertices.len()],
+            predicates: FiniteFloatPredicates::default(),
+            segments: Vec::new(),
+            vertices: Vec::new(),
+        }
+    }
+
+    /// The vertex of the network at a place.
+    pub(super) fn vertex_at(&self, place: Point2) -> Option<u32> {
+        let at = self.cells.local(place);
+        let bounds = CellBox { min: at, max: at };
+        if self.cells.is_free(&bounds) == Some(true) {
+            return None;
+        }
+        let vertices = &self.network.vertices;
+        let found = vertices.binary_search_by(|vertex| lexicographic(vertex.place, place));
+        found.ok().map(|number| number as u32)
+    }
+
+    /// What meets a triangle, whose corners are counterclockwise; `None` if nothing does.
+    pub(super) fn meeting(&mut self, corners: [Point2; 3]) -> Option<Meeting> {
+        self.collect(corners);
+        if self.segments.is_empty() && self.vertices.is_empty() {
+            return None;
+        }
+        let mut meeting = Meeting::default();
+        for number in std::mem::take(&mut self.segments) {
+            self.meet(corners, number, &mut meeting);
+        }
+        let [a, b, c] = corners;
+        for number in std::mem::take(&mut self.vertices) {
+            let place = self.network.vertices[number as usize].place;
+            let is_corner = corners.contains(&place);
+            if !is_corner && self.predicates.incircle_perturbed(a, b, c, place) == Sign::Positive {
+                meeting.vertices.push(number);
+            }
+        }
+        let is_any = !meeting.segments.is_empty() || !meeting.vertices.is_empty();
+        is_any.then_some(meeting)
+    }
+
+    /// Gathers segments near a triangle, and vertices near its circle.
+    #[inline]
+    fn collect(&mut self, corners: [Point2; 3]) {
+        let local = corners.map(|corner| self.cells.local(corner));
+        let (triangle, circle) = (CellBox::of(&local), Circle::of(corners, local[0], self.cells.scale()));
+        if self.cells.is_free(&triangle) == Some(true) && self.cells.is_free(&circle.bounds()) == Some(true) {
+            return;
+        }
+        let (segments, vertices, found) = (&mut self.segments, &mut self.vertices, &self.found);
+        self.cells.for_each_in(
+            &triangle,
+            |bounds| may_meet(local, bounds),
+            |item| match item {
+                Item::Segment(number) => segments.push(number),
+                Item::Vertex(_) => (),
+            },
+        );
+        self.cells.for_each_in(
+            &circle.bounds(),
+            |bounds| circle.may_meet(bounds),
+            |item| match item {
+                Item::Vertex(number) if !found[number as usize] => vertices.push(number),
+                _ => (),
+            },
+        );
+        for numbers in [segments, vertices] {
+            numbers.sort_unstable();
+            numbers.dedup();
+        }
+    }
+
+    /// Adds what a segment does to a triangle.
+    fn meet(&mut self, corners: [Point2; 3], number: u32, meeting: &mut Meeting) {
+        let [p, q] = self.network.places(&self.network.segments[number as usize]);
+        let turns = corners.map(|corner| self.predicates.orient2d(p, q, corner));
+        let is_beside = |sign| turns.iter().all(|&turn| turn == sign);
+        if is_beside(Sign::Positive) || is_beside(Sign::Negative) {
+            return;
+        }
+        let mut is_apart = turns.iter().all(|&turn| turn != Sign::Positive)
+            || turns.iter().all(|&turn| turn != Sign::Negative);
+        let mut is_crossed = [false; 3];
+        let mut touches = false;
+        for place in 0..3 {
+            let [u, v] = [1, 2].map(|turn| corners[(place + turn) % 3]);
+            let ends = [p, q].map(|end| self.predicates.orient2d(u, v, end));
+            // Both ends are outside of this side, or on its line.
+            is_apart |= ends.iter().all(|&end| end != Sign::Positive);
+            let [u_turn, v_turn] = [1, 2].map(|turn| turns[(place + turn) % 3]);
+            is_crossed[place] = u_turn != Sign::Zero && u_turn == v_turn.opposite() && {
+                ends[0] != Sign::Zero && ends[0] == ends[1].opposite()
+            };
+            if u_turn == Sign::Zero && v_turn == Sign::Zero {
+                touches |= overlap([u, v], [p, q]);
+                if is_between(u, [p, q]) && is_between(v, [p, q]) {
+                    meeting.on[place] = Some(number);
+                }
+            }
+        }
+        if !is_apart {
+            meeting.is_divided = true;
+            for (place, is_crossed) in is_crossed.into_iter().enumerate() {
+                meeting.is_crossed[place] |= is_crossed;
+            }
+        }
+        if touches || !is_apart {
+            meeting.segments.push(number);
+        }
+    }
+
+    /// Whether a place is in a triangle or on its border.
+    pub(super) fn is_in(&mut self, corners: [Point2; 3], place: Point2) -> bool {
+        let [a, b, c] = corners;
+        [[a, b], [b, c], [c, a]].iter().all(|&[u, v]| self.predicates.orient2d(u, v, place) != Sign::Negative)
+    }
+
+    /// Whether a place is on a segment.
+    pub(super) fn is_on(&mut self, number: u32, place: Point2) -> bool {
+        let [p, q] = self.network.places(&self.network.segments[number as usize]);
+        is_between(place, [p, q]) && self.predicates.orient2d(p, q, place) == Sign::Zero
+    }
+
+    pub(super) fn predicates(&mut self) -> &mut FiniteFloatPredicates {
+        &mut self.predicates
+    }
+}
+
+/// Whether a place on the line of a segment, whose first end is the lesser one, is on the segment.
+fn is_between(place: Point2, [p, q]: [Point2; 2]) -> bool {
+    lexicographic(p, place) != Ordering::Greater && lexicographic(place, q) != Ordering::Greater
+}
+
+/// Whether two parts of one line have more than a point in common.
+fn overlap(side: [Point2; 2], [p, q]: [Point2; 2]) -> bool {
+    let [low, high] =
+        if lexicographic(side[0], side[1]) == Ordering::Less { side } else { [side[1], side[0]] };
+    lexicographic(low, q) == Ordering::Less && lexicographic(p, high) == Ordering::Less
+}
+
+/// Whether a triangle may meet a box: no side has the whole box outside.
+fn may_meet(corners: [Point2; 3], bounds: &CellBox) -> bool {
+    (0..3).all(|from| {
+        let [u, v] = [corners[from], corners[(from + 1) % 3]];
+        let [along, up] = [v[0] - u[0], v[1] - u[1]];
+        // The corner of the box that is farthest to the left of the side.
+        let x = if up > 0.0 { bounds.min[0] } else { bounds.max[0] };
+        let y = if along > 0.0 { bounds.max[1] } else { bounds.min[1] };
+        let side = along * (y - u[1]) - up * (x - u[0]);
+        let size = along.abs() * (y - u[1]).abs() + up.abs() * (x - u[0]).abs();
+        side >= -1e-6 * (1.0 + size)
+    })
+}
+
+/// A circle that is a little larger than that of a triangle.
+#[derive(Debug, Clone, Copy)]
+struct Circle {
+    centre: Point2,
+    radius: f64,
+    /// Whether rounding errors are smaller than what was added to the radius.
+    is_certain: bool,
+}
+
+impl Circle {
+    /// The circle through the corners of a triangle, in units of cells; `at` is the first corner in these units.
+    fn of(corners: [Point2; 3], at: Point2, scale: f64) -> Circle {
+        let [a, b, c] = corners;
+        let [u, v] = [b, c].map(|p| [(p[0] - a[0]) * scale, (p[1] - a[1]) * scale]);
+        let twice = 2.0 * (u[0] * v[1] - u[1] * v[0]);
+        let [uu, vv] = [u, v].map(|p| p[0] * p[0] + p[1] * p[1]);
+        let x = (v[1] * uu - u[1] * vv) / twice;
+        let y = (u[0] * vv - v[0] * uu) / twice;
+        let radius = (x * x + y * y).sqrt();
+        // Differences of coordinates are off by a part of the coordinates, which matters more in flat triangles.
+        let ww = (u[0] - v[0]).powi(2) + (u[1] - v[1]).powi(2);
+        let shortest = uu.min(vv).min(ww);
+        let magnitude = a[0].abs().max(a[1].abs()) * scale;
+        let error = 1e-15 * (magnitude + radius) * radius / shortest;
+        Circle { centre: [at[0] + x, at[1] + y], radius: radius * 1.000_001 + 1e-6, is_certain: error < 1e-7 }
+    }
+
+    fn bounds(&self) -> CellBox {
+        if !self.is_certain {
+            return CellBox { min: [0.0; 2], max: [f64::INFINITY; 2] };
+        }
+        CellBox { min: self.centre.map(|x| x - self.radius), max: self.centre.map(|x| x + self.radius) }
+    }
+
+    fn may_meet(&self, bounds: &CellBox) -> bool {
+        if !self.is_certain {
+            return true;
+        }
+        let mut square = 0.0;
+        for axis in 0..2 {
+            let nearest = self.centre[axis].clamp(bounds.min[axis], bounds.max[axis]);
+            square += (self.centre[axis] - nearest).powi(2);
+        }
+        square <= self.radius * self.radius
+    }
+}

@@ -1,0 +1,215 @@
+//! Triangulates a component of waiting triangles anew.
+
+use super::held::{Held, Holding};
+use super::near::Lines;
+use foldhash::HashMap;
+use spmesh_core::error::Result;
+use spmesh_geometry::constrained2::{Host, Piece, Region};
+use spmesh_geometry::predicates::{Point2, lexicographic};
+use spmesh_model::bounds::Point;
+use spmesh_stream::Coordinates;
+
+/// A component of the constrained triangulation.
+#[derive(Debug, Default)]
+pub(super) struct Strip {
+    /// Numbers of its corners in [`Holding`].
+    pub(super) corners: Vec<u32>,
+    /// Vertices that the mesh did not have, and their numbers in the network; they come after the corners.
+    pub(super) new: Vec<(u32, Point)>,
+    /// Points are corners, then new vertices.
+    pub(super) pieces: Vec<Piece>,
+    /// Segments that leave the region before they reach a vertex.
+    pub(super) open: Vec<u32>,
+}
+
+/// The constrained triangulation of `triangles`.
+///
+/// Vertices with elevations come first, and the segments between them. The others take their elevation from this
+/// surface.
+///
+/// # Errors
+/// Malformed, if segments cross.
+pub(super) fn triangulate(
+    triangles: &[Held],
+    holding: &Holding,
+    lines: &mut Lines,
+    coordinates: &Coordinates,
+) -> Result<Strip> {
+    let mut work = Work::new(triangles, holding);
+    let mut region = Region::new(&work.places, &work.triangles);
+    let vertices = work.new_vertices(triangles, lines);
+    let z_of = |new: &New, lines: &Lines| lines.network.vertices[new.vertex as usize].z;
+    let (hard, soft): (Vec<New>, Vec<New>) = vertices.into_iter().partition(|new| z_of(new, lines).is_some());
+    for new in hard {
+        let z = z_of(&new, lines).expect("the vertex has an elevation");
+        work.add(&new, z, lines, &mut region);
+    }
+    if !soft.is_empty() {
+        let mut parts = work.parts(triangles, lines);
+        parts.retain(|part| part.is_hard);
+        work.constrain(&parts, lines, &mut region)?;
+        let elevations: Vec<f64> =
+            soft.iter().map(|new| work.elevation(new, lines, &region, coordinates)).collect();
+        for (new, z) in soft.iter().zip(elevations) {
+            work.add(new, z, lines, &mut region);
+        }
+    }
+    let parts = work.parts(triangles, lines);
+    work.constrain(&parts, lines, &mut region)?;
+    Ok(Strip { corners: work.corners, new: work.new, pieces: region.pieces().collect(), open: work.open })
+}
+
+/// A vertex to be inserted.
+struct New {
+    vertex: u32,
+    /// The triangle that it is in.
+    triangle: u32,
+}
+
+/// A segment, and the points of the region on it.
+struct Part {
+    segment: u32,
+    on: Vec<u32>,
+    is_hard: bool,
+}
+
+/// The points of a region.
+struct Work {
+    corners: Vec<u32>,
+    places: Vec<Point2>,
+    elevations: Vec<f64>,
+    triangles: Vec<[u32; 3]>,
+    new: Vec<(u32, Point)>,
+    /// The points of new vertices.
+    points: HashMap<u32, u32>,
+    open: Vec<u32>,
+}
+
+impl Work {
+    fn new(triangles: &[Held], holding: &Holding) -> Work {
+        let mut corners: Vec<u32> = triangles.iter().flat_map(|held| held.corners).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        let point = |&corner: &u32| holding.vertex(corner).point;
+        let local = |corner: u32| corners.binary_search(&corner).expect("a corner of a triangle") as u32;
+        Work {
+            places: corners.iter().map(point).map(|[x, y, _]| [x, y]).collect(),
+            elevations: corners.iter().map(point).map(|[_, _, z]| z).collect(),
+            triangles: triangles.iter().map(|held| held.corners.map(local)).collect(),
+            corners,
+            new: Vec::new(),
+            points: HashMap::default(),
+            open: Vec::new(),
+        }
+    }
+
+    fn places_of(&self, triangle: u32) -> [Point2; 3] {
+        self.triangles[triangle as usize].map(|point| self.places[point as usize])
+    }
+
+    /// The vertices of the network that are in triangles of the region, in their order.
+    fn new_vertices(&self, triangles: &[Held], lines: &mut Lines) -> Vec<New> {
+        let mut vertices: Vec<New> = Vec::new();
+        for (triangle, held) in (0..).zip(triangles) {
+            for &vertex in &held.vertices {
+                let place = lines.network.vertices[vertex as usize].place;
+                if lines.is_in(self.places_of(triangle), place) {
+                    vertices.push(New { vertex, triangle });
+                }
+            }
+        }
+        // A vertex on an edge is in both of its triangles.
+        vertices.sort_unstable_by_key(|new| (new.vertex, new.triangle));
+        vertices.dedup_by_key(|new| new.vertex);
+        vertices
+    }
+
+    /// Inserts a vertex with its elevation.
+    fn add(&mut self, new: &New, z: f64, lines: &mut Lines, region: &mut Region) {
+        let place = lines.network.vertices[new.vertex as usize].place;
+        let number = self.places.len() as u32;
+        self.places.push(place);
+        self.elevations.push(z);
+        self.new.push((new.vertex, [place[0], place[1], z]));
+        self.points.insert(new.vertex, number);
+        lines.found[new.vertex as usize] = true;
+        region.insert(number, place, new.triangle, lines.predicates());
+    }
+
+    /// The segments in the region, with the points on them.
+    fn parts(&self, triangles: &[Held], lines: &mut Lines) -> Vec<Part> {
+        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        for (held, corners) in triangles.iter().zip(&self.triangles) {
+            for &segment in &held.segments {
+                let on = corners.iter().filter(|&&corner| lines.is_on(segment, self.places[corner as usize]));
+                pairs.extend(on.map(|&corner| [segment, corner]));
+                if !self.points.is_empty() {
+                    let ends = lines.network.segments[segment as usize].ends;
+                    let new = ends.iter().filter_map(|end| self.points.get(end));
+                    pairs.extend(new.map(|&point| [segment, point]));
+                }
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        let parts = pairs.chunk_by(|a, b| a[0] == b[0]).map(|pairs| {
+            let segment = pairs[0][0];
+            let ends = lines.network.segments[segment as usize].ends;
+            let is_hard = ends.iter().all(|&end| lines.network.vertices[end as usize].z.is_some());
+            Part { segment, on: pairs.iter().map(|pair| pair[1]).collect(), is_hard }
+        });
+        parts.collect()
+    }
+
+    fn constrain(&mut self, parts: &[Part], lines: &mut Lines, region: &mut Region) -> Result<()> {
+        for part in parts {
+            let [_, to] = lines.network.places(&lines.network.segments[part.segment as usize]);
+            if region.constrain(part.segment, to, &part.on, lines.predicates())? {
+                self.open.push(part.segment);
+            }
+        }
+        Ok(())
+    }
+
+    /// The elevation of the surface at a vertex. It does not depend on the order of triangles and corners.
+    fn elevation(&self, new: &New, lines: &mut Lines, region: &Region, coordinates: &Coordinates) -> f64 {
+        let place = lines.network.vertices[new.vertex as usize].place;
+        let mut points = match region.host(place, new.triangle, lines.predicates()) {
+            Host::Point(point) => return self.elevations[point as usize],
+            Host::Edge(points) => points.to_vec(),
+            Host::Triangle(points) => points.to_vec(),
+        };
+        points.sort_by(|&a, &b| lexicographic(self.places[a as usize], self.places[b as usize]));
+        let z = match points[..] {
+            [a, b] => self.along([a, b], place),
+            [a, b, c] => self.within([a, b, c], place),
+            _ => unreachable!("an edge or a triangle"),
+        };
+        match coordinates {
+            Coordinates::F64 => z,
+            Coordinates::I32 { .. } => z.round(),
+        }
+    }
+
+    fn difference(&self, from: u32, to: Point2) -> Point2 {
+        let from = self.places[from as usize];
+        [to[0] - from[0], to[1] - from[1]]
+    }
+
+    /// The elevation on an edge.
+    fn along(&self, [a, b]: [u32; 2], place: Point2) -> f64 {
+        let (whole, part) = (self.difference(a, self.places[b as usize]), self.difference(a, place));
+        let axis = usize::from(whole[1].abs() > whole[0].abs());
+        let [low, high] = [a, b].map(|point| self.elevations[point as usize]);
+        low + (high - low) * (part[axis] / whole[axis])
+    }
+
+    /// The elevation in a triangle.
+    fn within(&self, [a, b, c]: [u32; 3], place: Point2) -> f64 {
+        let [u, v] = [b, c].map(|point| self.difference(a, self.places[point as usize]));
+        let w = self.difference(a, place);
+        let cross = |p: Point2, q: Point2| p[0] * q[1] - p[1] * q[0];
+        let [low, second, third] = [a, b, c].map(|point| self.elevations[point as usize]);
+        low + ((second - low) * cross(w, v) + (third - low) * cross(u, w)) / cross(u, v)
+    }
+}

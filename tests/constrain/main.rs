@@ -1,0 +1,4 @@
+//! Lines in triangle meshes that stream, against the definition.
+
+mod definition;
+mod scene;

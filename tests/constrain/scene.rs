@@ -1,0 +1,169 @@
+//! Random points with lines between them, as streams in any order.
+
+use spmesh_constrain::{Stats, constrain};
+use spmesh_geometry::delaunay2::triangulate;
+use spmesh_model::network::{Network, NetworkSegment, NetworkVertex};
+use spmesh_reference::sets::{Random, as_floats};
+use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, StreamWriter};
+use std::collections::BTreeMap;
+
+/// Points, segments between them that do not cross, and how many of the points are in the mesh at first.
+pub struct Scene {
+    pub points: Vec<[i64; 2]>,
+    pub segments: Vec<[u32; 2]>,
+    pub first: usize,
+}
+
+fn turn(p: [i64; 2], q: [i64; 2], r: [i64; 2]) -> i64 {
+    ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])).signum()
+}
+
+/// Whether a point lies on a segment.
+fn is_on([p, q]: [[i64; 2]; 2], x: [i64; 2]) -> bool {
+    let dot = (p[0] - x[0]) * (q[0] - x[0]) + (p[1] - x[1]) * (q[1] - x[1]);
+    turn(p, q, x) == 0 && dot <= 0
+}
+
+/// Whether two segments have more in common than ends of both.
+fn collide(s: [[i64; 2]; 2], t: [[i64; 2]; 2]) -> bool {
+    let crosses = turn(s[0], s[1], t[0]) * turn(s[0], s[1], t[1]) < 0
+        && turn(t[0], t[1], s[0]) * turn(t[0], t[1], s[1]) < 0;
+    let touches = |s: [[i64; 2]; 2], t: [[i64; 2]; 2]| s.iter().any(|&x| is_on(t, x) && !t.contains(&x));
+    crosses || touches(s, t) || touches(t, s) || (s.contains(&t[0]) && s.contains(&t[1]))
+}
+
+/// The surface without lines.
+pub fn elevation([x, y]: [i64; 2]) -> f64 {
+    (2 * x - 3 * y + 5) as f64
+}
+
+/// The elevation of lines that have one.
+pub const LINE: f64 = 1000.0;
+
+impl Scene {
+    pub fn random(random: &mut Random, points: Vec<[i64; 2]>, most: usize) -> Scene {
+        let mut segments: Vec<[u32; 2]> = Vec::new();
+        let at = |ends: [u32; 2]| ends.map(|end| points[end as usize]);
+        for _ in 0..4 * most {
+            let ends = [0; 2].map(|_| random.integer(0, points.len() as i64 - 1) as u32);
+            let collides = segments.iter().any(|&other| collide(at(other), at(ends)));
+            if segments.len() < most && ends[0] != ends[1] && !collides {
+                segments.push(ends);
+            }
+        }
+        Scene { first: points.len(), points, segments }
+    }
+
+    /// Leaves out segments with a point amid them that the mesh does not have: the point would divide them.
+    pub fn with_first(mut self, first: usize) -> Scene {
+        self.first = first;
+        let (points, segments) = (&self.points, &mut self.segments);
+        segments.retain(|ends| {
+            let at = ends.map(|end| points[end as usize]);
+            points[first..].iter().all(|&x| !is_on(at, x) || at.contains(&x))
+        });
+        self
+    }
+
+    /// The segments, and the points that the mesh does not have; those that `is_hard` accepts have elevations.
+    pub fn network(&self, is_hard: impl Fn(u32) -> bool) -> Network {
+        let in_segments = self.segments.iter().flatten().copied();
+        let mut used: Vec<u32> = in_segments.chain(self.first as u32..self.points.len() as u32).collect();
+        used.sort_unstable_by_key(|&point| self.points[point as usize]);
+        used.dedup();
+        let vertex = |&point: &u32| NetworkVertex {
+            place: self.points[point as usize].map(|c| c as f64),
+            z: is_hard(point).then_some(LINE),
+        };
+        let number = |point: u32| used.iter().position(|&other| other == point).unwrap() as u32;
+        let mut segments: Vec<NetworkSegment> = (0..)
+            .zip(&self.segments)
+            .map(|(line, ends)| {
+                let mut ends = ends.map(number);
+                ends.sort_unstable();
+                NetworkSegment { ends, line }
+            })
+            .collect();
+        segments.sort_unstable_by_key(|segment| segment.ends);
+        Network { vertices: used.iter().map(vertex).collect(), segments }
+    }
+
+    /// The Delaunay triangulation of the first points as a stream: triangles in any order, in patches of any
+    /// size.
+    pub fn stream(&self, random: &mut Random) -> Vec<u8> {
+        let mesh = triangulate(&as_floats(&self.points[..self.first])).unwrap();
+        let mut triangles: Vec<[u32; 3]> = mesh.simplices().collect();
+        random.shuffle(&mut triangles);
+        let mut uses = vec![0; self.first];
+        triangles.iter().flatten().for_each(|&vertex| uses[vertex as usize] += 1);
+        let mut ids: Vec<Option<u64>> = vec![None; self.first];
+        let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
+        let mut writer =
+            StreamWriter::new(Vec::new(), Header::new(Kind::TriangleMesh, grid, 2, true)).unwrap();
+        let mut next = 0;
+        while !triangles.is_empty() {
+            let count = (random.integer(1, 9) as usize).min(triangles.len());
+            let part: Vec<[u32; 3]> = triangles.drain(..count).collect();
+            let mut patch = Patch { first_id: next, ..Patch::default() };
+            let mut vertices: Vec<u32> = part.iter().flatten().copied().collect();
+            vertices.sort_unstable();
+            vertices.dedup();
+            for &vertex in vertices.iter().filter(|&&vertex| ids[vertex as usize].is_none()) {
+                let [x, y] = self.points[vertex as usize];
+                patch.new.push([x as f64, y as f64, elevation([x, y])]);
+            }
+            let known = vertices.iter().filter_map(|&vertex| ids[vertex as usize]);
+            patch.imported = known.collect();
+            patch.imported.sort_unstable();
+            for &vertex in &vertices {
+                let id = &mut ids[vertex as usize];
+                if id.is_none() {
+                    *id = Some(next);
+                    next += 1;
+                }
+            }
+            let local = |vertex: u32| {
+                let id = ids[vertex as usize].unwrap();
+                let imported = || patch.new.len() as u64 + patch.imported.binary_search(&id).unwrap() as u64;
+                id.checked_sub(patch.first_id).unwrap_or_else(imported) as u32
+            };
+            patch.simplices = part.iter().flatten().map(|&vertex| local(vertex)).collect();
+            part.iter().flatten().for_each(|&vertex| uses[vertex as usize] -= 1);
+            patch.finalized =
+                vertices.iter().filter(|&&vertex| uses[vertex as usize] == 0).map(|&v| local(v)).collect();
+            patch.finalized.sort_unstable();
+            writer.patch(&patch).unwrap();
+        }
+        writer.end(next, 0).unwrap()
+    }
+}
+
+/// A mesh with lines: triangles by places, and elevations.
+pub struct Constrained {
+    pub triangles: Vec<[[i64; 2]; 3]>,
+    pub elevations: BTreeMap<[i64; 2], f64>,
+    pub stats: Stats,
+}
+
+/// Runs the filter, and checks that its output is a stream that finalizes all vertices.
+pub fn run(stream: &[u8], network: &Network) -> Constrained {
+    let mut reader = StreamReader::new(stream, "mesh").unwrap();
+    let (bytes, stats) = constrain(&mut reader, network, Vec::new(), |_| ()).unwrap();
+    let mut reader = StreamReader::new(&bytes[..], "constrained").unwrap();
+    let mut rules = spmesh_stream::MemoryRules::new(reader.header());
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    let mut triangles = Vec::new();
+    while let Some(event) = reader.next_event().unwrap() {
+        rules.check(&event).unwrap();
+        if let Event::Patch(patch) = event {
+            points.extend(&patch.new);
+            let ids = patch.triangles().map(|corners| corners.map(|local| patch.id(local) as usize));
+            triangles.extend(ids);
+        }
+    }
+    let place = |id: usize| [points[id][0] as i64, points[id][1] as i64];
+    let elevations: BTreeMap<[i64; 2], f64> =
+        (0..points.len()).map(|id| (place(id), points[id][2])).collect();
+    assert_eq!(elevations.len(), points.len(), "no place twice");
+    Constrained { triangles: triangles.into_iter().map(|ids| ids.map(place)).collect(), elevations, stats }
+}
