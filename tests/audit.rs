@@ -118,6 +118,7 @@ impl Mesh {
                     imported: if i == 0 { Vec::new() } else { used.iter().map(|&v| v as u64).collect() },
                     simplices: triangles.iter().flatten().map(local).collect(),
                     finalized: used.iter().filter(|&&v| last_use(v) == i).map(local).collect(),
+                    ..Patch::default()
                 })
                 .unwrap();
         }

@@ -63,6 +63,8 @@ fn write_rows(header: &Header, events: &[Event], rows: &[Vec<u8>]) -> Result<Vec
             Event::Configurations(block) => writer.configurations(block)?,
             Event::Functions(functions) => writer.functions(functions)?,
             Event::Coefficients(coefficients) => writer.coefficients(coefficients)?,
+            Event::Segments(segments) => writer.segments(segments)?,
+            Event::OpenSegments(open) => writer.open_segments(open)?,
             Event::End(totals) => return writer.end(totals.points, totals.merged),
         }
     }
@@ -81,6 +83,8 @@ fn joined(events: Vec<Event>) -> Vec<Event> {
             (Some(Event::Labels(before)), Event::Labels(labels)) => before.extend(labels),
             (Some(Event::ResidualPoints(before)), Event::ResidualPoints(points)) => before.extend(points),
             (Some(Event::Walls(before)), Event::Walls(walls)) => before.extend(walls),
+            (Some(Event::Segments(before)), Event::Segments(segments)) => before.extend(segments),
+            (Some(Event::OpenSegments(before)), Event::OpenSegments(open)) => before.extend(open),
             (Some(Event::Points4(before)), Event::Points4(points)) => four::extend(before, points),
             (Some(Event::Cells4(before)), Event::Cells4(cells)) => {
                 cells.iter().for_each(|cell| before.push(cell))
@@ -100,6 +104,8 @@ fn joined(events: Vec<Event>) -> Vec<Event> {
             (_, Event::Functions(functions)) if functions.is_empty() => {}
             (_, Event::ResidualPoints(points)) if points.is_empty() => {}
             (_, Event::Walls(walls)) if walls.is_empty() => {}
+            (_, Event::Segments(segments)) if segments.is_empty() => {}
+            (_, Event::OpenSegments(open)) if open.is_empty() => {}
             (_, event) => result.push(event),
         }
     }

@@ -1,6 +1,7 @@
 //! Counts the content of a stream.
 
 use super::inventory_configurations::ConfigurationInventory;
+use super::inventory_constraints::ConstraintInventory;
 use super::inventory4::Inventory4;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
@@ -24,6 +25,7 @@ pub struct Inventory {
     /// The content of four dimensions.
     four: Inventory4,
     configurations: ConfigurationInventory,
+    constraints: ConstraintInventory,
 }
 
 /// Size of a patch.
@@ -65,6 +67,7 @@ impl Inventory {
             run: 0,
             four: Inventory4::default(),
             configurations: ConfigurationInventory::default(),
+            constraints: ConstraintInventory::default(),
         }
     }
 
@@ -84,7 +87,11 @@ impl Inventory {
                 self.totals.cells += cells.len() as u64;
                 self.end_run();
             }
-            Event::Patch(patch) => self.patch(patch),
+            Event::Patch(patch) => {
+                self.patch(patch);
+                self.constraints.event(event);
+            }
+            Event::Segments(_) | Event::OpenSegments(_) => self.constraints.event(event),
             Event::Labels(labels) => self.labels += labels.len() as u64,
             Event::ResidualPoints(points) => {
                 self.extend(points.iter().map(|&(_, point)| point));
@@ -116,6 +123,12 @@ impl Inventory {
     #[must_use]
     pub fn configurations(&self) -> &ConfigurationInventory {
         &self.configurations
+    }
+
+    /// What constrains a triangle mesh.
+    #[must_use]
+    pub fn constraints(&self) -> &ConstraintInventory {
+        &self.constraints
     }
 
     /// Bounding box of all points, in stored coordinates, of two or three dimensions.

@@ -47,6 +47,7 @@ mod hull;
 mod inventory;
 mod inventory4;
 mod inventory_configurations;
+mod inventory_constraints;
 mod mesh;
 mod partial;
 mod partial_triangles;
@@ -64,6 +65,7 @@ mod winding;
 pub use check::{Check, CheckLine, Violation};
 pub use inventory::{CellPoints, Inventory, PatchSize};
 pub use inventory_configurations::{ConfigurationInventory, DegreeInventory};
+pub use inventory_constraints::ConstraintInventory;
 pub use inventory4::Inventory4;
 pub use point_set::PointSet;
 pub use tetrahedra::{Census, Counts, Faults};
@@ -179,6 +181,7 @@ impl Audit {
             (State::Points(audit), Event::Cells(cells)) => audit.cells(cells, ledger),
             (State::Points(audit), Event::End(totals)) => audit.end(totals, ledger),
             (State::Mesh(audit), Event::Patch(patch)) => audit.patch(patch, ledger),
+            (State::Mesh(_), Event::Segments(_) | Event::OpenSegments(_)) => Ok(()),
             (State::Mesh(audit), Event::End(totals)) => audit.end(totals, ledger),
             (State::Partial(audit), event) => audit.event(event, ledger),
             (State::PartialTetrahedra(audit), event) => audit.event(event, ledger),

@@ -21,6 +21,9 @@ pub const CELL_WORDS_MAX: u64 = 1 << 31;
 /// twin.
 pub const CONFIGURATION_DEGREE_MAX: u32 = 1 << 12;
 
+/// Most segments of a constrained mesh: sides of triangles name them in 32 bits.
+pub const SEGMENTS_MAX: u64 = 1 << 32;
+
 /// Longest line of a text input, in bytes.
 pub const TEXT_LINE_MAX: usize = 1 << 16;
 

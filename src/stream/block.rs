@@ -27,10 +27,13 @@ pub(super) enum Tag {
     Functions,
     Coefficients,
     Rows,
+    Segments,
+    Sides,
+    OpenSegments,
     End,
 }
 
-const NAMES: [(Tag, TagBytes); 14] = [
+const NAMES: [(Tag, TagBytes); 17] = [
     (Tag::Points, *b"PNTS"),
     (Tag::Cells, *b"CELL"),
     (Tag::Patch, *b"PTCH"),
@@ -44,10 +47,18 @@ const NAMES: [(Tag, TagBytes); 14] = [
     (Tag::Functions, *b"FUNC"),
     (Tag::Coefficients, *b"COEF"),
     (Tag::Rows, *b"attp"),
+    (Tag::Segments, *b"segm"),
+    (Tag::Sides, *b"side"),
+    (Tag::OpenSegments, *b"open"),
     (Tag::End, *b"END "),
 ];
 
 impl Tag {
+    /// Whether only a constrained mesh has such blocks.
+    pub(super) fn is_of_constraints(self) -> bool {
+        matches!(self, Tag::Segments | Tag::Sides | Tag::OpenSegments)
+    }
+
     pub(super) fn bytes(self) -> TagBytes {
         NAMES.iter().find(|(tag, _)| *tag == self).expect("every tag has its name").1
     }

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use super::constraints::Constrained;
 use super::coordinates::{Coordinates, is_grid};
 use super::kind::Kind;
 use spmesh_core::limits::PRODUCER_LEN_MAX;
@@ -62,6 +63,9 @@ pub struct Header {
     /// What points carry beside their coordinates. A program that makes a stream from another either passes
     /// attributes on or states none.
     pub attributes: Attributes,
+    /// How a triangle mesh is constrained; `None` if it is not. A program that makes a mesh from another either
+    /// passes segments and sides on or states none.
+    pub constrained: Option<Constrained>,
     /// Program and version that wrote the stream.
     pub producer: String,
 }
@@ -83,6 +87,7 @@ impl Header {
             compressed: false,
             crs: Crs::Unknown,
             attributes: Attributes::default(),
+            constrained: None,
             producer: concat!("spmesh ", env!("CARGO_PKG_VERSION")).to_string(),
         }
     }
@@ -134,6 +139,9 @@ impl Header {
         check_tree(self.kind, self.tree.is_some())?;
         if !self.attributes.is_empty() && !self.kind.may_have_attributes() {
             return Err(format!("a stream of kind {} has no attributes", self.kind.name()));
+        }
+        if let Some(constrained) = self.constrained {
+            constrained.check(self.kind)?;
         }
         if self.chunked && (self.kind != Kind::Points || self.tree.is_none()) {
             return Err("only points with a finalization tree can be chunked".into());

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::attribute_code::{decode_attributes, encode_attributes};
+use super::constraints::Constrained;
 use super::coordinates::Coordinates;
 use super::header::{COUNT_UNKNOWN, Crs, Header, check_tree};
 use super::kind::Kind;
@@ -50,7 +51,7 @@ struct Row {
 const GRID: TagBytes = *b"GRID";
 
 /// All records that this version knows, in the order in which they are written.
-const ROWS: [Row; 8] = [
+const ROWS: [Row; 9] = [
     Row { tag: GRID, encode: encode_grid, decode: decode_grid },
     Row { tag: *b"BBOX", encode: encode_bounds, decode: decode_bounds },
     Row { tag: *b"TREE", encode: encode_tree, decode: decode_tree },
@@ -58,6 +59,7 @@ const ROWS: [Row; 8] = [
     Row { tag: *b"cWKT", encode: encode_wkt, decode: decode_wkt },
     Row { tag: *b"cGEO", encode: encode_geo_keys, decode: decode_geo_keys },
     Row { tag: *b"attr", encode: encode_attributes, decode: decode_attributes },
+    Row { tag: *b"cons", encode: Constrained::encode, decode: Constrained::decode },
     Row { tag: *b"prod", encode: encode_producer, decode: decode_producer },
 ];
 

@@ -35,9 +35,8 @@ struct Row {
     name: &'static str,
     dims: &'static [u8],
     vertices_per_simplex: usize,
-    blocks: &'static [Tag],
-    /// Whether all blocks of a tag must come before those of the next tag in `blocks`.
-    is_ordered: bool,
+    /// Blocks in groups: all blocks of a group come before those of the next one, in any order.
+    blocks: &'static [&'static [Tag]],
 }
 
 const ROWS: [Row; 10] = [
@@ -47,8 +46,7 @@ const ROWS: [Row; 10] = [
         name: "points",
         dims: &[2, 3],
         vertices_per_simplex: 0,
-        blocks: &[Tag::Points, Tag::Cells],
-        is_ordered: false,
+        blocks: &[&[Tag::Points, Tag::Cells]],
     },
     Row {
         kind: Kind::TriangleMesh,
@@ -56,8 +54,7 @@ const ROWS: [Row; 10] = [
         name: "triangle mesh",
         dims: &[2],
         vertices_per_simplex: 3,
-        blocks: &[Tag::Patch],
-        is_ordered: true,
+        blocks: &[&[Tag::Segments, Tag::Sides, Tag::Patch], &[Tag::OpenSegments]],
     },
     Row {
         kind: Kind::PartialTriangleMesh,
@@ -65,8 +62,7 @@ const ROWS: [Row; 10] = [
         name: "partial triangle mesh",
         dims: &[2],
         vertices_per_simplex: 3,
-        blocks: &[Tag::Patch, Tag::ResidualPoints, Tag::Walls],
-        is_ordered: true,
+        blocks: &[&[Tag::Patch], &[Tag::ResidualPoints], &[Tag::Walls]],
     },
     Row {
         kind: Kind::TetrahedralMesh,
@@ -74,8 +70,7 @@ const ROWS: [Row; 10] = [
         name: "tetrahedral mesh",
         dims: &[3],
         vertices_per_simplex: 4,
-        blocks: &[Tag::Patch, Tag::Labels],
-        is_ordered: false,
+        blocks: &[&[Tag::Patch, Tag::Labels]],
     },
     Row {
         kind: Kind::Points4,
@@ -83,8 +78,7 @@ const ROWS: [Row; 10] = [
         name: "points in 4 dimensions",
         dims: &[4],
         vertices_per_simplex: 0,
-        blocks: &[Tag::Points4],
-        is_ordered: true,
+        blocks: &[&[Tag::Points4]],
     },
     Row {
         kind: Kind::Cells4,
@@ -92,8 +86,7 @@ const ROWS: [Row; 10] = [
         name: "cells in 4 dimensions",
         dims: &[4],
         vertices_per_simplex: 0,
-        blocks: &[Tag::Points4, Tag::Cells4],
-        is_ordered: true,
+        blocks: &[&[Tag::Points4], &[Tag::Cells4]],
     },
     Row {
         kind: Kind::Simplices4,
@@ -101,8 +94,7 @@ const ROWS: [Row; 10] = [
         name: "simplices in 4 dimensions",
         dims: &[4],
         vertices_per_simplex: 0,
-        blocks: &[Tag::Points4, Tag::Simplices4],
-        is_ordered: true,
+        blocks: &[&[Tag::Points4], &[Tag::Simplices4]],
     },
     Row {
         kind: Kind::Configurations,
@@ -110,8 +102,7 @@ const ROWS: [Row; 10] = [
         name: "configurations",
         dims: &[2],
         vertices_per_simplex: 0,
-        blocks: &[Tag::Points, Tag::Configurations, Tag::Functions],
-        is_ordered: true,
+        blocks: &[&[Tag::Points], &[Tag::Configurations], &[Tag::Functions]],
     },
     Row {
         kind: Kind::Splines,
@@ -119,8 +110,7 @@ const ROWS: [Row; 10] = [
         name: "splines",
         dims: &[2],
         vertices_per_simplex: 0,
-        blocks: &[Tag::Points, Tag::Configurations, Tag::Functions, Tag::Coefficients],
-        is_ordered: true,
+        blocks: &[&[Tag::Points], &[Tag::Configurations], &[Tag::Functions], &[Tag::Coefficients]],
     },
     Row {
         kind: Kind::PartialTetrahedralMesh,
@@ -128,8 +118,7 @@ const ROWS: [Row; 10] = [
         name: "partial tetrahedral mesh",
         dims: &[3],
         vertices_per_simplex: 4,
-        blocks: &[Tag::Patch, Tag::ResidualPoints, Tag::Walls],
-        is_ordered: true,
+        blocks: &[&[Tag::Patch], &[Tag::ResidualPoints], &[Tag::Walls]],
     },
 ];
 
@@ -189,7 +178,7 @@ impl Kind {
     /// Whether the stream is the mesh of a region, with a residual that is merged with others.
     #[must_use]
     pub fn is_partial(self) -> bool {
-        self.row().blocks.contains(&Tag::Walls)
+        self.row().blocks.contains(&&[Tag::Walls][..])
     }
 
     /// Whether the header may have a finalization tree.
@@ -218,10 +207,9 @@ impl Kind {
 
     /// Whether a block of tag `tag` may follow one of tag `last` (`None` at the start) in such a stream.
     pub(super) fn allows(self, last: Option<Tag>, tag: Tag) -> bool {
-        let Row { blocks, is_ordered, .. } = self.row();
-        let rank = |tag: Tag| blocks.iter().position(|&block| block == tag);
+        let rank = |tag: Tag| self.row().blocks.iter().position(|group| group.contains(&tag));
         match (rank(tag), last.and_then(rank)) {
-            (Some(rank), Some(last)) => !is_ordered || last <= rank,
+            (Some(rank), Some(last)) => last <= rank,
             (Some(_), None) => true,
             (None, _) => tag == Tag::End,
         }

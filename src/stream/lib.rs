@@ -13,6 +13,8 @@
 //! - [`LiveVertices`] and [`FinalizedCells`] keep what a consumer needs between events: vertices that later
 //!   patches may still use, and cells that no later point lies in. [`MemoryRules`] checks with both what the
 //!   reader alone cannot check.
+//! - A triangle mesh may be [`Constrained`]: [`Segment`]s are then chains of its edges, which the sides of
+//!   [`Patch`]es name.
 //! - [`ConfigurationSet`] and [`read_diagram4`] hold whole streams in memory, for consumers that need all at
 //!   once.
 //!
@@ -59,6 +61,7 @@ mod compression;
 mod configuration_rules;
 mod configuration_set;
 mod configurations;
+mod constraints;
 mod coordinates;
 mod decimals;
 mod diagram4;
@@ -86,6 +89,7 @@ mod writer;
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;
 pub use configurations::{check_degree, claim_from_name, claim_name};
+pub use constraints::{Constrained, Segment};
 pub use coordinates::Coordinates;
 pub use diagram4::{Diagram4Collector, read_diagram4};
 pub use event::{Event, Patch, Totals};

@@ -247,6 +247,7 @@ mod tests {
             imported: vec![0, 1, 2, 3, 4],
             simplices: vec![0, 1, 2, 3, 4, 5, 0, 1],
             finalized: vec![0, 1, 2, 3, 4, 5],
+            ..Patch::default()
         };
         let (code, mut blocks) = (PointCode::of(&header), PatchBlocks::default());
         for patch in [&first, &second] {

@@ -112,6 +112,7 @@ pub(super) fn patch(header: &Header, vertices_before: u64, bytes: &[u8]) -> Resu
         imported: imported.chunks_exact(8).map(LE::read_u64).collect(),
         simplices: locals(simplices),
         finalized: locals(finalized),
+        sides: Vec::new(),
     };
     patch.check(vertices_before, per_simplex)?;
     Ok(patch)

@@ -9,7 +9,8 @@ use super::block::{FRAME_LEN, Frame, Tag};
 use super::cell_words::CellWords;
 use super::compression::Decompressor;
 use super::configurations::ConfigurationBlock;
-use super::event::{Event, Totals};
+use super::constraints;
+use super::event::{Event, Patch, Totals};
 use super::functions;
 use super::header::Header;
 use super::header_code::{MAGIC, PREAMBLE_LEN, decode_preamble};
@@ -19,6 +20,17 @@ use super::tally::Tally;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_model::bounds::{Bounds, Point};
+
+/// The block that must come next.
+#[derive(Debug, Clone, Copy)]
+enum Wanted {
+    /// Any but rows.
+    Event,
+    /// As many rows.
+    Rows(usize),
+    /// The patch of the sides before.
+    Patch,
+}
 
 /// Reads one stream.
 ///
@@ -147,12 +159,17 @@ impl<R: Read> StreamReader<R> {
             return Ok(None);
         }
         self.rows.clear();
-        let tag = self.next_block(None)?;
-        let event = self.decode(tag).map_err(|error| self.locate(error))?;
+        let mut tag = self.next_block(Wanted::Event)?;
+        let mut sides = Vec::new();
+        if tag == Tag::Sides {
+            sides = constraints::decode_sides(&self.payload).map_err(|error| self.locate(error))?;
+            tag = self.next_block(Wanted::Patch)?;
+        }
+        let event = self.decode(tag, sides).map_err(|error| self.locate(error))?;
         let rows = if self.header.attributes.is_empty() { 0 } else { rows_behind(&event) };
         if rows > 0 {
             let place = self.event_place;
-            self.next_block(Some(rows))?;
+            self.next_block(Wanted::Rows(rows))?;
             std::mem::swap(&mut self.rows, &mut self.payload);
             self.event_place = place;
         }
@@ -167,11 +184,10 @@ impl<R: Read> StreamReader<R> {
         &self.rows
     }
 
-    /// Reads the next block that this version knows: one of as many `rows` where they must stand, or else any
-    /// other block.
-    fn next_block(&mut self, rows: Option<usize>) -> Result<Tag> {
+    /// Reads the next block that this version knows, which must be a wanted one.
+    fn next_block(&mut self, wanted: Wanted) -> Result<Tag> {
         loop {
-            let (tag, is_compressed) = match self.read_block(rows.is_some()) {
+            let (tag, is_compressed) = match self.read_block(wanted) {
                 Ok(read) => read,
                 Err(error) => {
                     let position = format!("block {} at byte {}", self.block, self.offset);
@@ -186,7 +202,7 @@ impl<R: Read> StreamReader<R> {
             if is_compressed {
                 self.decompress(tag).map_err(|error| self.locate(error))?;
             }
-            if let Some(rows) = rows {
+            if let Wanted::Rows(rows) = wanted {
                 self.check_rows(rows).map_err(|error| self.locate(error))?;
             }
             return Ok(tag);
@@ -202,26 +218,32 @@ impl<R: Read> StreamReader<R> {
         Err(Error::malformed(format!("{len} bytes of attributes, expected {rows} rows of {row_len} bytes")))
     }
 
-    /// Checks that a block of this tag may stand here: rows where they are expected, and nowhere else.
-    fn check_order(&mut self, tag: Tag, expects_rows: bool) -> Result<()> {
+    /// Checks that a block of this tag may stand here: rows where they are wanted, and nowhere else.
+    fn check_order(&mut self, tag: Tag, wanted: Wanted) -> Result<()> {
         let name = tag.bytes();
         let name = name.escape_ascii();
-        match (tag == Tag::Rows, expects_rows) {
-            (true, true) => return Ok(()),
-            (true, false) if self.header.attributes.is_empty() => {
+        match (tag, wanted) {
+            (Tag::Rows, Wanted::Rows(_)) => return Ok(()),
+            (Tag::Rows, _) if self.header.attributes.is_empty() => {
                 return Err(Error::malformed(format!("block \"{name}\" in a stream without attributes")));
             }
-            (true, false) => {
+            (Tag::Rows, _) => {
                 return Err(Error::malformed(format!(
                     "no block \"{name}\" may stand here: no points precede"
                 )));
             }
-            (false, true) => {
+            (_, Wanted::Rows(_)) => {
                 return Err(Error::malformed(format!(
                     "block \"{name}\", expected the attributes of the points before it"
                 )));
             }
-            (false, false) => {}
+            (Tag::Patch, Wanted::Patch) | (_, Wanted::Event) => {}
+            (_, Wanted::Patch) => {
+                return Err(Error::malformed(format!("block \"{name}\", expected the patch of the sides")));
+            }
+        }
+        if tag.is_of_constraints() && self.header.constrained.is_none() {
+            return Err(Error::malformed(format!("block \"{name}\" in a stream that is not constrained")));
         }
         if !self.header.kind.allows(self.last_tag, tag) {
             return Err(Error::malformed(format!(
@@ -235,7 +257,7 @@ impl<R: Read> StreamReader<R> {
 
     /// Reads frame and payload of a block, and verifies everything that does not depend on its content.
     /// Returns its tag, `None` for a block that this version skips, and whether it is compressed.
-    fn read_block(&mut self, expects_rows: bool) -> Result<(Option<Tag>, bool)> {
+    fn read_block(&mut self, wanted: Wanted) -> Result<(Option<Tag>, bool)> {
         self.payload.clear();
         let mut bytes = [0; FRAME_LEN];
         let found = read_full(&mut self.input, &mut bytes)?;
@@ -271,7 +293,7 @@ impl<R: Read> StreamReader<R> {
             )));
         }
         let Some(tag) = Tag::from_bytes(frame.tag)? else { return Ok((None, frame.is_compressed)) };
-        self.check_order(tag, expects_rows)?;
+        self.check_order(tag, wanted)?;
         Ok((Some(tag), frame.is_compressed))
     }
 
@@ -286,7 +308,8 @@ impl<R: Read> StreamReader<R> {
         Ok(())
     }
 
-    fn decode(&mut self, tag: Tag) -> Result<Event> {
+    /// The event of the block that was read. A patch gets its sides.
+    fn decode(&mut self, tag: Tag, sides: Vec<[u32; 3]>) -> Result<Event> {
         let (header, payload, totals) = (&self.header, &self.payload[..], self.tally.totals());
         let event = match tag {
             Tag::Points => {
@@ -296,7 +319,7 @@ impl<R: Read> StreamReader<R> {
                 return Ok(Event::Points(points));
             }
             Tag::Cells => Event::Cells(payload::cells(header, payload)?),
-            Tag::Patch => Event::Patch(payload::patch(header, totals.vertices, payload)?),
+            Tag::Patch => Event::Patch(Patch { sides, ..payload::patch(header, totals.vertices, payload)? }),
             Tag::Labels => Event::Labels(payload::labels(payload)?),
             Tag::ResidualPoints => {
                 Event::ResidualPoints(payload::residual_points(header, totals.vertices, payload)?)
@@ -312,7 +335,9 @@ impl<R: Read> StreamReader<R> {
             Tag::Functions => Event::Functions(functions::decode(payload)?),
             Tag::Coefficients => Event::Coefficients(functions::decode_coefficients(payload)?),
             Tag::End => Event::End(payload::totals(payload)?),
-            Tag::Rows => unreachable!("rows are read with their points"),
+            Tag::Segments => Event::Segments(constraints::decode_segments(header, payload)?),
+            Tag::OpenSegments => Event::OpenSegments(constraints::decode_open_segments(payload)?),
+            Tag::Rows | Tag::Sides => unreachable!("read with their points, or with their patch"),
         };
         self.tally.count(&event)?;
         if let Event::End(stated) = &event {

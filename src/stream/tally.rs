@@ -2,6 +2,7 @@
 
 use super::chunks::ChunkCheck;
 use super::configuration_rules::ConfigurationRules;
+use super::constraints::ConstraintRules;
 use super::event::{Event, Totals};
 use super::functions::{self, FunctionRules};
 use super::header::Header;
@@ -24,6 +25,7 @@ pub struct Tally {
     rules4: Rules4,
     configuration_rules: ConfigurationRules,
     function_rules: FunctionRules,
+    constraint_rules: ConstraintRules,
     chunks: Option<ChunkCheck>,
 }
 
@@ -45,6 +47,7 @@ impl Tally {
             rules4: Rules4::new(header.kind),
             configuration_rules: ConfigurationRules::new(header.kind),
             function_rules: FunctionRules::default(),
+            constraint_rules: ConstraintRules::default(),
             chunks,
         }
     }
@@ -59,7 +62,7 @@ impl Tally {
     ///
     /// # Errors
     /// Malformed, if a chunk holds points of several cells, if there are more labels than vertices so far, or
-    /// if four-dimensional data, configurations or functions break a rule.
+    /// if constraints, four-dimensional data, configurations or functions break a rule.
     pub fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
@@ -73,11 +76,14 @@ impl Tally {
                 }
             }
             Event::Patch(patch) => {
+                self.constraint_rules.sides(patch)?;
                 self.totals.vertices += patch.new.len() as u64;
                 self.totals.simplices += (patch.simplices.len() / self.per_simplex) as u64;
                 self.finalized += patch.finalized.len() as u64;
             }
             Event::Labels(labels) => self.count_labels(labels.len())?,
+            Event::Segments(segments) => self.constraint_rules.segments(segments)?,
+            Event::OpenSegments(open) => self.constraint_rules.open_segments(open)?,
             Event::ResidualPoints(points) => {
                 self.totals.residual_points += points.len() as u64;
                 self.named_residual_points += points.iter().filter(|(id, _)| id.is_some()).count() as u64;

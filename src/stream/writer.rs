@@ -1,6 +1,7 @@
 //! Writes a stream block by block. Only [`StreamWriter::end`] completes it.
 
 mod configurations;
+mod constraints;
 mod four;
 mod functions;
 mod rows;
@@ -10,6 +11,7 @@ use std::io::Write;
 use super::block::{Frame, Tag};
 use super::compression::Compressor;
 use super::configuration_rules::ConfigurationRules;
+use super::constraints::ConstraintRules;
 use super::coordinates::Coordinates;
 use super::event::{Patch, Totals};
 use super::functions::{FunctionRules, check_end};
@@ -48,6 +50,7 @@ pub struct StreamWriter<W: Write> {
     rules4: Rules4,
     configuration_rules: ConfigurationRules,
     function_rules: FunctionRules,
+    constraint_rules: ConstraintRules,
     waiting: Option<configurations::Waiting>,
 }
 
@@ -75,6 +78,7 @@ impl<W: Write> StreamWriter<W> {
             rules4,
             configuration_rules,
             function_rules: FunctionRules::default(),
+            constraint_rules: ConstraintRules::default(),
             waiting: None,
         })
     }
@@ -160,8 +164,8 @@ impl<W: Write> StreamWriter<W> {
     /// the attributes of its new vertices; empty if the stream has none.
     ///
     /// # Errors
-    /// If a coordinate does not fit the encoding, the patch or its rows are longer than a block, or writing
-    /// fails.
+    /// If a coordinate does not fit the encoding, the patch, its sides or its rows are longer than a block, a
+    /// side breaks a rule, or writing fails.
     pub fn patch_with_rows(&mut self, patch: &Patch, rows: &[u8]) -> Result<()> {
         assert_eq!(patch.first_id, self.totals.vertices, "vertex ids count up in stream order");
         let per_simplex = self.header.kind.vertices_per_simplex();
@@ -169,6 +173,7 @@ impl<W: Write> StreamWriter<W> {
             patch.check(self.totals.vertices, per_simplex).is_ok(),
             "a patch that no reader accepts"
         );
+        self.write_sides(patch)?;
         let payload = &mut self.payload;
         payload.clear();
         payload.extend_from_slice(&patch.first_id.to_le_bytes());

@@ -197,6 +197,7 @@ fn finalization_too_early() {
         imported: vec![],
         simplices: vec![0, 1, 3],
         finalized: vec![0, 3],
+        ..Patch::default()
     };
     let second = Patch {
         first_id: 4,
@@ -204,6 +205,7 @@ fn finalization_too_early() {
         imported: vec![1, 2, 3],
         simplices: vec![0, 1, 2],
         finalized: vec![0, 1],
+        ..Patch::default()
     };
     writer.patch(&first).unwrap();
     writer.patch(&second).unwrap();
@@ -319,7 +321,7 @@ fn memory_is_the_width_of_the_stream() {
         if row + 1 == rows {
             finalized.splice(0..0, (0..columns).map(above));
         }
-        writer.patch(&Patch { first_id, new, imported, simplices, finalized }).unwrap();
+        writer.patch(&Patch { first_id, new, imported, simplices, finalized, ..Patch::default() }).unwrap();
     }
     let report = audit(&writer.end(rows * columns, 0).unwrap(), CANONICAL, None).unwrap();
     assert_eq!(report.live_max as u64, 2 * columns);

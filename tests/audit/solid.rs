@@ -60,6 +60,7 @@ impl Solid {
                     imported: if i == 0 { Vec::new() } else { used.iter().map(|&v| v as u64).collect() },
                     simplices: tetrahedra.iter().flatten().map(local).collect(),
                     finalized: used.iter().filter(|&&v| last_use[v] == i).map(local).collect(),
+                    ..Patch::default()
                 })
                 .unwrap();
         }

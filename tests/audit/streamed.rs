@@ -64,6 +64,7 @@ impl<const D: usize, const N: usize> Streamed<D, N> {
                 imported: old.iter().map(|vertex| ids[vertex]).collect(),
                 simplices: chunk.as_flattened().iter().map(local).collect(),
                 finalized: locals.iter().filter(|vertex| last_use(vertex) == Some(i)).map(local).collect(),
+                ..Patch::default()
             });
         }
         let unused = (0..self.points.len()).filter(|vertex| !ids.contains_key(vertex));

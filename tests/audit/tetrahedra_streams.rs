@@ -150,7 +150,7 @@ fn memory_is_the_width_of_the_stream() {
         let old: Vec<u32> = if x == 0 { vec![] } else { (layer as u32..2 * layer as u32).collect() };
         let last: Vec<u32> = if x + 1 == slices { (0..layer as u32).collect() } else { vec![] };
         let finalized = [last, old].concat();
-        writer.patch(&Patch { first_id, new, imported, simplices, finalized }).unwrap();
+        writer.patch(&Patch { first_id, new, imported, simplices, finalized, ..Patch::default() }).unwrap();
     }
     let report = audit(&writer.end(slices * layer, 0).unwrap(), CANONICAL, None).unwrap();
     assert_eq!(report.live_max as u64, 2 * layer);

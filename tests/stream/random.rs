@@ -84,7 +84,7 @@ fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
         }
         let finalized: Vec<u32> = (0..vertices as u32).filter(|_| random.below(3) == 0).collect();
         let imported = imported.iter().map(|&(id, _)| id).collect();
-        let patch = Patch { first_id, new, imported, simplices, finalized };
+        let patch = Patch { first_id, new, imported, simplices, finalized, ..Patch::default() };
         live.extend(patch.new.iter().zip(first_id..).map(|(&point, id)| (id, point)));
         live.retain(|&(id, _)| !patch.finalized.iter().any(|&local| patch.id(local) == id));
         first_id += patch.new.len() as u64;

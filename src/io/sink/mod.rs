@@ -21,6 +21,7 @@ mod triangles;
 mod twin;
 mod twin4;
 mod twin_configurations;
+mod twin_constraints;
 mod twin_functions;
 mod volume;
 mod vtu;

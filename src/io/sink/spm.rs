@@ -37,6 +37,8 @@ impl<W: Write> EventSink for SpmSink<W> {
             Event::Configurations(block) => writer.configurations(block),
             Event::Functions(functions) => writer.functions(functions),
             Event::Coefficients(coefficients) => writer.coefficients(coefficients),
+            Event::Segments(segments) => writer.segments(segments),
+            Event::OpenSegments(segments) => writer.open_segments(segments),
             Event::End(totals) => {
                 let writer = self.writer.take().expect("there is one end");
                 writer.end(totals.points, totals.merged).map(drop)

@@ -40,6 +40,7 @@ mod tests {
             imported: vec![4],
             simplices: vec![0, 1, 2, 2, 1, 3],
             finalized: vec![0, 1, 3],
+            ..Patch::default()
         };
         let (triangles, unused) = final_corners(&patch);
         let flags: Vec<_> = triangles.iter().map(|t| t.map(|corner| (corner.id, corner.is_final))).collect();

@@ -5,18 +5,20 @@ use std::io::Write;
 use super::rows::Rows;
 use super::twin_configurations::OpenGroup;
 use super::world::{world_of, write_numbers};
-use super::{EventSink, twin_functions, twin4, write_error};
+use super::{EventSink, twin_constraints, twin_functions, twin4, write_error};
 use spmesh_core::error::Result;
 use spmesh_model::attributes::{Attribute, Attributes};
 use spmesh_model::bounds::Point;
 use spmesh_model::decimal::Decimal;
-use spmesh_stream::{Coordinates, Crs, Event, Header, Patch, Totals, VERSION};
+use spmesh_stream::{Constrained, Coordinates, Crs, Event, Header, Patch, Totals, VERSION};
 
 /// Writes the text twin.
 pub struct TwinSink<W> {
     output: W,
     header: Header,
     open: OpenGroup,
+    /// Number of triangles or tetrahedra written.
+    simplices: u64,
 }
 
 impl<W: Write> TwinSink<W> {
@@ -26,7 +28,7 @@ impl<W: Write> TwinSink<W> {
     /// If writing fails.
     pub fn new(mut output: W, header: &Header) -> Result<Self> {
         write_header(&mut output, header)?;
-        Ok(TwinSink { output, header: header.clone(), open: OpenGroup::default() })
+        Ok(TwinSink { output, header: header.clone(), open: OpenGroup::default(), simplices: 0 })
     }
 
     fn point(&mut self, start: &str, point: Point, row: &[u8]) -> Result<()> {
@@ -65,6 +67,8 @@ impl<W: Write> TwinSink<W> {
                 self.line(format_args!("f {a} {b} {c}"))?;
             }
         }
+        twin_constraints::sides(&mut self.output, self.simplices, &patch.sides)?;
+        self.simplices += (patch.simplices.len() / self.header.kind.vertices_per_simplex()) as u64;
         patch.finalized.iter().try_for_each(|&local| self.line(format_args!("x {}", patch.id(local) + 1)))
     }
 
@@ -106,6 +110,10 @@ impl<W: Write> EventSink for TwinSink<W> {
             Event::Configurations(block) => self.open.write(&mut self.output, block),
             Event::Functions(functions) => twin_functions::functions(&mut self.output, functions),
             Event::Coefficients(coefficients) => twin_functions::coefficients(&mut self.output, coefficients),
+            Event::Segments(segments) => {
+                twin_constraints::segments(&mut self.output, &self.header.coordinates, segments)
+            }
+            Event::OpenSegments(segments) => twin_constraints::open_segments(&mut self.output, segments),
             Event::End(totals) => self.end(totals),
         }
     }
@@ -153,6 +161,9 @@ fn write_header(output: &mut impl Write, header: &Header) -> Result<()> {
     }
     for attribute in &header.attributes {
         line(format_args!("attribute {}", attribute_fields(attribute)))?;
+    }
+    if let Some(Constrained { is_cut, kill }) = header.constrained {
+        line(format_args!("constrained {} {}", yes_no(is_cut), Decimal(kill)))?;
     }
     line(format_args!("producer {}", string(&header.producer)))
 }

@@ -256,7 +256,7 @@ pub(super) fn patch_of_ids(first_id: u64, new: Vec<Point>, simplices: &[u64], fi
     let simplices = simplices.iter().map(local).collect();
     let mut finalized: Vec<u32> = finalized.iter().map(local).collect();
     finalized.sort_unstable();
-    Patch { first_id, new, imported, simplices, finalized }
+    Patch { first_id, new, imported, simplices, finalized, ..Patch::default() }
 }
 
 fn drain_at_most<T>(items: &mut Vec<T>, most: usize) -> Vec<T> {

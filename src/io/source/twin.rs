@@ -14,7 +14,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_model::bounds::Point;
 use spmesh_model::cells::CellCode;
-use spmesh_stream::{ConfigurationBlock, Event, Header, Kind, Patch, Tally, Totals};
+use spmesh_stream::{ConfigurationBlock, Event, Header, Kind, Patch, Segment, Tally, Totals};
 
 /// Greatest number of lines that become one event.
 const BATCH_MAX: usize = 4096;
@@ -26,6 +26,8 @@ struct PatchLines {
     /// Ids of all simplices, concatenated.
     simplices: Vec<u64>,
     finalized: Vec<u64>,
+    /// Triangle, corner and segment of each side.
+    sides: Vec<[u64; 3]>,
 }
 
 impl PatchLines {
@@ -42,6 +44,8 @@ enum Group {
     Cells(Vec<CellCode>),
     Patch(PatchLines),
     Labels(Vec<u64>),
+    Segments(Vec<Segment>),
+    OpenSegments(Vec<u32>),
     Residual(Vec<(Option<u64>, Point)>),
     /// Corners of all walls, concatenated.
     Walls(Vec<u32>),
@@ -63,6 +67,8 @@ pub struct TwinSource<R> {
     rows: Vec<u8>,
     open: OpenLines,
     tally: Tally,
+    /// Whether a segment is open: no patch and no segment follows.
+    has_open_segments: bool,
     ended: bool,
 }
 
@@ -92,8 +98,18 @@ impl<R: Read> TwinSource<R> {
         let tally = Tally::new(&header);
         let (group, open) = (Group::Empty, OpenLines::default());
         let (group_rows, rows) = (Vec::new(), Vec::new());
-        let mut source =
-            TwinSource { lines, header, held: None, group, group_rows, rows, open, tally, ended: false };
+        let mut source = TwinSource {
+            lines,
+            header,
+            held: None,
+            group,
+            group_rows,
+            rows,
+            open,
+            tally,
+            has_open_segments: false,
+            ended: false,
+        };
         if is_first_content {
             source.held =
                 parse_statement(source.lines.current(), &source.header).map_err(|e| source.locate(e))?;
@@ -177,6 +193,9 @@ impl<R: Read> TwinSource<R> {
             }
             (Group::Patch(patch), Statement::Final(id)) => patch.finalized.push(id),
             (Group::Labels(labels), Statement::Label(label)) => labels.push(label),
+            (Group::Segments(segments), Statement::Segment(segment)) => segments.push(segment),
+            (Group::Patch(patch), Statement::Side(side)) => patch.sides.push(side),
+            (Group::OpenSegments(open), Statement::OpenSegment(segment)) => open.push(segment),
             (Group::Residual(points), Statement::Residual(id, point)) => points.push((id, point)),
             (Group::Walls(walls), Statement::Wall(wall)) => {
                 let corners = self.header.kind.vertices_per_wall();
@@ -189,10 +208,15 @@ impl<R: Read> TwinSource<R> {
                 self.group = match statement {
                     Statement::Vertex(_) if is_points => Group::Points(Vec::new()),
                     Statement::Cell(_) if is_points => Group::Cells(Vec::new()),
-                    Statement::Patch if is_mesh && residual_points == 0 => {
+                    Statement::Patch if is_mesh && residual_points == 0 && !self.has_open_segments => {
                         Group::Patch(PatchLines::default())
                     }
                     Statement::Label(_) if is_tetrahedral => Group::Labels(Vec::new()),
+                    Statement::Segment(_) if !self.has_open_segments => Group::Segments(Vec::new()),
+                    Statement::OpenSegment(_) => {
+                        self.has_open_segments = true;
+                        Group::OpenSegments(Vec::new())
+                    }
                     Statement::Residual(..) if is_partial && walls == 0 => Group::Residual(Vec::new()),
                     Statement::Wall(_) if is_partial => Group::Walls(Vec::new()),
                     Statement::Function(ref first) => Group::Functions(
@@ -232,6 +256,8 @@ impl<R: Read> TwinSource<R> {
             Group::Cells(cells) => Event::Cells(cells),
             Group::Patch(lines) => Event::Patch(self.patch_of(vertices, lines)?),
             Group::Labels(labels) => Event::Labels(labels),
+            Group::Segments(segments) => Event::Segments(segments),
+            Group::OpenSegments(open) => Event::OpenSegments(open),
             Group::Residual(points) => {
                 let mut named = points.iter().filter_map(|&(id, _)| id);
                 if let Some(id) = named.find(|&id| id >= vertices) {
@@ -259,12 +285,13 @@ impl<R: Read> TwinSource<R> {
 
     fn patch_of(&self, first_id: u64, lines: PatchLines) -> Result<Patch> {
         let len_min = lines.len_min(&self.header);
-        let PatchLines { new, simplices, finalized } = lines;
+        let PatchLines { new, simplices, finalized, sides } = lines;
         let end = first_id + new.len() as u64;
         if let Some(id) = simplices.iter().chain(&finalized).find(|&&id| id >= end) {
             return Err(Error::malformed(format!("vertex {} of {end}", id + 1)));
         }
-        let patch = patch_of_ids(first_id, new, &simplices, &finalized);
+        let mut patch = patch_of_ids(first_id, new, &simplices, &finalized);
+        patch.sides = self.sides_of(sides)?;
         if len_min + patch.imported.len() * 8 > BLOCK_PAYLOAD_MAX {
             return Err(too_long());
         }
@@ -272,6 +299,30 @@ impl<R: Read> TwinSource<R> {
             return Err(Error::malformed("the patch finalizes a vertex twice"));
         }
         Ok(patch)
+    }
+
+    /// Sides with the numbers of triangles in the patch.
+    fn sides_of(&self, sides: Vec<[u64; 3]>) -> Result<Vec<[u32; 3]>> {
+        if sides.len() * 12 > BLOCK_PAYLOAD_MAX {
+            return Err(Error::malformed(format!(
+                "the sides are longer than a block of {BLOCK_PAYLOAD_MAX} bytes"
+            )));
+        }
+        let first = self.tally.totals().simplices;
+        let local = |&[triangle, place, segment]: &[u64; 3]| {
+            let triangle = triangle.checked_sub(first)?;
+            Some([triangle.try_into().ok()?, place.try_into().ok()?, segment.try_into().ok()?])
+        };
+        let number = |side: &[u64; 3]| {
+            local(side).ok_or_else(|| {
+                Error::malformed(format!(
+                    "side {} of triangle {} is not in its patch",
+                    side[1] + 1,
+                    side[0] + 1
+                ))
+            })
+        };
+        sides.iter().map(number).collect()
     }
 
     fn expect_end_of_input(&mut self) -> Result<()> {
@@ -323,8 +374,13 @@ impl Group {
             (Group::Points(_) | Group::Patch(_) | Group::Residual(_), Statement::Row(_)) => true,
             (Group::Points(points), Statement::Vertex(_)) => points.len() < BATCH_MAX,
             (Group::Cells(cells), Statement::Cell(_)) => cells.len() < BATCH_MAX,
-            (Group::Patch(_), Statement::Vertex(_) | Statement::Simplex(_) | Statement::Final(_)) => true,
+            (
+                Group::Patch(_),
+                Statement::Vertex(_) | Statement::Simplex(_) | Statement::Final(_) | Statement::Side(_),
+            ) => true,
             (Group::Labels(labels), Statement::Label(_)) => labels.len() < BATCH_MAX,
+            (Group::Segments(segments), Statement::Segment(_)) => segments.len() < BATCH_MAX,
+            (Group::OpenSegments(open), Statement::OpenSegment(_)) => open.len() < BATCH_MAX,
             (Group::Residual(points), Statement::Residual(..)) => points.len() < BATCH_MAX,
             (Group::Walls(walls), Statement::Wall(_)) => walls.len() < BATCH_MAX,
             (Group::Four(group), Statement::Four(statement)) => group.takes(statement, BATCH_MAX),

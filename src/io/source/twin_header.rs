@@ -6,7 +6,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::attributes::{Attribute, Attributes};
 use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
-use spmesh_stream::{Coordinates, Crs, Header, Kind, VERSION, check_version};
+use spmesh_stream::{Constrained, Coordinates, Crs, Header, Kind, VERSION, check_version};
 
 /// The header as stated by the lines so far.
 #[derive(Default)]
@@ -25,6 +25,7 @@ pub(super) struct TwinHeader {
     chunked: bool,
     crs: Crs,
     attributes: Vec<Attribute>,
+    constrained: Option<Constrained>,
     producer: String,
 }
 
@@ -68,6 +69,7 @@ impl TwinHeader {
             b"chunked" => self.chunked = expect_word(rest, &YES_NO)?,
             b"wkt" => self.crs = Crs::Wkt(parse_string(rest)?),
             b"geokeys" => self.crs = only(parse_geo_keys(&mut values)?, values)?,
+            b"constrained" => self.constrained = Some(parse_constrained(&mut values)?),
             b"producer" => self.producer = parse_string(rest)?,
             _ => return Err(unexpected(&key, "a statement of the header")),
         }
@@ -107,6 +109,7 @@ impl TwinHeader {
             compressed: false,
             crs: self.crs,
             attributes: Attributes::new(self.attributes).map_err(Error::malformed)?,
+            constrained: self.constrained,
             producer: self.producer,
         };
         header.check().map_err(Error::malformed)?;
@@ -145,6 +148,13 @@ fn region_of(sides: &[f64], dims: u8) -> Result<Region<3>> {
     }
     let (lower, upper) = sides.split_at(sides.len() / 2);
     Ok(Region::of_sides(lower, upper))
+}
+
+/// Whether the border is cut, and the kill length.
+fn parse_constrained<'a>(values: &mut impl Iterator<Item = &'a [u8]>) -> Result<Constrained> {
+    let is_cut = expect_word(next_field(values)?, &YES_NO)?;
+    let [kill] = parse_decimals(values)?;
+    only(Constrained { is_cut, kill }, values)
 }
 
 fn parse_string(text: &[u8]) -> Result<String> {

@@ -8,7 +8,7 @@ use super::twin4::{self, Statement4};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_model::cells::CellCode;
-use spmesh_stream::{Coordinates, Header, Kind, Totals, check_place};
+use spmesh_stream::{Coordinates, Header, Kind, Segment, Totals, check_place};
 
 /// One line, parsed. Vertices and residual points are counted from 0 here.
 pub(super) enum Statement {
@@ -19,6 +19,10 @@ pub(super) enum Statement {
     Simplex([u64; 4]),
     Final(u64),
     Label(u64),
+    Segment(Segment),
+    /// Triangle, corner and segment.
+    Side([u64; 3]),
+    OpenSegment(u32),
     Residual(Option<u64>, Point),
     /// The attributes of the point before.
     Row(Vec<u8>),
@@ -59,6 +63,7 @@ pub(super) fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Sta
     let mut fields = fields(line);
     let fields = &mut fields;
     let per_simplex = header.kind.vertices_per_simplex();
+    let is_constrained = header.constrained.is_some();
     let statement = match next_field(fields)? {
         word if header.kind.is_4d() && word != b"#" => Statement::Four(twin4::parse(word, fields, header)?),
         word if header.kind.has_knots() && !matches!(word, b"v" | b"#") => {
@@ -77,6 +82,9 @@ pub(super) fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Sta
         b"f" if per_simplex == 3 => Statement::Simplex(parse_simplex(fields, 3)?),
         b"c" if per_simplex == 4 => Statement::Simplex(parse_simplex(fields, 4)?),
         b"a" if !header.attributes.is_empty() => Statement::Row(parse_row(fields, &header.attributes)?),
+        b"segment" if is_constrained => Statement::Segment(parse_segment(fields, header)?),
+        b"side" if is_constrained => Statement::Side(parse_side(fields)?),
+        b"open" if is_constrained => Statement::OpenSegment(parse_open_segment(next_field(fields)?)?),
         b"label" => Statement::Label(parse_integer(next_field(fields)?)?),
         b"x" => match next_field(fields)? {
             b"cell" => Statement::Cell(parse_cell(next_field(fields)?, header)?),
@@ -98,6 +106,9 @@ pub(super) fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Sta
             b"patch" => Statement::Patch,
             _ => Statement::End(parse_end(fields)?),
         },
+        other if is_constrained => {
+            return Err(unexpected(other, "segment, v, f, side, x, open or a comment"));
+        }
         other => return Err(unexpected(other, statements_of(header.kind))),
     };
     expect_no_field(fields)?;
@@ -121,14 +132,22 @@ fn statements_of(kind: Kind) -> &'static str {
 /// Converts world coordinates to a stored point and checks it against the header.
 fn parse_point<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, header: &Header) -> Result<Point> {
     let world = parse_decimals::<3>(fields)?;
-    let (coordinates, axes) = (&header.coordinates, header.coordinates_per_point());
-    let mut stored = coordinates.to_stored(world);
-    stored[axes..].fill(0.0);
+    let axes = header.coordinates_per_point();
     if let Some(z) = world[axes..].iter().find(|&&z| z != 0.0) {
         return Err(Error::malformed(format!(
             "z is {z}, but the points of this stream have none: expected 0"
         )));
     }
+    let stored = stored_of(world, axes, header)?;
+    check_place(header, stored)?;
+    Ok(stored)
+}
+
+/// Converts the first `axes` world coordinates to stored ones; the others become 0.
+fn stored_of(world: Point, axes: usize, header: &Header) -> Result<Point> {
+    let coordinates = &header.coordinates;
+    let mut stored = coordinates.to_stored(world);
+    stored[axes..].fill(0.0);
     if let Coordinates::I32 { .. } = header.coordinates {
         // Adding 0.0 turns a -0.0 from rounding into the integer 0.
         stored = stored.map(|value| value + 0.0);
@@ -145,8 +164,26 @@ fn parse_point<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, header: &Header)
             return Err(Error::malformed(message));
         }
     }
-    check_place(header, stored)?;
     Ok(stored)
+}
+
+fn parse_segment<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, header: &Header) -> Result<Segment> {
+    let line = next_field(fields)?;
+    let line = u32::try_from(parse_integer(line)?).map_err(|_| unexpected(line, "the number of a line"))?;
+    let [x0, y0, x1, y1] = parse_decimals::<4>(fields)?;
+    let [[x0, y0, _], [x1, y1, _]] =
+        [stored_of([x0, y0, 0.0], 2, header)?, stored_of([x1, y1, 0.0], 2, header)?];
+    Ok(Segment { line, ends: [[x0, y0], [x1, y1]] })
+}
+
+/// Triangle, corner and segment, each counted from 0.
+fn parse_side<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<[u64; 3]> {
+    let mut number = || parse_number(next_field(fields)?);
+    Ok([number()?, number()?, number()?])
+}
+
+fn parse_open_segment(field: &[u8]) -> Result<u32> {
+    u32::try_from(parse_number(field)?).map_err(|_| unexpected(field, "the number of a segment"))
 }
 
 /// `count` different vertices.

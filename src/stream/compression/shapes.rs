@@ -3,6 +3,7 @@
 use super::frames::Packer;
 use super::records::{self, Shape, Words};
 use crate::block::Tag;
+use crate::constraints::{SIDE_LEN, segment_len};
 use crate::coordinates::Coordinates;
 use crate::header::Header;
 
@@ -71,7 +72,9 @@ fn shape_of(header: &Header, tag: Tag) -> Shape {
         Tag::Walls => (4 * header.kind.vertices_per_wall(), Words::U32),
         Tag::Simplices4 => (20, Words::U32),
         Tag::Rows => (header.attributes.row_len(), Words::Kept),
-        Tag::Cells4 | Tag::Configurations | Tag::Functions => (4, Words::U32),
+        Tag::Segments => (segment_len(header), Words::Kept),
+        Tag::Sides => (SIDE_LEN, Words::U32),
+        Tag::Cells4 | Tag::OpenSegments | Tag::Configurations | Tag::Functions => (4, Words::U32),
     };
     Shape { record_len: record_len as u16, words }
 }

@@ -177,6 +177,7 @@ impl Job<'_> {
             compressed: self.options.compress,
             crs: Crs::Unknown,
             attributes: Attributes::default(),
+            constrained: None,
             producer,
         }
     }
