@@ -1,5 +1,6 @@
 //! Square cells over a network of lines, and what lies in them.
 
+use super::bits::Bits;
 use super::pyramid::Pyramid;
 use spmesh_model::network::Network;
 use spmesh_model::points::Point2;
@@ -37,8 +38,10 @@ pub(super) struct Cells {
     /// Numbers of segments; those of vertices come after all segments.
     items: Vec<u32>,
     segments: u32,
-    /// Fine cells that a segment or vertex meets, row by row.
-    fine: Vec<u64>,
+    /// Fine cells that a segment meets.
+    fine_segments: Bits,
+    /// Fine cells with vertices that were not found yet.
+    fine_vertices: Bits,
     pyramid: Pyramid,
 }
 
@@ -83,7 +86,8 @@ impl Cells {
             starts: vec![0; columns * rows + 1],
             items: Vec::new(),
             segments: network.segments.len() as u32,
-            fine: vec![0; (columns * rows * FINE * FINE).div_ceil(64)],
+            fine_segments: Bits::new([columns * FINE, rows * FINE]),
+            fine_vertices: Bits::new([columns * FINE, rows * FINE]),
             pyramid: Pyramid::default(),
         };
         cells.fill(network);
@@ -119,48 +123,74 @@ impl Cells {
             next[cell] += 1;
         });
         self.items = items;
-        let mut fine = std::mem::take(&mut self.fine);
-        let size = [self.columns, self.rows].map(|count| count * FINE);
+        let mut fine = std::mem::take(&mut self.fine_segments);
+        let size = self.fine_size();
         for segment in &network.segments {
             let ends = network.places(segment).map(|end| self.local(end).map(|x| x * FINE as f64));
-            along(ends, size, |cell| fine[cell / 64] |= 1 << (cell % 64));
+            along(ends, size, |cell| fine.set(cell));
         }
+        self.fine_segments = fine;
         for vertex in &network.vertices {
-            let [column, row] = self.local(vertex.place).map(|x| (x * FINE as f64) as usize);
-            let cell = row.min(size[1] - 1) * size[0] + column.min(size[0] - 1);
-            fine[cell / 64] |= 1 << (cell % 64);
+            self.fine_vertices.set(self.fine_cell(vertex.place));
         }
-        self.fine = fine;
+    }
+
+    fn fine_size(&self) -> [usize; 2] {
+        [self.columns, self.rows].map(|count| count * FINE)
+    }
+
+    fn fine_cell(&self, place: Point2) -> [usize; 2] {
+        let (local, size) = (self.local(place), self.fine_size());
+        [0, 1].map(|axis| ((local[axis] * FINE as f64) as usize).min(size[axis] - 1))
+    }
+
+    /// The cell of a place.
+    fn cell(&self, place: Point2) -> usize {
+        let [column, row] = self.local(place).map(|x| x as usize);
+        row.min(self.rows - 1) * self.columns + column.min(self.columns - 1)
+    }
+
+    /// Notes that a vertex is found. `is_found` says which are, this one included.
+    pub(super) fn find(&mut self, vertex: u32, network: &Network, is_found: &[bool]) {
+        let place = network.vertices[vertex as usize].place;
+        let (cell, fine) = (self.cell(place), self.fine_cell(place));
+        let items = &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+        let others = items.iter().filter_map(|item| item.checked_sub(self.segments));
+        let is_last = others
+            .filter(|&other| !is_found[other as usize])
+            .all(|other| self.fine_cell(network.vertices[other as usize].place) != fine);
+        if is_last {
+            self.fine_vertices.clear(fine);
+        }
     }
 
     fn for_each_place(&self, network: &Network, mut found: impl FnMut(usize, u32)) {
         let size = [self.columns, self.rows];
         for (number, segment) in (0..).zip(&network.segments) {
             let ends = network.places(segment).map(|end| self.local(end));
-            along(ends, size, |cell| found(cell, number));
+            along(ends, size, |[column, row]| found(row * self.columns + column, number));
         }
         for (number, vertex) in (self.segments..).zip(&network.vertices) {
-            let [column, row] = self.local(vertex.place).map(|x| x as usize);
-            found(row.min(self.rows - 1) * self.columns + column.min(self.columns - 1), number);
+            found(self.cell(vertex.place), number);
         }
     }
 
-    /// Whether nothing is in a box; `None` if it has many cells.
+    /// Whether no segment is in a box.
     #[inline]
-    pub(super) fn is_free(&self, bounds: &CellBox) -> Option<bool> {
-        let size = [self.columns, self.rows].map(|count| count * FINE);
-        let scaled =
-            CellBox { min: bounds.min.map(|x| x * FINE as f64), max: bounds.max.map(|x| x * FINE as f64) };
-        let Some([columns, rows]) = range(&scaled, size) else { return Some(true) };
-        if (columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) > 64 {
-            return None;
-        }
-        Some((rows[0]..=rows[1]).all(|row| {
-            (columns[0]..=columns[1]).all(|column| {
-                let cell = row * size[0] + column;
-                self.fine[cell / 64] >> (cell % 64) & 1 == 0
-            })
-        }))
+    pub(super) fn is_free(&self, bounds: &CellBox) -> bool {
+        self.fine_range(bounds).is_none_or(|range| !self.fine_segments.any(range))
+    }
+
+    /// Whether all vertices in a box were found.
+    #[inline]
+    pub(super) fn is_found(&self, bounds: &CellBox) -> bool {
+        self.fine_range(bounds).is_none_or(|range| !self.fine_vertices.any(range))
+    }
+
+    #[inline]
+    fn fine_range(&self, bounds: &CellBox) -> Option<[[usize; 2]; 2]> {
+        let [min, max] = [bounds.min, bounds.max].map(|corner| corner.map(|x| x * FINE as f64));
+        range(&CellBox { min, max }, self.fine_size())
     }
 
     /// Calls `found` with the items of all cells that meet a box and that `meets` accepts, some of them several
@@ -199,7 +229,7 @@ fn range(bounds: &CellBox, size: [usize; 2]) -> Option<[[usize; 2]; 2]> {
 }
 
 /// Calls `found` with all cells that a segment meets, and perhaps others beside it; row by row.
-fn along(ends: [Point2; 2], size: [usize; 2], mut found: impl FnMut(usize)) {
+fn along(ends: [Point2; 2], size: [usize; 2], mut found: impl FnMut([usize; 2])) {
     let Some([columns, rows]) = range(&CellBox::of(&ends), size) else { return };
     let [lower, upper] = if ends[0][1] <= ends[1][1] { ends } else { [ends[1], ends[0]] };
     let height = upper[1] - lower[1];
@@ -214,6 +244,6 @@ fn along(ends: [Point2; 2], size: [usize; 2], mut found: impl FnMut(usize)) {
             let [low, high] = [xs[0].min(xs[1]) - TOLERANCE, xs[0].max(xs[1]) + TOLERANCE];
             [first, last] = [first.max(low as usize), last.min(high as usize)];
         }
-        (first..=last).for_each(|column| found(row * size[0] + column));
+        (first..=last).for_each(|column| found([column, row]));
     }
 }

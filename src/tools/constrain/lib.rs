@@ -6,7 +6,9 @@
 //!
 //! `near` says what of the lines a triangle meets, with the help of `cells`; `writing` makes patches.
 
+mod bits;
 mod cells;
+mod circle;
 mod held;
 mod near;
 mod pyramid;
@@ -20,7 +22,9 @@ use near::{Lines, Meeting};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_model::network::Network;
-use spmesh_stream::{Coordinates, Event, Header, Kind, LiveVertices, Patch, StreamReader, StreamWriter};
+use spmesh_stream::{
+    Constrained, Coordinates, Event, Header, Kind, LiveVertices, Patch, StreamReader, StreamWriter,
+};
 use writing::Writing;
 
 /// Counts of a run.
@@ -113,7 +117,8 @@ fn header_of(header: &Header, network: &Network) -> Header {
         }
         bounds
     });
-    Header { bounds, points: None, tree: None, ..header.clone() }
+    let constrained = Some(Constrained { is_cut: false, kill: 0.0 });
+    Header { bounds, points: None, tree: None, constrained, ..header.clone() }
 }
 
 struct Filter<'n, W: Write> {
@@ -132,6 +137,7 @@ struct Filter<'n, W: Write> {
 impl<W: Write> Filter<'_, W> {
     /// Passes on what no line changes, and writes the components that are whole now.
     fn patch(&mut self, mut patch: Patch, rows: &[u8]) -> Result<()> {
+        self.stats.triangles[0] += patch.simplices.len() as u64 / 3;
         self.raise(&mut patch);
         self.numbers.clear();
         self.numbers.resize(patch.new.len(), None);
@@ -153,7 +159,7 @@ impl<W: Write> Filter<'_, W> {
     fn raise(&mut self, patch: &mut Patch) {
         for point in &mut patch.new {
             let Some(vertex) = self.lines.vertex_at([point[0], point[1]]) else { continue };
-            self.lines.found[vertex as usize] = true;
+            self.lines.find(vertex);
             self.stats.found += 1;
             if let Some(z) = self.lines.network.vertices[vertex as usize].z
                 && z != point[2]

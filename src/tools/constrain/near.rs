@@ -1,6 +1,7 @@
 //! What of a network a triangle meets.
 
 use super::cells::{CellBox, Cells, Item};
+use super::circle::Circle;
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
 use spmesh_model::network::Network;
 use spmesh_model::points::Point2;
@@ -55,8 +56,7 @@ impl<'n> Lines<'n> {
     /// The vertex of the network at a place.
     pub(super) fn vertex_at(&self, place: Point2) -> Option<u32> {
         let at = self.cells.local(place);
-        let bounds = CellBox { min: at, max: at };
-        if self.cells.is_free(&bounds) == Some(true) {
+        if self.cells.is_found(&CellBox { min: at, max: at }) {
             return None;
         }
         let vertices = &self.network.vertices;
@@ -71,11 +71,11 @@ impl<'n> Lines<'n> {
             return None;
         }
         let mut meeting = Meeting::default();
-        for number in std::mem::take(&mut self.segments) {
-            self.meet(corners, number, &mut meeting);
+        for place in 0..self.segments.len() {
+            self.meet(corners, self.segments[place], &mut meeting);
         }
         let [a, b, c] = corners;
-        for number in std::mem::take(&mut self.vertices) {
+        for &number in &self.vertices {
             let place = self.network.vertices[number as usize].place;
             let is_corner = corners.contains(&place);
             if !is_corner && self.predicates.incircle_perturbed(a, b, c, place) == Sign::Positive {
@@ -90,37 +90,53 @@ impl<'n> Lines<'n> {
     #[inline]
     fn collect(&mut self, corners: [Point2; 3]) {
         let local = corners.map(|corner| self.cells.local(corner));
-        let (triangle, circle) = (CellBox::of(&local), Circle::of(corners, local[0], self.cells.scale()));
-        if self.cells.is_free(&triangle) == Some(true) && self.cells.is_free(&circle.bounds()) == Some(true) {
-            return;
-        }
+        let (triangle, circle) = (CellBox::of(&local), Circle::of(corners, local, self.cells.scale()));
         let (segments, vertices, found) = (&mut self.segments, &mut self.vertices, &self.found);
-        self.cells.for_each_in(
-            &triangle,
-            |bounds| may_meet(local, bounds),
-            |item| match item {
-                Item::Segment(number) => segments.push(number),
-                Item::Vertex(_) => (),
-            },
-        );
-        self.cells.for_each_in(
-            &circle.bounds(),
-            |bounds| circle.may_meet(bounds),
-            |item| match item {
-                Item::Vertex(number) if !found[number as usize] => vertices.push(number),
-                _ => (),
-            },
-        );
-        for numbers in [segments, vertices] {
-            numbers.sort_unstable();
-            numbers.dedup();
+        segments.clear();
+        vertices.clear();
+        if !self.cells.is_free(&triangle) {
+            self.cells.for_each_in(
+                &triangle,
+                |bounds| may_meet(local, bounds),
+                |item| match item {
+                    Item::Segment(number) if !segments.contains(&number) => segments.push(number),
+                    _ => (),
+                },
+            );
         }
+        if !self.cells.is_found(&circle.bounds()) {
+            self.cells.for_each_in(
+                &circle.bounds(),
+                |bounds| circle.may_meet(bounds),
+                |item| match item {
+                    Item::Vertex(number) if !found[number as usize] => vertices.push(number),
+                    _ => (),
+                },
+            );
+        }
+    }
+
+    /// Notes that a vertex of the network is a vertex of the mesh.
+    pub(super) fn find(&mut self, vertex: u32) {
+        self.found[vertex as usize] = true;
+        self.cells.find(vertex, self.network, &self.found);
     }
 
     /// Adds what a segment does to a triangle.
     fn meet(&mut self, corners: [Point2; 3], number: u32, meeting: &mut Meeting) {
         let [p, q] = self.network.places(&self.network.segments[number as usize]);
-        let turns = corners.map(|corner| self.predicates.orient2d(p, q, corner));
+        if are_apart(&corners, &[p, q]) {
+            return;
+        }
+        // Most segments near a triangle have an end in common with it.
+        if let [Some(first), Some(second)] =
+            [p, q].map(|end| corners.iter().position(|&corner| corner == end))
+        {
+            meeting.on[3 - first - second] = Some(number);
+            meeting.segments.push(number);
+            return;
+        }
+        let turns = corners.map(|corner| self.turn(p, q, corner));
         let is_beside = |sign| turns.iter().all(|&turn| turn == sign);
         if is_beside(Sign::Positive) || is_beside(Sign::Negative) {
             return;
@@ -131,7 +147,7 @@ impl<'n> Lines<'n> {
         let mut touches = false;
         for place in 0..3 {
             let [u, v] = [1, 2].map(|turn| corners[(place + turn) % 3]);
-            let ends = [p, q].map(|end| self.predicates.orient2d(u, v, end));
+            let ends = [p, q].map(|end| self.turn(u, v, end));
             // Both ends are outside of this side, or on its line.
             is_apart |= ends.iter().all(|&end| end != Sign::Positive);
             let [u_turn, v_turn] = [1, 2].map(|turn| turns[(place + turn) % 3]);
@@ -156,6 +172,12 @@ impl<'n> Lines<'n> {
         }
     }
 
+    /// The side of a line on which a place lies, known at once for the places that define the line.
+    #[inline]
+    fn turn(&mut self, p: Point2, q: Point2, place: Point2) -> Sign {
+        if place == p || place == q { Sign::Zero } else { self.predicates.orient2d(p, q, place) }
+    }
+
     /// Whether a place is in a triangle or on its border.
     pub(super) fn is_in(&mut self, corners: [Point2; 3], place: Point2) -> bool {
         let [a, b, c] = corners;
@@ -171,6 +193,16 @@ impl<'n> Lines<'n> {
     pub(super) fn predicates(&mut self) -> &mut FiniteFloatPredicates {
         &mut self.predicates
     }
+}
+
+/// Whether the boxes of some places have nothing in common.
+#[inline]
+fn are_apart(these: &[Point2], those: &[Point2]) -> bool {
+    (0..2).any(|axis| {
+        let least = |places: &[Point2]| places.iter().fold(f64::INFINITY, |x, place| x.min(place[axis]));
+        let most = |places: &[Point2]| places.iter().fold(f64::NEG_INFINITY, |x, place| x.max(place[axis]));
+        most(these) < least(those) || most(those) < least(these)
+    })
 }
 
 /// Whether a place on the line of a segment, whose first end is the lesser one, is on the segment.
@@ -197,51 +229,4 @@ fn may_meet(corners: [Point2; 3], bounds: &CellBox) -> bool {
         let size = along.abs() * (y - u[1]).abs() + up.abs() * (x - u[0]).abs();
         side >= -1e-6 * (1.0 + size)
     })
-}
-
-/// A circle that is a little larger than that of a triangle.
-#[derive(Debug, Clone, Copy)]
-struct Circle {
-    centre: Point2,
-    radius: f64,
-    /// Whether rounding errors are smaller than what was added to the radius.
-    is_certain: bool,
-}
-
-impl Circle {
-    /// The circle through the corners of a triangle, in units of cells; `at` is the first corner in these units.
-    fn of(corners: [Point2; 3], at: Point2, scale: f64) -> Circle {
-        let [a, b, c] = corners;
-        let [u, v] = [b, c].map(|p| [(p[0] - a[0]) * scale, (p[1] - a[1]) * scale]);
-        let twice = 2.0 * (u[0] * v[1] - u[1] * v[0]);
-        let [uu, vv] = [u, v].map(|p| p[0] * p[0] + p[1] * p[1]);
-        let x = (v[1] * uu - u[1] * vv) / twice;
-        let y = (u[0] * vv - v[0] * uu) / twice;
-        let radius = (x * x + y * y).sqrt();
-        // Differences of coordinates are off by a part of the coordinates, which matters more in flat triangles.
-        let ww = (u[0] - v[0]).powi(2) + (u[1] - v[1]).powi(2);
-        let shortest = uu.min(vv).min(ww);
-        let magnitude = a[0].abs().max(a[1].abs()) * scale;
-        let error = 1e-15 * (magnitude + radius) * radius / shortest;
-        Circle { centre: [at[0] + x, at[1] + y], radius: radius * 1.000_001 + 1e-6, is_certain: error < 1e-7 }
-    }
-
-    fn bounds(&self) -> CellBox {
-        if !self.is_certain {
-            return CellBox { min: [0.0; 2], max: [f64::INFINITY; 2] };
-        }
-        CellBox { min: self.centre.map(|x| x - self.radius), max: self.centre.map(|x| x + self.radius) }
-    }
-
-    fn may_meet(&self, bounds: &CellBox) -> bool {
-        if !self.is_certain {
-            return true;
-        }
-        let mut square = 0.0;
-        for axis in 0..2 {
-            let nearest = self.centre[axis].clamp(bounds.min[axis], bounds.max[axis]);
-            square += (self.centre[axis] - nearest).powi(2);
-        }
-        square <= self.radius * self.radius
-    }
 }

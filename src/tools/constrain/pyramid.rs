@@ -1,5 +1,6 @@
 //! A pyramid of cells: each level says which squares of the level below hold something.
 
+use super::bits::Bits;
 use super::cells::CellBox;
 
 /// Levels of bits, the finest first. A square of a level is two by two of the one below.
@@ -11,35 +12,30 @@ pub(super) struct Pyramid {
 #[derive(Debug)]
 struct Level {
     size: [usize; 2],
-    bits: Vec<u64>,
+    bits: Bits,
 }
 
 impl Level {
-    fn new(size: [usize; 2], is_occupied: impl Fn(usize) -> bool) -> Level {
-        let count = size[0] * size[1];
-        let mut bits = vec![0u64; count.div_ceil(64)];
-        (0..count).filter(|&cell| is_occupied(cell)).for_each(|cell| bits[cell / 64] |= 1 << (cell % 64));
+    fn new(size: [usize; 2], is_occupied: impl Fn([usize; 2]) -> bool) -> Level {
+        let mut bits = Bits::new(size);
+        let squares = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| [column, row]));
+        squares.filter(|&square| is_occupied(square)).for_each(|square| bits.set(square));
         Level { size, bits }
-    }
-
-    fn is_occupied(&self, [column, row]: [usize; 2]) -> bool {
-        let cell = row * self.size[0] + column;
-        self.bits[cell / 64] >> (cell % 64) & 1 == 1
     }
 }
 
 impl Pyramid {
     /// The pyramid over a grid of columns and rows.
     pub(super) fn new(size: [usize; 2], is_occupied: impl Fn(usize) -> bool) -> Pyramid {
-        let mut levels = vec![Level::new(size, is_occupied)];
+        let columns = size[0];
+        let mut levels = vec![Level::new(size, |[column, row]| is_occupied(row * columns + column))];
         while let Some(last) = levels.last()
             && last.size != [1, 1]
         {
             let size = last.size.map(|count| count.div_ceil(2));
-            let level = Level::new(size, |cell| {
-                let [column, row] = [cell % size[0], cell / size[0]];
+            let level = Level::new(size, |[column, row]| {
                 let below = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, y]| [2 * column + x, 2 * row + y]);
-                below.iter().any(|at| (0..2).all(|axis| at[axis] < last.size[axis]) && last.is_occupied(*at))
+                below.iter().any(|at| (0..2).all(|axis| at[axis] < last.size[axis]) && last.bits.get(*at))
             });
             levels.push(level);
         }
@@ -72,12 +68,12 @@ impl Pyramid {
         meets: &impl Fn(&CellBox) -> bool,
         found: &mut impl FnMut(usize),
     ) {
-        let Level { size, .. } = self.levels[level];
+        let size = self.levels[level].size;
         let is_in = |axis: usize| {
             let [first, last] = range[axis];
             at[axis] < size[axis] && at[axis] << level <= last && (at[axis] + 1) << level > first
         };
-        if !is_in(0) || !is_in(1) || !self.levels[level].is_occupied(at) {
+        if !is_in(0) || !is_in(1) || !self.levels[level].bits.get(at) {
             return;
         }
         let side = (1usize << level) as f64;

@@ -132,7 +132,7 @@ impl Work {
         self.elevations.push(z);
         self.new.push((new.vertex, [place[0], place[1], z]));
         self.points.insert(new.vertex, number);
-        lines.found[new.vertex as usize] = true;
+        lines.find(new.vertex);
         region.insert(number, place, new.triangle, lines.predicates());
     }
 

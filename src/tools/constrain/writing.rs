@@ -6,11 +6,14 @@ use super::strip::Strip;
 use foldhash::HashMap;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
-use spmesh_model::network::Network;
-use spmesh_stream::{Patch, StreamWriter};
+use spmesh_model::network::{Network, NetworkSegment};
+use spmesh_stream::{Patch, Segment, StreamWriter};
 
 /// Triangles of a patch at most, so that it fits a block.
 const TRIANGLES_MAX: usize = 8192;
+
+/// Segments of a block at most.
+const SEGMENTS_MAX: usize = 8192;
 
 /// References to new vertices count down from here; all others are ids.
 const NEW: u64 = u64::MAX;
@@ -35,7 +38,12 @@ pub(super) struct Writing<W: Write> {
 }
 
 impl<W: Write> Writing<W> {
-    pub(super) fn new(writer: StreamWriter<W>, _network: &Network) -> Result<Writing<W>> {
+    /// Writes the segments.
+    pub(super) fn new(mut writer: StreamWriter<W>, network: &Network) -> Result<Writing<W>> {
+        for segments in network.segments.chunks(SEGMENTS_MAX) {
+            let segment = |it: &NetworkSegment| Segment { line: it.line, ends: network.places(it) };
+            writer.segments(&segments.iter().map(segment).collect::<Vec<_>>())?;
+        }
         let row = vec![0; writer.header().attributes.row_len()];
         Ok(Writing {
             writer,
@@ -61,7 +69,8 @@ impl<W: Write> Writing<W> {
     }
 
     /// Writes a patch of the input; `sides` are those on segments: triangle, place, segment.
-    pub(super) fn patch(&mut self, mut patch: Patch, _sides: Vec<[u32; 3]>, rows: &[u8]) -> Result<()> {
+    pub(super) fn patch(&mut self, mut patch: Patch, sides: Vec<[u32; 3]>, rows: &[u8]) -> Result<()> {
+        patch.sides = sides;
         self.next_id = patch.first_id + patch.new.len() as u64;
         if !self.shifts.is_empty() {
             patch.first_id = self.writer.totals().vertices;
@@ -93,9 +102,16 @@ impl<W: Write> Writing<W> {
         let mut ids: HashMap<u64, u64> = HashMap::default();
         let is_single = triangles.len() <= TRIANGLES_MAX;
         let mut finalized = std::mem::take(&mut self.finalized);
-        for chunk in triangles.chunks(TRIANGLES_MAX) {
+        let segments = std::mem::take(&mut self.segments);
+        for (chunk, segments) in triangles.chunks(TRIANGLES_MAX).zip(segments.chunks(TRIANGLES_MAX)) {
             let last = if is_single { &finalized[..] } else { &[] };
-            let patch = self.chunk(chunk, &mut ids, last, is_single);
+            let mut patch = self.chunk(chunk, &mut ids, last, is_single);
+            patch.sides = (0..)
+                .zip(segments)
+                .flat_map(|(triangle, on)| {
+                    (0..).zip(on).filter_map(move |(place, on)| Some([triangle, place, (*on)?]))
+                })
+                .collect();
             self.writer.patch_with_rows(&patch, &self.row.repeat(patch.new.len()))?;
         }
         if !is_single {
@@ -114,6 +130,7 @@ impl<W: Write> Writing<W> {
         }
         self.triangles = triangles;
         self.triangles.clear();
+        self.segments = segments;
         self.segments.clear();
         self.new.clear();
         finalized.clear();
@@ -163,7 +180,10 @@ impl<W: Write> Writing<W> {
     }
 
     /// Ends the stream. `open` are the segments that are not wholly edges.
-    pub(super) fn end(self, _open: &[u32], points: u64, merged: u64) -> Result<W> {
+    pub(super) fn end(mut self, open: &[u32], points: u64, merged: u64) -> Result<W> {
+        for open in open.chunks(SEGMENTS_MAX) {
+            self.writer.open_segments(open)?;
+        }
         self.writer.end(points, merged)
     }
 }
