@@ -67,6 +67,12 @@ pub const GEOJSON_LEN_MAX: u64 = 1 << 25;
 /// Most vertices of breaklines, of which each becomes a knot.
 pub const BREAKLINE_VERTICES_MAX: usize = 1 << 20;
 
+/// Most vertices of lines that become edges of a mesh: noding takes 2 GB for them.
+pub const LINE_VERTICES_MAX: usize = 1 << 24;
+
+/// Most crossings of lines: each becomes a vertex, and ends four edges.
+pub const LINE_CROSSINGS_MAX: usize = 1 << 23;
+
 /// Most files in a list of files: their names take about 100 MB.
 pub const LIST_FILES_MAX: usize = 1 << 20;
 

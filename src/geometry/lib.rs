@@ -9,6 +9,7 @@ pub mod delaunay3;
 pub mod delaunay3_float;
 pub mod diagram4;
 mod location;
+pub mod noding;
 pub mod order;
 pub mod predicates;
 #[cfg(target_arch = "x86_64")]

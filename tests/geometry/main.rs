@@ -10,6 +10,7 @@ mod kernel;
 mod kernel3;
 mod kernel_predicates;
 mod kernel_predicates3;
+mod noding;
 mod order;
 mod queries;
 mod sphere;

@@ -8,6 +8,7 @@ pub mod exact;
 pub mod exact3;
 pub mod exhaustive;
 pub mod incremental;
+pub mod noding;
 pub mod sets;
 pub mod sets4;
 pub mod space;

@@ -2,6 +2,7 @@
 //! twins, SPA and SPB, raw numbers, arrays of numpy, and the vertices of PLY, OBJ and VTK.
 
 mod base64;
+mod breaklines;
 mod byte_order;
 mod checked;
 mod crs;
@@ -78,6 +79,7 @@ mod vtk;
 mod wkt;
 mod words;
 
+pub use breaklines::{Breakline, Breaklines, read_breaklines};
 pub use checked::Checked;
 pub use events::EventSource;
 pub use filters::{DropReason, Dropped, Filters, Interval};

@@ -1,0 +1,134 @@
+//! GeoPackages: the geometries of all tables of features.
+//!
+//! Source: OGC 12-128r19, GeoPackage Encoding Standard 1.4.
+
+use std::os::unix::ffi::OsStrExt;
+use std::path::Path;
+
+use rusqlite::types::ValueRef;
+use rusqlite::{Connection, OpenFlags};
+
+use super::{Breaklines, Collector, wkb};
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::CRS_LEN_MAX;
+use spmesh_crs::{System, differences, requested};
+use spmesh_stream::Crs;
+
+/// Memory that SQLite may take, in bytes: the longest geometry must fit.
+const MEMORY_MAX: i64 = 1 << 30;
+
+/// A table of features.
+struct Table {
+    name: String,
+    column: String,
+    system: i64,
+}
+
+/// Reads all tables of features. The file is never changed: it is opened as one that nobody writes.
+///
+/// # Errors
+/// As [`super::read_breaklines`].
+pub(super) fn read(path: &Path) -> Result<Breaklines> {
+    let flags =
+        OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let database = Connection::open_with_flags(uri(path)?, flags).map_err(malformed)?;
+    // A file may not run code of its own, and may not take all memory.
+    database.pragma_update(None, "trusted_schema", false).map_err(malformed)?;
+    database.pragma_update(None, "hard_heap_limit", MEMORY_MAX).map_err(malformed)?;
+    let tables = tables(&database)?;
+    let mut lines = Collector::default();
+    let mut crs: Option<(Crs, &Table)> = None;
+    for table in &tables {
+        let own = system(&database, table.system)?;
+        match &crs {
+            Some((first, other)) => check_same(first, other, &own, table)?,
+            None => crs = Some((own, table)),
+        }
+        features(&database, table, &mut lines)?;
+    }
+    if tables.is_empty() {
+        return Err(Error::malformed("the database has no table of features: it is no GeoPackage of lines"));
+    }
+    lines.finish(crs.map_or(Crs::Unknown, |(crs, _)| crs))
+}
+
+/// The file as one that does not change: SQLite then makes no files beside it.
+fn uri(path: &Path) -> Result<String> {
+    let path = std::path::absolute(path).map_err(|e| Error::io("opening", e))?;
+    let mut uri = "file:".to_string();
+    for &byte in path.as_os_str().as_bytes() {
+        if byte.is_ascii_alphanumeric() || b"/-_.".contains(&byte) {
+            uri.push(byte.into());
+        } else {
+            uri += &format!("%{byte:02X}");
+        }
+    }
+    Ok(uri + "?immutable=1")
+}
+
+fn malformed(error: rusqlite::Error) -> Error {
+    Error::malformed(format!("not a GeoPackage that can be read: {error}"))
+}
+
+fn tables(database: &Connection) -> Result<Vec<Table>> {
+    let query = "SELECT g.table_name, g.column_name, g.srs_id FROM gpkg_contents c JOIN gpkg_geometry_columns g \
+                 ON g.table_name = c.table_name WHERE c.data_type = 'features' ORDER BY g.table_name";
+    let mut statement = database.prepare(query).map_err(malformed)?;
+    let table =
+        |row: &rusqlite::Row| Ok(Table { name: row.get(0)?, column: row.get(1)?, system: row.get(2)? });
+    let tables = statement.query_map([], table).map_err(malformed)?;
+    tables.collect::<rusqlite::Result<_>>().map_err(malformed)
+}
+
+fn system(database: &Connection, number: i64) -> Result<Crs> {
+    let query = "SELECT organization, organization_coordsys_id, definition FROM gpkg_spatial_ref_sys WHERE srs_id = ?";
+    let found = database.query_row(query, [number], |row| {
+        Ok((row.get::<_, String>(0)?, row.get::<_, i64>(1)?, row.get::<_, String>(2)?))
+    });
+    let (organization, code, definition) = match found {
+        Ok(found) => found,
+        Err(rusqlite::Error::QueryReturnedNoRows) => return Ok(Crs::Unknown),
+        Err(error) => return Err(malformed(error)),
+    };
+    if organization.eq_ignore_ascii_case("EPSG")
+        && let Ok(known) = requested(&format!("EPSG:{code}"))
+    {
+        return Ok(known);
+    }
+    let is_text = definition.contains('[') && definition.len() <= CRS_LEN_MAX;
+    Ok(if is_text { Crs::Wkt(definition) } else { Crs::Unknown })
+}
+
+fn check_same(first: &Crs, other: &Table, own: &Crs, table: &Table) -> Result<()> {
+    let found = differences(&System::of(first), &System::of(own));
+    if found.is_empty() {
+        return Ok(());
+    }
+    Err(Error::usage(format!(
+        "the tables {:?} and {:?} have different systems ({}): transform one of them first, for example with ogr2ogr \
+         -t_srs",
+        other.name,
+        table.name,
+        found.join(", ")
+    )))
+}
+
+fn features(database: &Connection, table: &Table, lines: &mut Collector) -> Result<()> {
+    let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
+    let query = format!("SELECT {} FROM {}", quoted(&table.column), quoted(&table.name));
+    let mut statement = database.prepare(&query).map_err(malformed)?;
+    let mut rows = statement.query([]).map_err(malformed)?;
+    for number in 1u64.. {
+        let position = || format!("table {:?}, row {number}", table.name);
+        let Some(row) = rows.next().map_err(|e| malformed(e).at(position()))? else { break };
+        match row.get_ref(0).map_err(|e| malformed(e).at(position()))? {
+            ValueRef::Null => {}
+            ValueRef::Blob(bytes) => wkb::enter(bytes, lines, &position).map_err(|e| e.at(position()))?,
+            other => {
+                let message = format!("found {}, expected a geometry", other.data_type());
+                return Err(Error::malformed(message).at(position()));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,117 @@
+//! Lines that become edges of a mesh: text, GeoJSON, Shapefiles and GeoPackages, each recognized by its content.
+
+mod collect;
+mod geojson;
+#[cfg(feature = "geopackage")]
+mod geopackage;
+mod shapefile;
+mod text;
+#[cfg(feature = "geopackage")]
+mod wkb;
+
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use super::geojson::is_json;
+use super::gzip::Plain;
+use super::origin::{name_of, open_file, open_stdin};
+use crate::detect::{self, Format, read_head};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::points::Point2;
+use spmesh_stream::Crs;
+
+use collect::Collector;
+
+/// First bytes of a GeoPackage, which is an SQLite database.
+const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
+
+/// First bytes of the main file of a Shapefile.
+const SHAPEFILE_MAGIC: &[u8] = &[0, 0, 0x27, 0x0a];
+
+/// A line, or a ring of a polygon.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Breakline {
+    /// Its vertices, in world coordinates; at least one. The first vertex of a ring is also its last.
+    pub vertices: Vec<Point2>,
+    /// Elevation of each vertex, where the file states one.
+    pub elevations: Vec<Option<f64>>,
+    /// Number of the polygon in the file that it is a ring of.
+    pub polygon: Option<u32>,
+    /// Position in the file, for messages.
+    pub position: String,
+}
+
+/// The lines of a file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Breaklines {
+    /// In the order of the file.
+    pub lines: Vec<Breakline>,
+    /// Coordinate reference system, if the file states one.
+    pub crs: Crs,
+}
+
+/// Reads the lines of a file; `-` is stdin, from which text and GeoJSON are read. Both may be compressed with gzip.
+///
+/// In a line of text, the word `line` starts a line with X Y Z of each vertex, and the word `soft` one with X Y. The
+/// vertices of a line may continue on the next lines of text. `nan` stands for an unknown Z.
+///
+/// In GeoJSON, third coordinates are elevations. Points are lines of one vertex. A Shapefile may have Z; its system is
+/// in the `.prj` file beside it. Of a GeoPackage, all tables of features are read.
+///
+/// # Errors
+/// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a
+/// coordinate is not finite, or there are more than `LINE_VERTICES_MAX` vertices.
+pub fn read_breaklines(path: &Path) -> Result<Breaklines> {
+    read(path).map_err(|error| error.of_input(name_of(path)))
+}
+
+fn read(path: &Path) -> Result<Breaklines> {
+    let is_stdin = path.as_os_str() == "-";
+    let input: Box<dyn Read> = if is_stdin { Box::new(open_stdin()?) } else { Box::new(open_file(path)?.0) };
+    let mut input = Plain::new(input).map_err(|e| Error::io("reading", e))?;
+    let is_plain = !is_stdin && !input.is_compressed();
+    let head = read_head(&mut input).map_err(|e| Error::io("reading", e))?;
+    if head.starts_with(SQLITE_MAGIC) {
+        return if is_plain { read_geopackage(path) } else { Err(not_in_pipe("GeoPackage")) };
+    }
+    let is_shapefile = head.starts_with(SHAPEFILE_MAGIC);
+    if is_shapefile && !is_plain {
+        return Err(not_in_pipe("Shapefile"));
+    }
+    let is_json = is_json(&head);
+    if !is_json && !is_shapefile {
+        check_text(&head)?;
+    }
+    let rest = BufReader::with_capacity(1 << 17, head.chain(input));
+    if is_shapefile {
+        return shapefile::read(rest, path);
+    }
+    if is_json { geojson::read(rest) } else { text::read(rest) }
+}
+
+/// Checks that a file that starts with `head` may be text.
+fn check_text(head: &[u8]) -> Result<()> {
+    const REMEDY: &str =
+        "write the lines as GeoJSON, Shapefile, GeoPackage or text first, for example with ogr2ogr";
+    match detect::detect(head)? {
+        Format::OtherText | Format::Text | Format::VertexLines => Ok(()),
+        other => Err(Error::malformed(format!("found {}, expected lines: {REMEDY}", other.name()))),
+    }
+}
+
+fn not_in_pipe(format: &str) -> Error {
+    Error::usage(format!("a {format} is read from a plain file only: decompress it, and give its path"))
+}
+
+#[cfg(feature = "geopackage")]
+fn read_geopackage(path: &Path) -> Result<Breaklines> {
+    geopackage::read(path)
+}
+
+#[cfg(not(feature = "geopackage"))]
+fn read_geopackage(_: &Path) -> Result<Breaklines> {
+    Err(Error::usage(
+        "this program was built without the feature `geopackage`: convert the file first, for example with ogr2ogr \
+         lines.geojson lines.gpkg",
+    ))
+}

@@ -1,0 +1,119 @@
+//! Breaklines: from lines in files to a planar network on the grid of a stream.
+//!
+//! Steps: `io` reads the lines; their systems are compared with that of the points (`systems`); gaps in elevations are
+//! filled and long parts divided (`prepare`); coordinates are rounded to the grid of the stream (`grid`); and
+//! `geometry::noding` makes crossings and overlaps common vertices.
+
+mod changes;
+mod grid;
+mod prepare;
+mod systems;
+
+use std::path::PathBuf;
+
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::{LINE_CROSSINGS_MAX, LINE_VERTICES_MAX};
+use spmesh_geometry::noding::{LineVertex, Noded, NodingOptions, node_lines};
+use spmesh_io::source::{Breaklines, name_of, read_breaklines};
+use spmesh_model::network::{Network, NetworkVertex};
+use spmesh_stream::{Coordinates, Crs, Header};
+
+pub use changes::{Change, ChangeKind, Changes};
+use grid::Grid;
+
+/// The stream that lines are for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// Encoding of its coordinates.
+    pub coordinates: Coordinates,
+    /// Its system.
+    pub crs: Crs,
+    /// Whether its points have elevations. If not, those of lines are ignored.
+    pub has_elevation: bool,
+}
+
+impl Target {
+    /// The target of lines for a stream with this header.
+    #[must_use]
+    pub fn of(header: &Header) -> Target {
+        let Header { coordinates, has_elevation, ref crs, .. } = *header;
+        Target { coordinates, crs: crs.clone(), has_elevation }
+    }
+}
+
+/// How lines are read.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Options {
+    /// Longest part of a line, in world units; longer parts are divided evenly.
+    pub densify: Option<f64>,
+    /// Whether changes are listed, and not counted alone.
+    pub lists_changes: bool,
+}
+
+/// Reads the lines of files as one network. Lines are numbered over all files, in their order.
+///
+/// The network depends on the set of lines alone, but for the numbers of lines. Its coordinates are those that the
+/// stream stores. If these are f64, they are rounded to multiples of 2^(e - 40), where 2^e is the least power of two
+/// above the magnitudes of all coordinates of the lines.
+///
+/// # Errors
+/// Those of reading; usage, if the system of a file differs from that of the stream, or a coordinate is beyond the
+/// grid of the stream; malformed, if there are too many vertices or crossings.
+pub fn read(paths: &[PathBuf], target: &Target, options: &Options) -> Result<(Network, Changes)> {
+    if options.densify.is_some_and(|longest| !(longest > 0.0 && longest.is_finite())) {
+        return Err(Error::usage("the longest part of a line must be a positive number"));
+    }
+    let mut changes = Changes::new(options.lists_changes);
+    let mut files = Vec::with_capacity(paths.len());
+    for path in paths {
+        let mut file = read_breaklines(path)?;
+        let name = name_of(path);
+        changes.notices.extend(systems::check(&name, &file.crs, &target.crs)?);
+        if !target.has_elevation {
+            file.lines.iter_mut().for_each(|line| line.elevations.fill(None));
+        }
+        files.push((name, file));
+    }
+    let grid = Grid::of(target, files.iter().flat_map(|(_, file)| &file.lines));
+    let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
+    let noding = NodingOptions {
+        round_elevations: matches!(target.coordinates, Coordinates::I32 { .. }),
+        crossings_max: LINE_CROSSINGS_MAX,
+    };
+    let mut note = |change, line, place| changes.note(ChangeKind::of(change), line, || grid.world(place));
+    let noded = node_lines(&vertices, &starts, &noding, &mut note)?;
+    Ok((network(noded, &grid), changes))
+}
+
+/// The vertices of all lines on the grid, and the number of the first one of each line.
+fn stored(
+    files: Vec<(String, Breaklines)>,
+    grid: &Grid,
+    options: &Options,
+    changes: &mut Changes,
+) -> Result<(Vec<LineVertex>, Vec<u32>)> {
+    let (mut vertices, mut starts) = (Vec::new(), Vec::new());
+    for (name, file) in files {
+        for line in file.lines {
+            let number = starts.len() as u32;
+            starts.push(vertices.len() as u32);
+            let position = line.position.clone();
+            let fault = |error: Error| error.at(position.clone()).of_input(name.clone());
+            let line = prepare::prepare(line, number, options.densify, changes).map_err(fault)?;
+            if vertices.len() + line.len() > LINE_VERTICES_MAX {
+                let remedy = if options.densify.is_some() { ": divide parts less (--densify)" } else { "" };
+                let message = format!("more than {LINE_VERTICES_MAX} vertices of lines{remedy}");
+                return Err(fault(Error::malformed(message)));
+            }
+            for &(place, z) in &line {
+                vertices.push(grid.vertex(place, z, number, changes).map_err(fault)?);
+            }
+        }
+    }
+    Ok((vertices, starts))
+}
+
+fn network(noded: Noded, grid: &Grid) -> Network {
+    let vertex = |vertex: LineVertex| NetworkVertex { place: grid.stored(vertex.place), z: vertex.z };
+    Network { vertices: noded.vertices.into_iter().map(vertex).collect(), segments: noded.segments }
+}
