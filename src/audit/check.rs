@@ -15,6 +15,8 @@ pub enum Check {
     Facets,
     /// Every interior edge of a triangle mesh, or facet of a tetrahedral mesh, is locally Delaunay.
     Delaunay,
+    /// The same of every interior edge of a constrained triangle mesh that is on no segment.
+    ConstrainedDelaunay,
     /// Ties between cocircular or cospherical points are resolved canonically.
     Canonical,
     /// Every vertex is used, and its simplices close around it or go from boundary to boundary.
@@ -24,6 +26,10 @@ pub enum Check {
     /// The boundary is one convex cycle or surface that goes around once; or all vertices lie on a line, in
     /// space in a plane.
     Hull,
+    /// The boundary of a mesh that was cut does not meet itself, and its edges are those that cutting leaves.
+    Border,
+    /// Segments are chains of edges, unless they leave the mesh, and meet at their ends only.
+    Constraints,
     /// Simplices of all dimensions are as many as in a disk or ball.
     Euler,
     /// Counts of points add up.
@@ -48,15 +54,18 @@ pub enum Check {
 
 impl Check {
     /// All checks, in the order of reports.
-    pub const ALL: [Check; 18] = [
+    pub const ALL: [Check; 21] = [
         Check::Orientation,
         Check::Edges,
         Check::Facets,
         Check::Delaunay,
+        Check::ConstrainedDelaunay,
         Check::Canonical,
         Check::Vertices,
         Check::Finalization,
         Check::Hull,
+        Check::Border,
+        Check::Constraints,
         Check::Euler,
         Check::Counts,
         Check::Bounds,
@@ -87,6 +96,9 @@ impl Check {
             Check::Edges => ("edges", "every directed edge belongs to one triangle"),
             Check::Facets => ("facets", "every oriented facet belongs to one tetrahedron"),
             Check::Delaunay => ("delaunay", "every interior edge or facet is locally Delaunay"),
+            Check::ConstrainedDelaunay => {
+                ("constrained", "every interior edge that is on no segment is locally Delaunay")
+            }
             Check::Canonical => {
                 ("canonical", "cocircular or cospherical points are triangulated canonically")
             }
@@ -95,6 +107,12 @@ impl Check {
             }
             Check::Finalization => ("finalization", "no vertex is used after its finalization"),
             Check::Hull => ("hull", "the boundary is convex, closed, and goes around once"),
+            Check::Border => {
+                ("border", "the boundary does not meet itself, and its edges are those that cutting leaves")
+            }
+            Check::Constraints => {
+                ("segments", "segments are chains of edges, or named as open, and meet at ends only")
+            }
             Check::Euler => ("euler", "simplices of all dimensions are as many as in a disk or ball"),
             Check::Counts => ("counts", "vertices, merged and unwritten points are all points"),
             Check::Bounds => ("bounds", "the bounding box holds all points"),

@@ -10,6 +10,36 @@ use super::corner::name_corners;
 use super::exact::plane::{Xy, lexicographic, orientation};
 use super::triangles::{Corner, OpenEdges};
 
+/// A convex polygon, for tests of points.
+#[derive(Debug)]
+pub(super) struct Outline {
+    /// The corners from the first to the last in lexicographic order, along the lower side and the upper one.
+    lower: Vec<Xy>,
+    upper: Vec<Xy>,
+}
+
+impl Outline {
+    /// Whether a point is outside, not on an edge.
+    pub(super) fn is_outside(&self, at: Xy, ledger: &mut Ledger) -> bool {
+        self.is_beyond(&self.lower, at, Ordering::Less, ledger)
+            || self.is_beyond(&self.upper, at, Ordering::Greater, ledger)
+    }
+
+    /// Whether a point is on this side of a chain, or before its start or after its end.
+    fn is_beyond(&self, chain: &[Xy], at: Xy, side: Ordering, ledger: &mut Ledger) -> bool {
+        let after = chain.partition_point(|&corner| lexicographic(corner, at) == Ordering::Less);
+        match (after.checked_sub(1).map(|before| chain[before]), chain.get(after)) {
+            (_, Some(&corner)) if corner == at => false,
+            (Some(before), Some(&corner)) => {
+                let turn = orientation(before, corner, at);
+                ledger.count(Check::Constraints, turn.exactly);
+                turn.sign == side
+            }
+            _ => true,
+        }
+    }
+}
+
 /// Corners of the boundary.
 ///
 /// Memory: the hull, collinear vertices included.
@@ -53,6 +83,23 @@ impl Hull {
             return Err(name_corners(Violation::new(Check::Hull, message), &[start]));
         }
         Ok(())
+    }
+
+    /// The polygon of a boundary that passed [`Hull::check`].
+    pub(super) fn outline(&self, edges: &OpenEdges) -> Outline {
+        let next: HashMap<u64, u64, RandomState> = edges.iter().map(|([from, to], _)| (from, to)).collect();
+        let start = self.first().expect("the boundary was checked");
+        let mut cycle = vec![start.at];
+        let mut here = next[&start.id];
+        while here != start.id {
+            cycle.push(self.corners[&here]);
+            here = next[&here];
+        }
+        let peak = cycle.windows(2).position(|pair| lexicographic(pair[0], pair[1]) == Ordering::Greater);
+        let peak = peak.unwrap_or(cycle.len() - 1);
+        let lower = cycle[..=peak].to_vec();
+        let upper = std::iter::once(start.at).chain(cycle[peak..].iter().rev().copied()).collect();
+        Outline { lower, upper }
     }
 
     /// Checks the corner `here` of the boundary; whether it is a maximum of the lexicographic order.
@@ -105,7 +152,8 @@ impl Hull {
         corners.min_by(|p, q| lexicographic(p.at, q.at).then(p.id.cmp(&q.id)))
     }
 
-    fn corner(&self, id: u64) -> Corner {
+    /// A vertex of the boundary.
+    pub(super) fn corner(&self, id: u64) -> Corner {
         Corner { id, at: self.corners[&id] }
     }
 }

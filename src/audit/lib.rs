@@ -35,9 +35,11 @@
 //! canonical triangulation, which is unique. Euler's relation follows too, and is checked as a test of the
 //! audit itself.
 
+mod border;
 mod cells;
 mod check;
 pub mod configurations;
+mod constraints;
 mod corner;
 pub mod diagram;
 mod exact;
@@ -72,7 +74,7 @@ pub use tetrahedra::{Census, Counts, Faults};
 pub use triangles::Standard;
 
 use check::Ledger;
-use mesh::{MESH_CHECKS, MeshAudit};
+use mesh::{MeshAudit, mesh_checks};
 use partial::PartialAudit;
 use points::{PointsAudit, points_checks};
 use tetrahedra::{LiveTetrahedra, TETRAHEDRA_CHECKS, TetrahedraAudit};
@@ -124,7 +126,7 @@ impl Audit {
     pub fn new(header: &Header, standard: Standard, given: Option<PointSet>) -> Result<Self, Error> {
         let (state, mut checks) = match header.kind {
             Kind::Points => (State::Points(PointsAudit::new(header)), points_checks(header)),
-            Kind::TriangleMesh => (State::Mesh(MeshAudit::new(header, standard)), MESH_CHECKS.to_vec()),
+            Kind::TriangleMesh => (State::Mesh(MeshAudit::new(header, standard)), mesh_checks(header)),
             Kind::PartialTriangleMesh => (
                 State::Partial(PartialAudit::new(header, standard)),
                 PartialAudit::<Triangles, 2>::CHECKS.to_vec(),
@@ -181,7 +183,10 @@ impl Audit {
             (State::Points(audit), Event::Cells(cells)) => audit.cells(cells, ledger),
             (State::Points(audit), Event::End(totals)) => audit.end(totals, ledger),
             (State::Mesh(audit), Event::Patch(patch)) => audit.patch(patch, ledger),
-            (State::Mesh(_), Event::Segments(_) | Event::OpenSegments(_)) => Ok(()),
+            (State::Mesh(audit), Event::Segments(_) | Event::OpenSegments(_)) => {
+                audit.constraints(event);
+                Ok(())
+            }
             (State::Mesh(audit), Event::End(totals)) => audit.end(totals, ledger),
             (State::Partial(audit), event) => audit.event(event, ledger),
             (State::PartialTetrahedra(audit), event) => audit.event(event, ledger),

@@ -4,6 +4,7 @@
 use std::cmp::Ordering;
 
 use super::check::{Check, Ledger, Violation};
+use super::constraints::Constraints;
 use super::corner::{self, name_corners};
 use super::exact::plane::{in_circle, in_raised_circle, orientation};
 use super::facets::{Meeting, OpenFacets};
@@ -44,11 +45,19 @@ pub(super) struct Triangles {
     pub(super) vertices: Vertices<Fans>,
     pub(super) edges: OpenEdges,
     pub(super) triangles: u64,
+    /// Segments, if the mesh is constrained.
+    pub(super) constraints: Option<Box<Constraints>>,
 }
 
 impl Triangles {
     pub(super) fn new(standard: Standard) -> Self {
-        Triangles { standard, vertices: Vertices::default(), edges: OpenFacets::new(), triangles: 0 }
+        Triangles {
+            standard,
+            vertices: Vertices::default(),
+            edges: OpenFacets::new(),
+            triangles: 0,
+            constraints: None,
+        }
     }
 
     /// Checks a patch and gives the vertices that it finalizes to `finalize`.
@@ -59,13 +68,27 @@ impl Triangles {
         mut finalize: impl FnMut(&Vertex<Fans>, &mut Ledger) -> Result<(), Violation>,
     ) -> Result<(), Violation> {
         self.vertices.enter(patch, ledger)?;
-        for triangle in patch.triangles() {
-            self.triangle(triangle.map(|local| local as usize), ledger)?;
+        let mut sides = patch.sides.iter().peekable();
+        for (number, triangle) in (0..).zip(patch.triangles()) {
+            let mut segments = [None; 3];
+            while let Some(&[_, place, segment]) = sides.next_if(|side| side[0] == number) {
+                segments[place as usize] = Some(segment);
+            }
+            self.triangle(triangle.map(|local| local as usize), segments, ledger)?;
+        }
+        if let Some(constraints) = &mut self.constraints {
+            patch.finalized.iter().for_each(|&local| constraints.forget(patch.id(local)));
         }
         self.vertices.leave(patch, |vertex| finalize(vertex, ledger))
     }
 
-    fn triangle(&mut self, locals: [usize; 3], ledger: &mut Ledger) -> Result<(), Violation> {
+    /// Checks a triangle. `segments` are those that the sides opposite to its corners are on.
+    fn triangle(
+        &mut self,
+        locals: [usize; 3],
+        segments: [Option<u32>; 3],
+        ledger: &mut Ledger,
+    ) -> Result<(), Violation> {
         let corners = locals.map(|local| Corner::of(&self.vertices.local[local]));
         let [a, b, c] = corners;
         let turn = orientation(a.at, b.at, c.at);
@@ -78,7 +101,7 @@ impl Triangles {
         self.triangles += 1;
         self.wind(locals, corners);
         for side in 0..3 {
-            self.side([0, 1, 2].map(|i| locals[(side + i) % 3]), ledger)?;
+            self.side([0, 1, 2].map(|i| locals[(side + i) % 3]), segments[(side + 2) % 3], ledger)?;
         }
         Ok(())
     }
@@ -91,8 +114,13 @@ impl Triangles {
         }
     }
 
-    /// Meets the edge from the first to the second corner with its twin.
-    fn side(&mut self, locals: [usize; 3], ledger: &mut Ledger) -> Result<(), Violation> {
+    /// Meets the edge from the first to the second corner, which is on a segment or none, with its twin.
+    fn side(
+        &mut self,
+        locals: [usize; 3],
+        segment: Option<u32>,
+        ledger: &mut Ledger,
+    ) -> Result<(), Violation> {
         let local = &mut self.vertices.local;
         let [a, b, c] = locals.map(|vertex| Corner::of(&local[vertex]));
         let (from, to) = (locals[0], locals[1]);
@@ -102,11 +130,19 @@ impl Triangles {
             Meeting::Open => {
                 local[from].star.leaving += 1;
                 local[to].star.entering += 1;
-                Ok(())
+                match &mut self.constraints {
+                    Some(constraints) => constraints.first([a, b], segment, ledger),
+                    None => Ok(()),
+                }
             }
             Meeting::Twin(opposite) => {
                 local[from].star.entering -= 1;
                 local[to].star.leaving -= 1;
+                if let Some(constraints) = &mut self.constraints
+                    && constraints.second([a, b], segment)?
+                {
+                    return Ok(());
+                }
                 self.interior_edge(a, b, c, opposite, ledger)
             }
             Meeting::Twice(other) => {
@@ -129,10 +165,11 @@ impl Triangles {
         ledger: &mut Ledger,
     ) -> Result<(), Violation> {
         let place = in_circle(a.at, b.at, c.at, opposite.at);
-        ledger.count(Check::Delaunay, place.exactly);
+        let delaunay = if self.constraints.is_some() { Check::ConstrainedDelaunay } else { Check::Delaunay };
+        ledger.count(delaunay, place.exactly);
         let (check, fault) = match place.sign {
             Ordering::Less => return Ok(()),
-            Ordering::Greater => (Check::Delaunay, "is not locally Delaunay"),
+            Ordering::Greater => (delaunay, "is not locally Delaunay"),
             Ordering::Equal if self.standard == Standard::Delaunay => return Ok(()),
             Ordering::Equal => {
                 ledger.count(Check::Canonical, true);

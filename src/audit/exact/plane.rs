@@ -67,6 +67,13 @@ pub(crate) fn enclosing_circle(a: Xy, b: Xy, c: Xy) -> Option<(Xy, f64)> {
     (slack < 1e-3 && radius.is_finite()).then_some(([c[0] + offset[0], c[1] + offset[1]], radius + rounding))
 }
 
+/// Whether a segment is longer than `length`, which is not negative.
+pub(crate) fn is_longer([p, q]: [Xy; 2], length: f64) -> bool {
+    let [p, q, [length, _]] = integers([p, q, [length, 0.0]]);
+    let [[x, y]] = differences([p], &q);
+    &x * &x + &y * &y > &length * &length
+}
+
 /// Order by x, then by y.
 pub(crate) fn lexicographic(p: Xy, q: Xy) -> Ordering {
     p.partial_cmp(&q).expect("coordinates are finite")
@@ -159,6 +166,17 @@ mod tests {
     use super::*;
 
     const SQUARE: [Xy; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+
+    #[test]
+    fn lengths_are_compared_exactly() {
+        for scale in [1.0, 0.1, 1e300, 5e-324] {
+            let ends = [[0.0, 0.0], [3.0 * scale, 4.0 * scale]];
+            let whole = scale >= 1.0 || scale < 1e-300;
+            assert!(!whole || !is_longer(ends, 5.0 * scale), "{scale}");
+            assert!(is_longer(ends, (5.0 * scale).next_down().next_down()), "{scale}");
+            assert!(!is_longer(ends, (5.0 * scale).next_up().next_up()), "{scale}");
+        }
+    }
 
     /// Every route of the arithmetic: 128 bits, 320 bits, and big integers.
     #[test]
