@@ -27,6 +27,13 @@ use spmesh_stream::{
 };
 use writing::Writing;
 
+/// How the output is written.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Compress blocks.
+    pub compress: bool,
+}
+
 /// Counts of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Stats {
@@ -68,10 +75,11 @@ pub fn constrain<R: Read, W: Write>(
     reader: &mut StreamReader<R>,
     network: &Network,
     output: W,
+    options: &Options,
     mut progress: impl FnMut(u64),
 ) -> Result<(W, Stats)> {
     check(reader.header())?;
-    let header = header_of(reader.header(), network);
+    let header = Header { compressed: options.compress, ..header_of(reader.header(), network) };
     let mut filter = Filter {
         lines: Lines::new(network),
         holding: Holding::default(),

@@ -1,0 +1,157 @@
+//! `spconstrain`: flags, and the counts of `--stats`.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Parser;
+
+use super::compression::Compression;
+use super::line_flags::LineFlags;
+use super::progress::Progress;
+use super::reduction::open_stream;
+use super::rows::{self, Row};
+use super::{Common, StatsFormat, notice, peak_memory};
+use crate::endings;
+use spmesh_constrain::{Options, Stats, constrain};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
+use spmesh_core::system;
+use spmesh_lines::Target;
+
+const TOOL: &str = "spconstrain";
+
+const EXAMPLES: &str = "\
+Examples:
+  Roads as edges of the terrain, in one pipe:
+    spfinalize tiles/*.laz --lines roads.geojson | spdelaunay2d | spconstrain --lines roads.geojson | spdem --step 1 -o terrain.tif
+  Lines in a mesh that exists already; those without elevations take that of the surface:
+    spconstrain --lines streams.gpkg terrain.spm -o constrained.spm
+  What was changed about lines that cross, touch or overlap:
+    spconstrain --lines roads.shp --report changes.tsv terrain.spm -o constrained.spm
+";
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "
+The result is the constrained Delaunay triangulation: segments of lines are chains of edges, and all other edges are \
+those of the Delaunay triangulation as far as no line is in the way. It depends neither on the order of points and lines \
+nor on their directions. Lines that cross, touch or overlap get common vertices on the grid of the stream.
+
+Vertices of lines that the mesh does not have are added. Where a line states an elevation, it counts, and not that of a \
+point at the same place; a vertex without one takes the elevation of the surface. Parts of lines outside of the mesh are \
+left out, with a notice. To extend the mesh by lines, give them to spfinalize, too.
+
+Triangles that no line changes pass at once. Memory is that of the lines, about 100 bytes a segment, and of the triangles \
+that a line changes, until the last of them has come.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
+memory, 6 input of another version of spmesh, 141 output closed by its reader.";
+
+/// The message when memory runs out.
+const OUT_OF_MEMORY: &str = "spconstrain: not enough memory: give fewer lines at once\n";
+
+/// Make lines edges of a triangle mesh while it streams.
+///
+/// Reads a triangle mesh stream, as spdelaunay2d writes it, and writes one.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+pub struct Flags {
+    /// Stream of the triangle mesh; - is stdin
+    #[arg(value_name = "STREAM", default_value = "-")]
+    input: PathBuf,
+
+    /// File for the mesh; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    lines: LineFlags,
+
+    #[command(flatten)]
+    compression: Compression,
+
+    /// Print the counts of the run on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// If the lines cannot be read, the input is no triangle mesh or is malformed, or writing fails.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    let started = Instant::now();
+    flags.check()?;
+    let mut report = flags.lines.create_report()?;
+    let output = Output::create(&flags.output, true)?;
+    let mut reader = open_stream(&flags.input)?;
+    let (network, changes) = flags.lines.read(&Target::of(reader.header()))?;
+    flags.lines.notices(&changes).iter().for_each(|text| flags.notice(text));
+    if let Some(report) = &mut report {
+        changes.write_report(report).map_err(|e| Error::io("writing the report", e))?;
+    }
+    let options = Options { compress: flags.compression.of_stream() };
+    let mut progress = Progress::new(&flags.common, "constraining", reader.header().points);
+    let (output, stats) =
+        constrain(&mut reader, &network, output, &options, |vertices| progress.set(vertices))?;
+    drop(progress);
+    let output_bytes = output.bytes_written();
+    output.commit()?;
+    report.map_or(Ok(()), Output::commit)?;
+    if stats.open_segments > 0 {
+        flags.notice(&about_open(&stats));
+    }
+    if let Some(format) = flags.stats {
+        rows::print(format, started.elapsed(), counts(&stats, reader.bytes_read(), output_bytes));
+    }
+    Ok(())
+}
+
+/// The notice about segments that leave the mesh.
+fn about_open(stats: &Stats) -> String {
+    format!(
+        "{} of {} segments leave the mesh and are no edges there: to extend the mesh, give the lines to spfinalize \
+         --lines, too",
+        stats.open_segments, stats.segments
+    )
+}
+
+fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 14] {
+    [
+        ("triangles read", "triangles_read", stats.triangles[0]),
+        ("triangles written", "triangles", stats.triangles[1]),
+        ("triangles that waited", "waited", stats.held),
+        ("most triangles waiting", "waited_max", stats.held_max),
+        ("strips", "strips", stats.strips),
+        ("segments", "segments", stats.segments),
+        ("segments that leave the mesh", "open_segments", stats.open_segments),
+        ("line vertices in the mesh", "vertices_found", stats.found),
+        ("line vertices added", "vertices_added", stats.added),
+        ("line vertices outside", "vertices_outside", stats.outside),
+        ("elevations taken from lines", "raised", stats.raised),
+        ("input (bytes)", "input_bytes", input_bytes),
+        ("output (bytes)", "output_bytes", output_bytes),
+        ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
+    ]
+}
+
+impl Flags {
+    fn notice(&self, text: &str) {
+        notice(TOOL, &self.common, text);
+    }
+
+    fn check(&self) -> Result<()> {
+        let paths: Vec<&Path> = self.lines.paths().chain([self.input.as_path()]).collect();
+        if paths.iter().filter(|path| path.as_os_str() == "-").count() > 1 {
+            return Err(Error::usage("stdin can be one input only: give the lines or the mesh as a file"));
+        }
+        let outputs: Vec<(&str, &Path)> =
+            [("--output", self.output.as_path())].into_iter().chain(self.lines.outputs()).collect();
+        check_apart(paths, &outputs)?;
+        endings::check(&self.output, &[endings::STREAM])
+    }
+}
