@@ -9,8 +9,8 @@ use spmesh_io::source::Breakline;
 use spmesh_model::points::Point2;
 use spmesh_stream::Coordinates;
 
-/// Bits of coordinates of lines for streams of f64.
-const F64_BITS: i32 = 40;
+/// Coordinates of lines for streams of f64 have fewer steps than this.
+const F64_STEPS: f64 = (1u64 << 42) as f64;
 
 /// Moves of vertices that are counted, in metres, and in degrees.
 const MOVE_METRES: f64 = 0.0005;
@@ -19,24 +19,24 @@ const MOVE_DEGREES: f64 = 5e-9;
 /// A grid of integers.
 pub(crate) struct Grid {
     coordinates: Coordinates,
-    /// For coordinates of f64: a power of two, the distance of neighbours.
-    step: f64,
+    /// Neighbours are 10^-digits units apart.
+    digits: i32,
     /// Moves of vertices that are counted, in world units.
     move_min: f64,
 }
 
 impl Grid {
     pub(crate) fn of<'a>(target: &Target, lines: impl Iterator<Item = &'a Breakline>) -> Grid {
-        let step = match target.coordinates {
-            Coordinates::I32 { .. } => 1.0,
-            Coordinates::F64 => step(lines),
+        let digits = match target.coordinates {
+            Coordinates::I32 { .. } => 0,
+            Coordinates::F64 => digits(lines),
         };
         let move_min = match System::of(&target.crs).horizontal {
             Some(system) if system.is_angular() => MOVE_DEGREES,
             Some(Horizontal { unit, .. }) => MOVE_METRES / unit.size,
             None => MOVE_METRES,
         };
-        Grid { coordinates: target.coordinates, step, move_min }
+        Grid { coordinates: target.coordinates, digits, move_min }
     }
 
     /// A vertex on the grid.
@@ -58,7 +58,7 @@ impl Grid {
                 return Err(self.beyond(axis, [x, y, z.unwrap_or(0.0)][axis]));
             }
         }
-        let place = [stored[0], stored[1]].map(|value| (value / self.step).round() as i64);
+        let place = [stored[0], stored[1]].map(|value| scaled(value, self.digits).round() as i64);
         let moved = self.world(place);
         if (moved[0] - x).hypot(moved[1] - y) > self.move_min {
             changes.note(ChangeKind::Rounded, line, || world);
@@ -66,9 +66,10 @@ impl Grid {
         Ok(LineVertex { place, z: z.map(|_| stored[2]) })
     }
 
-    /// Stored coordinates of a place of the grid: exact.
+    /// Stored coordinates of a place of the grid: the numbers nearest to its decimals. So a vertex is at the place of
+    /// a point that has the same decimals.
     pub(crate) fn stored(&self, place: [i64; 2]) -> Point2 {
-        place.map(|value| value as f64 * self.step)
+        place.map(|value| scaled(value as f64, -self.digits))
     }
 
     /// World coordinates of a place of the grid.
@@ -90,14 +91,16 @@ impl Grid {
     }
 }
 
-/// The distance of neighbours on the grid for coordinates of f64: 2^(e - 40), where 2^e is the least power of two above
-/// all magnitudes.
-fn step<'a>(lines: impl Iterator<Item = &'a Breakline>) -> f64 {
+/// A number times a power of ten, rounded once: powers of up to 22 are exact.
+fn scaled(value: f64, power: i32) -> f64 {
+    if power < 0 { value / 10f64.powi(-power) } else { value * 10f64.powi(power) }
+}
+
+/// Decimal places of the grid for coordinates of f64: as many as their magnitudes leave.
+fn digits<'a>(lines: impl Iterator<Item = &'a Breakline>) -> i32 {
     let values = lines.flat_map(|line| &line.vertices).flatten();
     let most = values.fold(0.0f64, |most, value| most.max(value.abs()));
-    // The exponent of a normal number; the least one for others.
-    let exponent = ((most.to_bits() >> 52) as i32 - 1023).max(f64::MIN_EXP + F64_BITS) + 1;
-    2f64.powi(exponent - F64_BITS)
+    (-20..=20).rev().find(|&digits| scaled(most, digits) < F64_STEPS).unwrap_or(-300)
 }
 
 #[cfg(test)]
@@ -105,13 +108,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_step_follows_the_greatest_coordinate() {
+    fn the_digits_follow_the_greatest_coordinate() {
         let of = |most: f64| {
             let vertices = vec![[0.5, -most]];
             let line = Breakline { vertices, elevations: vec![None], polygon: None, position: String::new() };
-            step([line].iter())
+            digits([line].iter())
         };
-        assert_eq!((of(1.0), of(0.99), of(5_000_000.0)), (2f64.powi(-39), 2f64.powi(-40), 2f64.powi(-17)));
-        assert!(of(0.0) > 0.0 && of(f64::MAX).is_finite() && f64::MAX / of(f64::MAX) <= 2f64.powi(40));
+        assert_eq!((of(1.0), of(4_100_000.0), of(0.0), of(1e20)), (12, 6, 12, -8));
+        let grid = Grid { coordinates: Coordinates::F64, digits: 6, move_min: 0.0 };
+        let vertex = grid.vertex([499_991.708, 0.1], None, 0, &mut Changes::new(false)).unwrap();
+        assert_eq!(grid.stored(vertex.place), [499_991.708, 0.1]);
     }
 }

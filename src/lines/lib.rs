@@ -53,8 +53,8 @@ pub struct Options {
 /// Reads the lines of files as one network. Lines are numbered over all files, in their order.
 ///
 /// The network depends on the set of lines alone, but for the numbers of lines. Its coordinates are those that the
-/// stream stores. If these are f64, they are rounded to multiples of 2^(e - 40), where 2^e is the least power of two
-/// above the magnitudes of all coordinates of the lines.
+/// stream stores. If these are f64, they are rounded to decimals: as many places as leave fewer than 2^42 steps up to
+/// the greatest magnitude of the lines, 6 for coordinates in millions.
 ///
 /// # Errors
 /// Those of reading; usage, if the system of a file differs from that of the stream, or a coordinate is beyond the
