@@ -7,7 +7,7 @@ use clap::Args;
 use super::endings;
 use spmesh_core::error::Result;
 use spmesh_core::output::Output;
-use spmesh_lines::{ChangeKind, Changes, Options, Target};
+use spmesh_lines::{Areas, ChangeKind, Changes, Options, Sources, Target};
 use spmesh_model::network::Network;
 
 /// Where lines are, and how they are prepared.
@@ -20,11 +20,11 @@ pub(super) struct LineFlags {
     lines: Vec<PathBuf>,
 
     /// Divide parts of lines that are longer than this, in units of the coordinates
-    #[arg(long, value_name = "LENGTH", requires = "lines")]
+    #[arg(long, value_name = "LENGTH")]
     densify: Option<f64>,
 
     /// Write what was changed about the lines to this file: kind, line, x and y, separated by tabs
-    #[arg(long, value_name = "FILE", requires = "lines")]
+    #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
 }
 
@@ -49,13 +49,18 @@ impl LineFlags {
         Output::create(report, false).map(Some)
     }
 
-    /// Reads the lines for a stream.
+    /// Reads the lines for a stream, and polygons to cut the mesh with.
     ///
     /// # Errors
-    /// As [`spmesh_lines::read`].
-    pub(super) fn read(&self, target: &Target) -> Result<(Network, Changes)> {
+    /// As [`spmesh_lines::read_with_areas`].
+    pub(super) fn read_with_areas(
+        &self,
+        hull: &[PathBuf],
+        holes: &[PathBuf],
+        target: &Target,
+    ) -> Result<(Network, Areas, Changes)> {
         let options = Options { densify: self.densify, lists_changes: self.report.is_some() };
-        spmesh_lines::read(&self.lines, target, &options)
+        spmesh_lines::read_with_areas(&Sources { lines: &self.lines, hull, holes }, target, &options)
     }
 
     /// Messages about changes that may surprise.

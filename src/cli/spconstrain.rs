@@ -7,12 +7,13 @@ use clap::Parser;
 
 use super::compression::Compression;
 use super::line_flags::LineFlags;
+use super::outline::length;
 use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
-use super::{Common, StatsFormat, notice, peak_memory};
+use super::{Common, StatsFormat, notice, parse_size, peak_memory};
 use crate::endings;
-use spmesh_constrain::{Options, Stats, constrain};
+use spmesh_constrain::{CutOptions, Options, Stats, constrain};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
@@ -27,6 +28,8 @@ Examples:
     spfinalize tiles/*.laz --lines roads.geojson | spdelaunay2d | spconstrain --lines roads.geojson | spdem --step 1 -o terrain.tif
   Lines in a mesh that exists already; those without elevations take that of the surface:
     spconstrain --lines streams.gpkg terrain.spm -o constrained.spm
+  The mesh inside of a boundary, without buildings, and without long edges at its border:
+    spconstrain --hull boundary.geojson --holes buildings.geojson --kill 10 terrain.spm -o area.spm
   What was changed about lines that cross, touch or overlap:
     spconstrain --lines roads.shp --report changes.tsv terrain.spm -o constrained.spm
 ";
@@ -40,6 +43,10 @@ nor on their directions. Lines that cross, touch or overlap get common vertices 
 Vertices of lines that the mesh does not have are added. Where a line states an elevation, it counts, and not that of a \
 point at the same place; a vertex without one takes the elevation of the surface. Parts of lines outside of the mesh are \
 left out, with a notice. To extend the mesh by lines, give them to spfinalize, too.
+
+Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Points inside of holes stay vertices, \
+without triangles. --kill removes triangles at edges of the border that are longer than a length, and goes on with those \
+behind them, but never across lines: a concave hull. Only triangles with such an edge wait for it.
 
 Triangles that no line changes pass at once. Memory is that of the lines, about 100 bytes a segment, and of the triangles \
 that a line changes, until the last of them has come.
@@ -67,6 +74,26 @@ pub struct Flags {
     #[command(flatten)]
     lines: LineFlags,
 
+    /// Keep only what is inside of these polygons, of any format of lines. May be given several times
+    #[arg(long, value_name = "FILE")]
+    hull: Vec<PathBuf>,
+
+    /// Leave out what is inside of these polygons. May be given several times
+    #[arg(long, value_name = "FILE")]
+    holes: Vec<PathBuf>,
+
+    /// Remove triangles at edges of the border longer than this, until there are none
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    kill: Option<f64>,
+
+    /// Memory for triangles that --kill may remove; others wait in a temporary file
+    #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M", requires = "kill")]
+    memory: u64,
+
+    /// Folder for temporary files [default: TMPDIR, or /tmp]
+    #[arg(long, value_name = "FOLDER")]
+    temp_dir: Option<PathBuf>,
+
     #[command(flatten)]
     compression: Compression,
 
@@ -89,15 +116,18 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut report = flags.lines.create_report()?;
     let output = Output::create(&flags.output, true)?;
     let mut reader = open_stream(&flags.input)?;
-    let (network, changes) = flags.lines.read(&Target::of(reader.header()))?;
+    let target = Target::of(reader.header());
+    let (network, areas, changes) = flags.lines.read_with_areas(&flags.hull, &flags.holes, &target)?;
     flags.lines.notices(&changes).iter().for_each(|text| flags.notice(text));
     if let Some(report) = &mut report {
         changes.write_report(report).map_err(|e| Error::io("writing the report", e))?;
     }
-    let options = Options { compress: flags.compression.of_stream() };
+    let kill = length("--kill", flags.kill)?;
+    let cut = CutOptions { kill, memory: flags.memory, temp_dir: flags.temp_dir.clone() };
+    let options = Options { compress: flags.compression.of_stream(), cut };
     let mut progress = Progress::new(&flags.common, "constraining", reader.header().points);
     let (output, stats) =
-        constrain(&mut reader, &network, output, &options, |vertices| progress.set(vertices))?;
+        constrain(&mut reader, &network, &areas, output, &options, |vertices| progress.set(vertices))?;
     drop(progress);
     let output_bytes = output.bytes_written();
     output.commit()?;
@@ -120,10 +150,11 @@ fn about_open(stats: &Stats) -> String {
     )
 }
 
-fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 14] {
+fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 15] {
     [
         ("triangles read", "triangles_read", stats.triangles[0]),
         ("triangles written", "triangles", stats.triangles[1]),
+        ("triangles cut off", "removed", stats.removed),
         ("triangles that waited", "waited", stats.held),
         ("most triangles waiting", "waited_max", stats.held_max),
         ("strips", "strips", stats.strips),
@@ -145,7 +176,11 @@ impl Flags {
     }
 
     fn check(&self) -> Result<()> {
-        let paths: Vec<&Path> = self.lines.paths().chain([self.input.as_path()]).collect();
+        let areas = self.hull.iter().chain(&self.holes).chain([&self.input]);
+        let paths: Vec<&Path> = self.lines.paths().chain(areas.map(PathBuf::as_path)).collect();
+        if paths.len() == 1 && self.kill.is_none() {
+            return Err(Error::usage("nothing to do: give --lines, --hull, --holes or --kill (see --help)"));
+        }
         if paths.iter().filter(|path| path.as_os_str() == "-").count() > 1 {
             return Err(Error::usage("stdin can be one input only: give the lines or the mesh as a file"));
         }

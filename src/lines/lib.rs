@@ -4,6 +4,7 @@
 //! filled and long parts divided (`prepare`); coordinates are rounded to the grid of the stream (`grid`); and
 //! `geometry::noding` makes crossings and overlaps common vertices.
 
+mod areas;
 mod changes;
 mod grid;
 mod prepare;
@@ -18,6 +19,7 @@ use spmesh_io::source::{Breaklines, name_of, read_breaklines};
 use spmesh_model::network::{Network, NetworkVertex};
 use spmesh_stream::{Coordinates, Crs, Header};
 
+pub use areas::{Areas, Sources};
 pub use changes::{Change, ChangeKind, Changes};
 use grid::Grid;
 
@@ -60,21 +62,36 @@ pub struct Options {
 /// Those of reading; usage, if the system of a file differs from that of the stream, or a coordinate is beyond the
 /// grid of the stream; malformed, if there are too many vertices or crossings.
 pub fn read(paths: &[PathBuf], target: &Target, options: &Options) -> Result<(Network, Changes)> {
+    let sources = Sources { lines: paths, ..Sources::default() };
+    read_with_areas(&sources, target, options).map(|(network, _, changes)| (network, changes))
+}
+
+/// Reads lines as [`read`], and the polygons of areas, whose rings are lines, too.
+///
+/// # Errors
+/// As there; malformed, if an area has no polygon.
+pub fn read_with_areas(
+    sources: &Sources,
+    target: &Target,
+    options: &Options,
+) -> Result<(Network, Areas, Changes)> {
     if options.densify.is_some_and(|longest| !(longest > 0.0 && longest.is_finite())) {
         return Err(Error::usage("the longest part of a line must be a positive number"));
     }
     let mut changes = Changes::new(options.lists_changes);
-    let mut files = Vec::with_capacity(paths.len());
-    for path in paths {
+    let mut files = Vec::new();
+    for (role, path) in sources.files() {
         let mut file = read_breaklines(path)?;
         let name = name_of(path);
         changes.notices.extend(systems::check(&name, &file.crs, &target.crs)?);
         if !target.has_elevation {
             file.lines.iter_mut().for_each(|line| line.elevations.fill(None));
         }
-        files.push((name, file));
+        files.push((role, name, file));
     }
-    let grid = Grid::of(target, files.iter().flat_map(|(_, file)| &file.lines));
+    let grid = Grid::of(target, files.iter().flat_map(|(_, _, file)| &file.lines));
+    let rings = areas::rings(&files)?;
+    let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
     let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
     let noding = NodingOptions {
         round_elevations: matches!(target.coordinates, Coordinates::I32 { .. }),
@@ -82,7 +99,8 @@ pub fn read(paths: &[PathBuf], target: &Target, options: &Options) -> Result<(Ne
     };
     let mut note = |change, line, place| changes.note(ChangeKind::of(change), line, || grid.world(place));
     let noded = node_lines(&vertices, &starts, &noding, &mut note)?;
-    Ok((network(noded, &grid), changes))
+    let areas = areas::areas(&rings, &noded, &vertices, &starts)?;
+    Ok((network(noded, &grid), areas, changes))
 }
 
 /// The vertices of all lines on the grid, and the number of the first one of each line.

@@ -2,6 +2,7 @@
 
 use spmesh_constrain::{Options, Stats, constrain};
 use spmesh_geometry::delaunay2::triangulate;
+use spmesh_lines::Areas;
 use spmesh_model::network::{Network, NetworkSegment, NetworkVertex};
 use spmesh_reference::sets::{Random, as_floats};
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, StreamWriter};
@@ -148,7 +149,8 @@ pub struct Constrained {
 /// Runs the filter, and checks that its output is a stream that finalizes all vertices.
 pub fn run(stream: &[u8], network: &Network) -> Constrained {
     let mut reader = StreamReader::new(stream, "mesh").unwrap();
-    let (bytes, stats) = constrain(&mut reader, network, Vec::new(), &Options::default(), |_| ()).unwrap();
+    let (bytes, stats) =
+        constrain(&mut reader, network, &Areas::default(), Vec::new(), &Options::default(), |_| ()).unwrap();
     let mut reader = StreamReader::new(&bytes[..], "constrained").unwrap();
     let mut rules = spmesh_stream::MemoryRules::new(reader.header());
     let mut points: Vec<[f64; 3]> = Vec::new();

@@ -15,6 +15,7 @@
 //! crossings along a sweep line, so each decision is one exact sign.
 
 mod bend;
+mod chain;
 mod chords;
 mod collinear;
 mod cover;
@@ -27,6 +28,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::LINE_VERTICES_MAX;
 use spmesh_model::network::NetworkSegment;
 
+pub use chain::Chains;
 pub use exact::COORDINATE_MAX;
 use places::{Parts, Places};
 

@@ -63,6 +63,8 @@ pub struct ConcaveOutline {
     spilled: u64,
     memory: u64,
     temp_dir: Option<PathBuf>,
+    /// The flag that states the length, for messages.
+    flag: &'static str,
 }
 
 impl ConcaveOutline {
@@ -87,7 +89,14 @@ impl ConcaveOutline {
             spilled: 0,
             memory,
             temp_dir: temp_dir.map(Path::to_path_buf),
+            flag: "--concave",
         }
+    }
+
+    /// The same outline, whose length another flag states.
+    #[must_use]
+    pub fn of_flag(self, flag: &'static str) -> ConcaveOutline {
+        ConcaveOutline { flag, ..self }
     }
 
     /// The same outline, which knows the vertices of waiting triangles.
@@ -102,7 +111,14 @@ impl ConcaveOutline {
     /// # Errors
     /// [`ErrorKind::Memory`], if the budget is exceeded; if the temporary file cannot be written.
     pub fn take(&mut self, places: [Point2; 3], triangle: Waiting) -> Result<bool> {
-        let is_long = self.limit.long_edges(places);
+        self.take_edges(self.limit.long_edges(places), triangle)
+    }
+
+    /// As [`ConcaveOutline::take`], with the edges that chains may cross; edge i leads from corner i to the next.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn take_edges(&mut self, is_long: [bool; 3], triangle: Waiting) -> Result<bool> {
         if !is_long.contains(&true) {
             return Ok(false);
         }
@@ -129,6 +145,13 @@ impl ConcaveOutline {
     #[must_use]
     pub fn holds(&self, vertex: u64) -> bool {
         self.vertices.as_ref().is_some_and(|vertices| vertices.contains(&vertex))
+    }
+
+    /// The vertices of waiting triangles, in increasing order. Empty without [`ConcaveOutline::with_vertices`].
+    pub fn take_vertices(&mut self) -> Vec<u64> {
+        let mut vertices: Vec<u64> = self.vertices.take().into_iter().flatten().collect();
+        vertices.sort_unstable();
+        vertices
     }
 
     /// Ends the stream: the waiting triangles that are inside, in their order.
@@ -205,9 +228,10 @@ impl ConcaveOutline {
 
     fn too_many(&self) -> Error {
         let message = format!(
-            "{} triangles have an edge longer than --concave, and do not fit {} KiB, their part of --memory: \
-             take a greater length, or more memory",
+            "{} triangles have an edge longer than {}, and do not fit {} KiB, their part of --memory: take a greater \
+             length, or more memory",
             self.parts.len(),
+            self.flag,
             self.memory >> 10
         );
         Error::new(ErrorKind::Memory, message)

@@ -49,6 +49,17 @@ impl EdgeLimit {
         !matches!(self.0, Longest::Unlimited)
     }
 
+    /// The greatest length of an edge that is not long, in stored units of x; 0 without a limit.
+    #[must_use]
+    pub fn stored_length(&self) -> f64 {
+        match self.0 {
+            Longest::Unlimited => 0.0,
+            // Rounded up, so that its square is not less.
+            Longest::Steps(most) => (most as f64).sqrt().next_up(),
+            Longest::World(longest, [scale, _]) => longest / scale,
+        }
+    }
+
     /// Whether an edge is long.
     #[inline]
     #[must_use]

@@ -181,6 +181,19 @@ impl Cells {
         self.fine_range(bounds).is_none_or(|range| !self.fine_segments.any(range))
     }
 
+    /// The number of cells.
+    pub(super) fn count(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// A cell that a box meets, if neither the box nor the cell has a segment.
+    pub(super) fn free_cell(&self, bounds: &CellBox) -> Option<usize> {
+        let [[column, _], [row, _]] = range(bounds, [self.columns, self.rows])?;
+        let fine = [column, row].map(|first| [first * FINE, first * FINE + FINE - 1]);
+        let is_free = self.is_free(bounds) && !self.fine_segments.any(fine);
+        is_free.then_some(row * self.columns + column)
+    }
+
     /// Whether all vertices in a box were found.
     #[inline]
     pub(super) fn is_found(&self, bounds: &CellBox) -> bool {

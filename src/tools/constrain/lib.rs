@@ -6,9 +6,11 @@
 //!
 //! `near` says what of the lines a triangle meets, with the help of `cells`; `writing` makes patches.
 
+mod area;
 mod bits;
 mod cells;
 mod circle;
+mod cut;
 mod held;
 mod near;
 mod pyramid;
@@ -17,9 +19,12 @@ mod writing;
 
 use std::io::{Read, Write};
 
+use cut::Cut;
+pub use cut::CutOptions;
 use held::{Held, Holding};
-use near::{Lines, Meeting};
+use near::Lines;
 use spmesh_core::error::{Error, Result};
+use spmesh_lines::Areas;
 use spmesh_model::bounds::Point;
 use spmesh_model::network::Network;
 use spmesh_stream::{
@@ -28,10 +33,12 @@ use spmesh_stream::{
 use writing::Writing;
 
 /// How the output is written.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
     /// Compress blocks.
     pub compress: bool,
+    /// How the border is cut.
+    pub cut: CutOptions,
 }
 
 /// Counts of a run.
@@ -51,6 +58,8 @@ pub struct Stats {
     pub outside: u64,
     /// Vertices of the mesh that took the elevation of a line.
     pub raised: u64,
+    /// Triangles that were cut off.
+    pub removed: u64,
     /// Triangles that waited.
     pub held: u64,
     /// Components of triangles that waited.
@@ -74,18 +83,24 @@ pub struct Stats {
 pub fn constrain<R: Read, W: Write>(
     reader: &mut StreamReader<R>,
     network: &Network,
+    areas: &Areas,
     output: W,
     options: &Options,
     mut progress: impl FnMut(u64),
 ) -> Result<(W, Stats)> {
     check(reader.header())?;
-    let header = Header { compressed: options.compress, ..header_of(reader.header(), network) };
+    let coordinates = reader.header().coordinates;
+    let cut = Cut::new(network, areas, &coordinates, &options.cut);
+    let (is_cut, kill) = cut.claim();
+    let constrained = Some(Constrained { is_cut, kill });
+    let compressed = options.compress;
+    let header = Header { compressed, constrained, ..header_of(reader.header(), network) };
     let mut filter = Filter {
         lines: Lines::new(network),
         holding: Holding::default(),
         live: LiveVertices::new(),
-        writing: Writing::new(StreamWriter::new(output, header)?, network)?,
-        coordinates: reader.header().coordinates,
+        writing: Writing::new(StreamWriter::new(output, header)?, network, cut)?,
+        coordinates,
         numbers: Vec::new(),
         open: Vec::new(),
         stats: Stats { segments: network.segments.len() as u64, ..Stats::default() },
@@ -125,8 +140,7 @@ fn header_of(header: &Header, network: &Network) -> Header {
         }
         bounds
     });
-    let constrained = Some(Constrained { is_cut: false, kill: 0.0 });
-    Header { bounds, points: None, tree: None, constrained, ..header.clone() }
+    Header { bounds, points: None, tree: None, ..header.clone() }
 }
 
 struct Filter<'n, W: Write> {
@@ -150,13 +164,15 @@ impl<W: Write> Filter<'_, W> {
         self.numbers.clear();
         self.numbers.resize(patch.new.len(), None);
         self.numbers.extend(patch.imported.iter().map(|&id| self.holding.number(id)));
-        let sides = self.divide(&mut patch)?;
-        patch.finalized.retain(|&local| {
+        self.divide(&mut patch)?;
+        let mut finalized = std::mem::take(&mut patch.finalized);
+        finalized.retain(|&local| {
             let number = self.numbers[local as usize];
             number.into_iter().for_each(|number| self.holding.finalize(number));
-            number.is_none()
+            number.is_none() && !self.writing.holds(patch.id(local))
         });
-        self.writing.patch(patch, sides, rows)?;
+        patch.finalized = finalized;
+        self.writing.patch(patch, rows)?;
         while let Some(triangles) = self.holding.take_whole() {
             self.strip(&triangles)?;
         }
@@ -178,11 +194,10 @@ impl<W: Write> Filter<'_, W> {
         }
     }
 
-    /// Takes the triangles that lines change out of a patch. Returns the sides of the others that are on
-    /// segments.
-    fn divide(&mut self, patch: &mut Patch) -> Result<Vec<[u32; 3]>> {
+    /// Takes the triangles that lines change out of a patch, and those that are cut off. Notes the sides of the
+    /// others that are on segments.
+    fn divide(&mut self, patch: &mut Patch) -> Result<()> {
         let locals = self.live.enter(patch, |_, point| point)?;
-        let mut sides = Vec::new();
         let mut kept = 0;
         for first in (0..patch.simplices.len()).step_by(3) {
             let corners = [0, 1, 2].map(|corner| patch.simplices[first + corner]);
@@ -190,28 +205,30 @@ impl<W: Write> Filter<'_, W> {
                 let [x, y, _] = locals[local as usize].1;
                 [x, y]
             });
-            let meeting = self.lines.meeting(places);
-            if let Some(meeting) = meeting.as_ref().filter(|meeting| !meeting.changes()) {
-                let on = (0..).zip(meeting.on);
-                sides.extend(on.filter_map(|(place, on)| Some([kept as u32 / 3, place, on?])));
-            }
-            match meeting.filter(Meeting::changes) {
-                Some(meeting) => {
+            let mut on = [None; 3];
+            if let Some(meeting) = self.lines.meeting(places) {
+                if meeting.changes() {
                     let numbers = corners.map(|local| {
                         let (id, point) = locals[local as usize];
                         *self.numbers[local as usize].get_or_insert_with(|| self.holding.enter(id, point))
                     });
                     self.holding.hold(numbers, meeting);
                     self.stats.held += 1;
+                    continue;
                 }
-                None => {
-                    patch.simplices[kept..kept + 3].copy_from_slice(&corners);
-                    kept += 3;
-                }
+                on = meeting.on;
             }
+            let ids = || corners.map(|local| locals[local as usize].0);
+            if !self.writing.keeps(places, on, ids)? {
+                continue;
+            }
+            let sides = (0..).zip(on);
+            patch.sides.extend(sides.filter_map(|(place, on)| Some([kept as u32 / 3, place, on?])));
+            patch.simplices[kept..kept + 3].copy_from_slice(&corners);
+            kept += 3;
         }
         patch.simplices.truncate(kept);
-        Ok(sides)
+        Ok(())
     }
 
     /// Triangulates a component anew.
@@ -247,8 +264,6 @@ impl<W: Write> Filter<'_, W> {
         self.stats.open_segments = self.open.len() as u64;
         self.stats.outside = network.vertices.len() as u64 - self.stats.found - self.stats.added;
         self.stats.held_max = self.holding.triangles_max as u64;
-        self.stats.triangles[1] = self.writing.triangles();
-        let output = self.writing.end(&self.open, points + self.stats.added, merged)?;
-        Ok((output, self.stats))
+        self.writing.end(&self.open, points + self.stats.added, merged, self.stats)
     }
 }

@@ -14,6 +14,8 @@ use spmesh_stream::Coordinates;
 pub(super) struct Strip {
     /// Numbers of its corners in [`Holding`].
     pub(super) corners: Vec<u32>,
+    /// The places of corners, then of new vertices.
+    pub(super) places: Vec<Point2>,
     /// Vertices that the mesh did not have, and their numbers in the network; they come after the corners.
     pub(super) new: Vec<(u32, Point)>,
     /// Points are corners, then new vertices.
@@ -56,7 +58,8 @@ pub(super) fn triangulate(
     }
     let parts = work.parts(triangles, lines);
     work.constrain(&parts, lines, &mut region)?;
-    Ok(Strip { corners: work.corners, new: work.new, pieces: region.pieces().collect(), open: work.open })
+    let pieces = region.pieces().collect();
+    Ok(Strip { corners: work.corners, places: work.places, new: work.new, pieces, open: work.open })
 }
 
 /// A vertex to be inserted.

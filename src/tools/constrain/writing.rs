@@ -2,21 +2,32 @@
 
 use std::io::Write;
 
+use super::Stats;
+use super::cut::{Cut, segments_of};
 use super::strip::Strip;
-use foldhash::HashMap;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
 use spmesh_model::network::{Network, NetworkSegment};
+use spmesh_model::points::Point2;
 use spmesh_stream::{Patch, Segment, StreamWriter};
 
-/// Triangles of a patch at most, so that it fits a block.
-const TRIANGLES_MAX: usize = 8192;
+/// Triangles, new vertices and finalized vertices of a patch at most, so that it fits a block.
+const PATCH_MAX: usize = 8192;
 
 /// Segments of a block at most.
 const SEGMENTS_MAX: usize = 8192;
 
-/// References to new vertices count down from here; all others are ids.
+/// References to new vertices count down from here; all others are ids of the output.
 const NEW: u64 = u64::MAX;
+
+/// A triangle to be written.
+#[derive(Debug, Clone, Copy)]
+struct Triangle {
+    vertices: [u64; 3],
+    /// Segments of the sides opposite to the vertices.
+    segments: [Option<u32>; 3],
+    places: [Point2; 3],
+}
 
 /// Writes the mesh. Vertices keep their order, so ids grow by the number of vertices that were added before them.
 pub(super) struct Writing<W: Write> {
@@ -24,22 +35,21 @@ pub(super) struct Writing<W: Write> {
     /// For each group of vertices that were added: the first id of the input after them, and how many were
     /// added so far.
     shifts: Vec<[u64; 2]>,
-    /// Ids of the input so far.
+    /// Number of vertices of the input so far.
     next_id: u64,
-    /// Triangles that waited, by references.
-    triangles: Vec<[u64; 3]>,
-    /// Segments of their sides.
-    segments: Vec<[Option<u32>; 3]>,
+    /// Triangles of strips, by references.
+    triangles: Vec<Triangle>,
     new: Vec<Point>,
     /// Ids of vertices that are final after these triangles.
     finalized: Vec<u64>,
     /// The attributes of a vertex that is added.
     row: Vec<u8>,
+    cut: Cut,
 }
 
 impl<W: Write> Writing<W> {
     /// Writes the segments.
-    pub(super) fn new(mut writer: StreamWriter<W>, network: &Network) -> Result<Writing<W>> {
+    pub(super) fn new(mut writer: StreamWriter<W>, network: &Network, cut: Cut) -> Result<Writing<W>> {
         for segments in network.segments.chunks(SEGMENTS_MAX) {
             let segment = |it: &NetworkSegment| Segment { line: it.line, ends: network.places(it) };
             writer.segments(&segments.iter().map(segment).collect::<Vec<_>>())?;
@@ -50,16 +60,11 @@ impl<W: Write> Writing<W> {
             shifts: Vec::new(),
             next_id: 0,
             triangles: Vec::new(),
-            segments: Vec::new(),
             new: Vec::new(),
             finalized: Vec::new(),
             row,
+            cut,
         })
-    }
-
-    /// The number of triangles written.
-    pub(super) fn triangles(&self) -> u64 {
-        self.writer.totals().simplices
     }
 
     /// The id in the output of a vertex of the input.
@@ -68,9 +73,35 @@ impl<W: Write> Writing<W> {
         after.checked_sub(1).map_or(id, |last| id + self.shifts[last][1])
     }
 
-    /// Writes a patch of the input; `sides` are those on segments: triangle, place, segment.
-    pub(super) fn patch(&mut self, mut patch: Patch, sides: Vec<[u32; 3]>, rows: &[u8]) -> Result<()> {
-        patch.sides = sides;
+    /// Whether a triangle of the input stays in its patch: it is not cut off, and cannot be later. `ids` are those
+    /// of the input, `on` the segments of its sides.
+    ///
+    /// # Errors
+    /// If triangles that wait need too much memory.
+    #[inline]
+    pub(super) fn keeps(
+        &mut self,
+        places: [Point2; 3],
+        on: [Option<u32>; 3],
+        ids: impl FnOnce() -> [u64; 3],
+    ) -> Result<bool> {
+        if !self.cut.keeps(places) {
+            return Ok(false);
+        }
+        if !self.cut.may_wait() {
+            return Ok(true);
+        }
+        let ids = ids().map(|id| self.id(id));
+        Ok(!self.cut.waits(ids, places, on)?)
+    }
+
+    /// Whether a triangle that may be cut off has this vertex of the input.
+    pub(super) fn holds(&self, id: u64) -> bool {
+        self.cut.may_wait() && self.cut.holds(self.id(id))
+    }
+
+    /// Writes a patch of the input.
+    pub(super) fn patch(&mut self, mut patch: Patch, rows: &[u8]) -> Result<()> {
         self.next_id = patch.first_id + patch.new.len() as u64;
         if !self.shifts.is_empty() {
             patch.first_id = self.writer.totals().vertices;
@@ -84,106 +115,127 @@ impl<W: Write> Writing<W> {
     /// Adds the triangles of a strip, whose corners have these ids in the input.
     pub(super) fn add(&mut self, ids: &[u64], finalized: &[u64], strip: &Strip) {
         let first_new = self.new.len() as u64;
-        let reference = |point: u32| match (point as usize).checked_sub(ids.len()) {
-            None => self.id(ids[point as usize]),
-            Some(new) => NEW - (first_new + new as u64),
-        };
-        let triangles: Vec<[u64; 3]> = strip.pieces.iter().map(|piece| piece.points.map(reference)).collect();
-        let finalized: Vec<u64> = finalized.iter().map(|&id| self.id(id)).collect();
-        self.triangles.extend(triangles);
-        self.segments.extend(strip.pieces.iter().map(|piece| piece.segments));
+        for piece in &strip.pieces {
+            let places = piece.points.map(|point| strip.places[point as usize]);
+            if self.cut.keeps(places) {
+                let vertices = piece.points.map(|point| match (point as usize).checked_sub(ids.len()) {
+                    None => self.id(ids[point as usize]),
+                    Some(new) => NEW - (first_new + new as u64),
+                });
+                self.triangles.push(Triangle { vertices, segments: piece.segments, places });
+            }
+        }
+        for &id in finalized {
+            let id = self.id(id);
+            self.finalized.push(id);
+        }
         self.new.extend(strip.new.iter().map(|&(_, point)| point));
-        self.finalized.extend(finalized);
     }
 
     /// Writes what was added.
     pub(super) fn flush(&mut self) -> Result<()> {
-        let triangles = std::mem::take(&mut self.triangles);
-        let mut ids: HashMap<u64, u64> = HashMap::default();
-        let is_single = triangles.len() <= TRIANGLES_MAX;
-        let mut finalized = std::mem::take(&mut self.finalized);
-        let segments = std::mem::take(&mut self.segments);
-        for (chunk, segments) in triangles.chunks(TRIANGLES_MAX).zip(segments.chunks(TRIANGLES_MAX)) {
-            let last = if is_single { &finalized[..] } else { &[] };
-            let mut patch = self.chunk(chunk, &mut ids, last, is_single);
-            patch.sides = (0..)
-                .zip(segments)
-                .flat_map(|(triangle, on)| {
-                    (0..).zip(on).filter_map(move |(place, on)| Some([triangle, place, (*on)?]))
-                })
-                .collect();
-            self.writer.patch_with_rows(&patch, &self.row.repeat(patch.new.len()))?;
+        let mut triangles = std::mem::take(&mut self.triangles);
+        let (mut finalized, new) = (std::mem::take(&mut self.finalized), std::mem::take(&mut self.new));
+        let first = self.writer.totals().vertices;
+        let resolve = |reference: u64| {
+            let new_number = NEW - reference;
+            if new_number < new.len() as u64 { first + new_number } else { reference }
+        };
+        for triangle in &mut triangles {
+            triangle.vertices = triangle.vertices.map(resolve);
         }
-        if !is_single {
-            finalized.extend(ids.values());
-            finalized.sort_unstable();
-            for ids in finalized.chunks(TRIANGLES_MAX) {
-                let first_id = self.writer.totals().vertices;
-                let finalized = (0..ids.len() as u32).collect();
-                let patch = Patch { first_id, imported: ids.to_vec(), finalized, ..Patch::default() };
-                self.writer.patch(&patch)?;
-            }
+        if self.cut.may_wait() {
+            triangles = self.without_waiting(triangles)?;
         }
-        if !self.new.is_empty() {
-            let added = self.shifts.last().map_or(0, |shift| shift[1]) + self.new.len() as u64;
+        finalized.extend(first..first + new.len() as u64);
+        finalized.retain(|&id| !self.cut.holds(id));
+        self.write(&new, &triangles, &mut finalized)?;
+        if !new.is_empty() {
+            let added = self.shifts.last().map_or(0, |shift| shift[1]) + new.len() as u64;
             self.shifts.push([self.next_id, added]);
         }
-        self.triangles = triangles;
-        self.triangles.clear();
-        self.segments = segments;
-        self.segments.clear();
-        self.new.clear();
+        triangles.clear();
         finalized.clear();
-        self.finalized = finalized;
+        (self.triangles, self.finalized) = (triangles, finalized);
         Ok(())
     }
 
-    /// The patch of some triangles. `ids` are those of new vertices that earlier ones have. With `ends`, all new
-    /// vertices are final after it, and those of `finalized`.
-    fn chunk(
-        &self,
-        triangles: &[[u64; 3]],
-        ids: &mut HashMap<u64, u64>,
-        finalized: &[u64],
-        ends: bool,
-    ) -> Patch {
-        let first_id = self.writer.totals().vertices;
-        let mut patch = Patch { first_id, ..Patch::default() };
-        let known =
-            |reference: u64, ids: &HashMap<u64, u64>| ids.get(&reference).copied().unwrap_or(reference);
-        let mut references: Vec<u64> = triangles.iter().flatten().map(|&it| known(it, ids)).collect();
-        references.sort_unstable();
-        references.dedup();
-        let first_new = references.partition_point(|&it| NEW - it >= self.new.len() as u64);
-        let new = references.split_off(first_new);
-        for (&reference, id) in new.iter().zip(first_id..) {
-            patch.new.push(self.new[(NEW - reference) as usize]);
-            ids.insert(reference, id);
-        }
-        patch.imported = references;
-        let local = |reference: u64| match known(reference, ids).checked_sub(first_id) {
-            Some(new) => new as u32,
-            None => {
-                let id = known(reference, ids);
-                let place = patch.imported.binary_search(&id).expect("a corner of a triangle");
-                (patch.new.len() + place) as u32
+    /// Triangles but for those that wait because they may be cut off.
+    fn without_waiting(&mut self, triangles: Vec<Triangle>) -> Result<Vec<Triangle>> {
+        let mut kept = Vec::with_capacity(triangles.len());
+        for triangle in triangles {
+            if !self.cut.waits(triangle.vertices, triangle.places, triangle.segments)? {
+                kept.push(triangle);
             }
-        };
-        patch.simplices = triangles.iter().flatten().map(|&reference| local(reference)).collect();
-        if ends {
-            let mut locals: Vec<u32> = finalized.iter().map(|&id| local(id)).collect();
-            locals.extend(0..patch.new.len() as u32);
-            locals.sort_unstable();
-            patch.finalized = locals;
         }
-        patch
+        Ok(kept)
     }
 
-    /// Ends the stream. `open` are the segments that are not wholly edges.
-    pub(super) fn end(mut self, open: &[u32], points: u64, merged: u64) -> Result<W> {
+    /// Writes vertices, then triangles, and finalizes vertices, in as many patches as it takes.
+    fn write(&mut self, mut new: &[Point], triangles: &[Triangle], finalized: &mut Vec<u64>) -> Result<()> {
+        while new.len() > PATCH_MAX {
+            let (part, rest) = new.split_at(PATCH_MAX);
+            self.write_patch(part, &[], &[])?;
+            new = rest;
+        }
+        let mut rest = triangles;
+        while rest.len() > PATCH_MAX {
+            let (part, others) = rest.split_at(PATCH_MAX);
+            self.write_patch(std::mem::take(&mut new), part, &[])?;
+            rest = others;
+        }
+        finalized.sort_unstable();
+        let mut parts = finalized.chunks(PATCH_MAX);
+        let last = parts.next().unwrap_or_default();
+        if !new.is_empty() || !rest.is_empty() || !last.is_empty() {
+            self.write_patch(new, rest, last)?;
+        }
+        parts.try_for_each(|part| self.write_patch(&[], &[], part))
+    }
+
+    /// Writes a patch of new vertices, of triangles of vertices with ids, and of vertices to be finalized.
+    fn write_patch(&mut self, new: &[Point], triangles: &[Triangle], finalized: &[u64]) -> Result<()> {
+        let first_id = self.writer.totals().vertices;
+        let used = triangles.iter().flat_map(|triangle| triangle.vertices).chain(finalized.iter().copied());
+        let mut imported: Vec<u64> = used.filter(|&id| id < first_id).collect();
+        imported.sort_unstable();
+        imported.dedup();
+        let local = |id: u64| match id.checked_sub(first_id) {
+            Some(local) => local as u32,
+            None => (new.len() + imported.binary_search(&id).expect("the vertex is imported")) as u32,
+        };
+        let mut locals: Vec<u32> = finalized.iter().map(|&id| local(id)).collect();
+        locals.sort_unstable();
+        let simplices = triangles.iter().flat_map(|triangle| triangle.vertices.map(local)).collect();
+        let sides = (0..).zip(triangles).flat_map(|(number, triangle)| {
+            let sides = (0..).zip(triangle.segments);
+            sides.filter_map(move |(place, on)| Some([number, place, on?]))
+        });
+        let sides = sides.collect();
+        let patch = Patch { first_id, new: new.to_vec(), imported, simplices, finalized: locals, sides };
+        self.writer.patch_with_rows(&patch, &self.row.repeat(new.len()))
+    }
+
+    /// Writes the triangles that waited and were not cut off, and ends the stream. `open` are the segments that are
+    /// not wholly edges. Returns the counts with those that are known now.
+    pub(super) fn end(mut self, open: &[u32], points: u64, merged: u64, stats: Stats) -> Result<(W, Stats)> {
+        if let Some((mut inside, mut vertices)) = self.cut.finish()? {
+            let mut triangles = Vec::with_capacity(PATCH_MAX);
+            while let Some(waiting) = inside.next_triangle()? {
+                let (vertices, segments) = (waiting.ids, segments_of(&waiting));
+                triangles.push(Triangle { vertices, segments, places: [[0.0; 2]; 3] });
+                if triangles.len() == PATCH_MAX {
+                    self.write(&[], &triangles, &mut Vec::new())?;
+                    triangles.clear();
+                }
+            }
+            self.write(&[], &triangles, &mut vertices)?;
+        }
         for open in open.chunks(SEGMENTS_MAX) {
             self.writer.open_segments(open)?;
         }
-        self.writer.end(points, merged)
+        let triangles = [stats.triangles[0], self.writer.totals().simplices];
+        let stats = Stats { triangles, removed: self.cut.removed, ..stats };
+        Ok((self.writer.end(points, merged)?, stats))
     }
 }
