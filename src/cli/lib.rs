@@ -6,6 +6,7 @@ pub mod configgen;
 mod crs;
 pub mod dd4;
 mod endings;
+mod lines;
 mod messages;
 mod outline;
 mod point_filters;
