@@ -20,6 +20,7 @@ mod formats;
 mod height;
 mod house;
 mod limits;
+mod lines;
 mod links;
 mod manifest;
 mod messages;

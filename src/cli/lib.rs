@@ -6,7 +6,7 @@ pub mod configgen;
 mod crs;
 pub mod dd4;
 mod endings;
-mod line_flags;
+mod lines;
 mod messages;
 mod outline;
 mod point_filters;

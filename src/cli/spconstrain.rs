@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Parser;
 
 use super::compression::Compression;
-use super::line_flags::LineFlags;
+use super::lines::{LineFlags, summary, write_report};
 use super::outline::length;
 use super::progress::Progress;
 use super::reduction::open_stream;
@@ -113,15 +113,12 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let started = Instant::now();
     flags.check()?;
-    let mut report = flags.lines.create_report()?;
+    let report = flags.lines.create_report()?;
     let output = Output::create(&flags.output, true)?;
     let mut reader = open_stream(&flags.input)?;
     let target = Target::of(reader.header());
     let (network, areas, changes) = flags.lines.read_with_areas(&flags.hull, &flags.holes, &target)?;
-    flags.lines.notices(&changes).iter().for_each(|text| flags.notice(text));
-    if let Some(report) = &mut report {
-        changes.write_report(report).map_err(|e| Error::io("writing the report", e))?;
-    }
+    changes.notices.iter().chain(summary(&changes).as_ref()).for_each(|text| flags.notice(text));
     let kill = length("--kill", flags.kill)?;
     let cut = CutOptions { kill, memory: flags.memory, temp_dir: flags.temp_dir.clone() };
     let options = Options { compress: flags.compression.of_stream(), cut };
@@ -131,7 +128,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     drop(progress);
     let output_bytes = output.bytes_written();
     output.commit()?;
-    report.map_or(Ok(()), Output::commit)?;
+    write_report(report, &changes)?;
     if stats.open_segments > 0 {
         flags.notice(&about_open(&stats));
     }
@@ -177,15 +174,16 @@ impl Flags {
 
     fn check(&self) -> Result<()> {
         let areas = self.hull.iter().chain(&self.holes).chain([&self.input]);
-        let paths: Vec<&Path> = self.lines.paths().chain(areas.map(PathBuf::as_path)).collect();
+        let paths: Vec<&Path> = self.lines.files.iter().chain(areas).map(PathBuf::as_path).collect();
         if paths.len() == 1 && self.kill.is_none() {
             return Err(Error::usage("nothing to do: give --lines, --hull, --holes or --kill (see --help)"));
         }
         if paths.iter().filter(|path| path.as_os_str() == "-").count() > 1 {
             return Err(Error::usage("stdin can be one input only: give the lines or the mesh as a file"));
         }
+        let report = self.lines.report.iter().map(|report| ("--report", report.as_path()));
         let outputs: Vec<(&str, &Path)> =
-            [("--output", self.output.as_path())].into_iter().chain(self.lines.outputs()).collect();
+            [("--output", self.output.as_path())].into_iter().chain(report).collect();
         check_apart(paths, &outputs)?;
         endings::check(&self.output, &[endings::STREAM])
     }

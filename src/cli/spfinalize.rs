@@ -7,6 +7,7 @@ use clap::Parser;
 
 use super::compression::Compression;
 use super::crs::CrsFlag;
+use super::lines::{LineFlags, summary, write_report};
 use super::point_filters::PointFilters;
 use super::progress::Progress;
 use super::text_flags::TextFlags;
@@ -17,9 +18,15 @@ use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
-use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
+use spmesh_finalize::{
+    AddedPoints, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats,
+};
 use spmesh_io::detect::SPFINALIZE;
-use spmesh_io::source::{AttributeChoice, DropReason, Dropped, Input, InvalidAdvice, RawType, SourceOptions};
+use spmesh_io::source::{
+    AttributeChoice, Description, DropReason, Dropped, Input, InvalidAdvice, RawType, SourceOptions,
+};
+use spmesh_lines::{ChangeKind, Changes, Target};
+use spmesh_model::bounds::Point;
 
 const TOOL: &str = "spfinalize";
 
@@ -47,6 +54,8 @@ Examples:
       spfinalize --crs EPSG:25832+7837 tiles/*.laz | spdelaunay2d -o ground.spm
   Points of space from compressed text:
       spfinalize --octree scan.xyz.gz | spdelaunay3d -o scan.spm
+  Points and roads, whose vertices with elevations become points:
+      spfinalize --keep-class 2 --lines roads.gpkg tile.laz | spdelaunay2d -o ground.spm
   Points for another machine, at a quarter of the bytes:
       spfinalize --compress tile.laz | ssh host spdelaunay2d -o tile.spm
   Particles as floats without a header, the files of two processes as one input:
@@ -157,6 +166,9 @@ pub struct Flags {
 
     #[command(flatten)]
     text: TextFlags,
+
+    #[command(flatten)]
+    lines: LineFlags,
 }
 
 /// When decoded points are kept for later passes.
@@ -177,17 +189,34 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     // Fail before the work if the output cannot be created.
     let mut output = Output::create(&flags.output, true)?;
     let paths = flags.paths()?;
-    let inputs = paths.iter().chain(&flags.lof).map(PathBuf::as_path);
-    check_apart(inputs, &[("--output", &flags.output)])?;
+    let inputs = paths.iter().chain(&flags.lof).chain(&flags.lines.files).map(PathBuf::as_path);
+    let mut outputs = vec![("--output", flags.output.as_path())];
+    outputs.extend(flags.lines.report.as_ref().map(|report| ("--report", report.as_path())));
+    check_apart(inputs, &outputs)?;
+    let report = flags.lines.create_report()?;
     endings::check(&flags.output, &[endings::STREAM])?;
     let input = Input::open(&paths, &flags.source_options()?)?;
     for message in input.notices() {
         notice(TOOL, &flags.common, message);
     }
+    let (added, changes) = flags.added(&input)?;
+    for message in &changes.notices {
+        notice(TOOL, &flags.common, message);
+    }
     let mut watch = Watch { common: &flags.common, progress: None };
-    let stats = spmesh_finalize::run(&input, &options, &mut watch, &mut output)?;
+    let stats = spmesh_finalize::run_with(&input, &added, &options, &mut watch, &mut output)?;
     drop(watch);
     output.commit()?;
+    write_report(report, &changes)?;
+    if let Some(message) = summary(&changes) {
+        notice(TOOL, &flags.common, &message);
+    }
+    let lines = LineStats {
+        has_lines: !flags.lines.files.is_empty(),
+        points: added.len(),
+        replaced: added.replaced(),
+        changes: &changes,
+    };
     let dropped = input.dropped();
     if let Some(message) = withheld_notice(&dropped) {
         notice(TOOL, &flags.common, &message);
@@ -201,8 +230,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         notice(TOOL, &flags.common, &message);
     }
     match flags.stats {
-        Some(StatsFormat::Text) => super::say(&stats_text(&stats, &dropped)),
-        Some(StatsFormat::Json) => super::say(&format!("{}\n", stats_json(&stats, &dropped))),
+        Some(StatsFormat::Text) => super::say(&(stats_text(&stats, &dropped) + &lines.text())),
+        Some(StatsFormat::Json) => super::say(&format!("{}\n", lines.in_json(stats_json(&stats, &dropped)))),
         None => {}
     }
     let salvaged = input.salvaged();
@@ -235,6 +264,24 @@ impl Flags {
         })
     }
 
+    /// The vertices of lines that become points, and what was changed about lines.
+    fn added(&self, input: &Input) -> anyhow::Result<(AddedPoints, Changes)> {
+        if self.octree && !self.lines.files.is_empty() {
+            anyhow::bail!(Error::usage("--lines needs points of the plane: leave out --octree"));
+        }
+        let Description { coordinates, has_elevation, ref crs, .. } = *input.description();
+        let target = Target { coordinates, crs: crs.clone(), has_elevation };
+        let Some((network, changes)) = self.lines.read(&target)? else { return Ok(Default::default()) };
+        let is_kept = |&point: &Point| {
+            self.points.bounds.is_none_or(|bounds| bounds.contains(coordinates.to_decimal(point)))
+        };
+        let points = network.vertices.iter().filter_map(|vertex| {
+            let [x, y] = vertex.place;
+            Some([x, y, vertex.z?])
+        });
+        Ok((AddedPoints::new(points.filter(is_kept).collect()), changes))
+    }
+
     fn threads(&self) -> usize {
         self.threads.map_or_else(|| available_threads().get(), usize::from)
     }
@@ -260,9 +307,9 @@ impl Flags {
 
     fn paths(&self) -> anyhow::Result<Vec<PathBuf>> {
         let mut paths = self.inputs.clone();
+        let stdin = Path::new("-");
         if let Some(list) = &self.lof {
             paths.extend(read_list(list)?);
-            let stdin = Path::new("-");
             if list == stdin && paths.iter().any(|path| path == stdin) {
                 anyhow::bail!(Error::usage(
                     "the list of files and one of the files cannot both be stdin (-)"
@@ -270,6 +317,11 @@ impl Flags {
             }
         } else if paths.is_empty() {
             paths.push(PathBuf::from("-"));
+        }
+        let lines = self.lines.files.iter().filter(|path| *path == stdin).count();
+        let others = paths.iter().chain(&self.lof).filter(|path| *path == stdin).count();
+        if lines > 1 || (lines == 1 && others > 0) {
+            anyhow::bail!(Error::usage("stdin (-) can be only one of points, lines and the list of files"));
         }
         Ok(paths)
     }
@@ -296,6 +348,39 @@ impl Observer for Watch<'_> {
 
     fn notice(&mut self, message: &str) {
         notice(TOOL, self.common, message);
+    }
+}
+
+/// Figures about lines.
+struct LineStats<'a> {
+    has_lines: bool,
+    points: usize,
+    replaced: u64,
+    changes: &'a Changes,
+}
+
+impl LineStats<'_> {
+    /// Rows of the report; empty without lines.
+    fn text(&self) -> String {
+        let changes =
+            ChangeKind::ALL.iter().map(|&kind| (kind.name().replace('_', " "), self.changes.count(kind)));
+        let changes = changes.map(|(name, count)| (format!("lines: {name}"), count));
+        let points = [("points of lines", self.points as u64), ("points replaced by lines", self.replaced)];
+        let rows = points.map(|(name, count)| (name.to_string(), count)).into_iter().chain(changes);
+        rows.filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name:<32}{count}\n")).collect()
+    }
+
+    /// Adds the figures to those of the run, if there are lines.
+    fn in_json(&self, mut stats: serde_json::Value) -> serde_json::Value {
+        if !self.has_lines {
+            return stats;
+        }
+        let changes =
+            ChangeKind::ALL.iter().map(|&kind| (kind.name().into(), self.changes.count(kind).into()));
+        let changes: serde_json::Map<_, _> = changes.collect();
+        stats["lines"] =
+            serde_json::json!({"points": self.points, "replaced": self.replaced, "changes": changes});
+        stats
     }
 }
 

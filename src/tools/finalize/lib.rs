@@ -10,8 +10,11 @@
 //!
 //! If points are to be thinned, a pass before these finds which ones are kept (`thin`).
 //!
+//! Points may be added to those of the input, such as the vertices of lines (`added`).
+//!
 //! The result does not depend on how many points wait in memory or on disk. Counters have 64 bits.
 
+mod added;
 mod batch;
 mod budget;
 mod buffer;
@@ -34,10 +37,11 @@ mod stats;
 mod thin;
 mod work;
 
+pub use added::AddedPoints;
 pub use budget::Budget;
 pub use options::{CELL_POINTS, Leaves, Options, Order};
 pub use passes::{Observer, Pass, Passes};
-pub use run::run;
+pub use run::{run, run_with};
 pub use spool::Spooling;
 pub use stats::Stats;
 pub use thin::{Thin, ThinBy};

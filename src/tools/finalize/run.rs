@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::time::Instant;
 
+use super::added::{AddedPoints, WithAdded};
 use super::count_pass::PointCounts;
 use super::options::{Options, Order};
 use super::passes::{Observer, Pass, Passes};
@@ -31,12 +32,26 @@ pub fn run<P: Passes + ?Sized, W: Write>(
     observer: &mut dyn Observer,
     output: W,
 ) -> Result<Stats> {
+    run_with(input, &AddedPoints::default(), options, observer, output)
+}
+
+/// As [`run`], with points that are added to those of the input, and not thinned.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_with<P: Passes + ?Sized, W: Write>(
+    input: &P,
+    added: &AddedPoints,
+    options: &Options,
+    observer: &mut dyn Observer,
+    output: W,
+) -> Result<Stats> {
     options.check(input.description().dims)?;
     let budget = options.budget.beside_rows(input.description().attributes.row_len())?;
     let options = &Options { budget, ..options.clone() };
     let run = match &options.thin {
-        None => write(input, options, observer, output),
-        Some(thin) => write_thinned(input, thin, options, observer, output),
+        None => write(input, added, options, observer, output),
+        Some(thin) => write_thinned(input, added, thin, options, observer, output),
     };
     run.map_err(|error| match input.name() {
         // An error without a name concerns the input as a whole.
@@ -46,6 +61,19 @@ pub fn run<P: Passes + ?Sized, W: Write>(
 }
 
 fn write<P: Passes + ?Sized, W: Write>(
+    input: &P,
+    added: &AddedPoints,
+    options: &Options,
+    observer: &mut dyn Observer,
+    output: W,
+) -> Result<Stats> {
+    if added.is_empty() {
+        return write_all(input, options, observer, output);
+    }
+    write_all(&WithAdded::new(input, added), options, observer, output)
+}
+
+fn write_all<P: Passes + ?Sized, W: Write>(
     input: &P,
     options: &Options,
     observer: &mut dyn Observer,
@@ -59,6 +87,7 @@ fn write<P: Passes + ?Sized, W: Write>(
 /// Finds the points that are kept, and writes them.
 fn write_thinned<P: Passes + ?Sized, W: Write>(
     input: &P,
+    added: &AddedPoints,
     thin: &Thin,
     options: &Options,
     observer: &mut dyn Observer,
@@ -69,7 +98,7 @@ fn write_thinned<P: Passes + ?Sized, W: Write>(
     let winners = thin.winners(input, &options.budget, |points| observer.done(points))?;
     let (time, thinned) = (start.elapsed(), winners.dropped());
     let options = Options { budget: options.budget.beside_winners(winners.bytes())?, ..options.clone() };
-    let mut stats = write(&Thinned::new(input, winners), &options, observer, output)?;
+    let mut stats = write(&Thinned::new(input, winners), added, &options, observer, output)?;
     stats.thinned = thinned;
     stats.passes.insert(0, (Pass::Thin.name(), time));
     Ok(stats)

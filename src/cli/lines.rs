@@ -1,0 +1,88 @@
+//! Flags for lines, and what is said about them.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::parse_numbers;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::output::Output;
+use spmesh_lines::{Areas, ChangeKind, Changes, Options, Sources, Target};
+use spmesh_model::network::Network;
+
+/// Lines that are read along with points or a mesh.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Lines")]
+pub(super) struct LineFlags {
+    /// Read lines from this file: GeoJSON, Shapefile, GeoPackage or text; may be given several times. A line of text is
+    /// the word line with X Y Z of each vertex, or soft with X Y
+    #[arg(long = "lines", value_name = "FILE")]
+    pub(super) files: Vec<PathBuf>,
+
+    /// Divide parts of lines that are longer than this, in world units
+    #[arg(long, value_name = "LENGTH", value_parser = parse_length)]
+    densify: Option<f64>,
+
+    /// Write a table of all that was changed about lines: kind, line (numbered from 0), x and y, separated by tabs
+    #[arg(long, value_name = "FILE")]
+    pub(super) report: Option<PathBuf>,
+}
+
+fn parse_length(text: &str) -> std::result::Result<f64, String> {
+    let [length] = parse_numbers(text)?;
+    if length > 0.0 { Ok(length) } else { Err(format!("{text} is no length: expected a positive number")) }
+}
+
+impl LineFlags {
+    /// Reads the lines as a network on the grid of `target`; `None` without lines.
+    ///
+    /// # Errors
+    /// As [`spmesh_lines::read`].
+    pub(super) fn read(&self, target: &Target) -> Result<Option<(Network, Changes)>> {
+        if self.files.is_empty() {
+            return Ok(None);
+        }
+        let options = Options { densify: self.densify, lists_changes: self.report.is_some() };
+        spmesh_lines::read(&self.files, target, &options).map(Some)
+    }
+
+    /// Reads lines, and polygons to cut the mesh with.
+    ///
+    /// # Errors
+    /// As [`spmesh_lines::read_with_areas`].
+    pub(super) fn read_with_areas(
+        &self,
+        hull: &[PathBuf],
+        holes: &[PathBuf],
+        target: &Target,
+    ) -> Result<(Network, Areas, Changes)> {
+        let options = Options { densify: self.densify, lists_changes: self.report.is_some() };
+        spmesh_lines::read_with_areas(&Sources { lines: &self.files, hull, holes }, target, &options)
+    }
+
+    /// Creates the file for the report, if one is asked for.
+    ///
+    /// # Errors
+    /// If that fails.
+    pub(super) fn create_report(&self) -> Result<Option<Output>> {
+        self.report.as_ref().map(|path| Output::create(path, false)).transpose()
+    }
+}
+
+/// Writes the report.
+///
+/// # Errors
+/// If writing fails.
+pub(super) fn write_report(report: Option<Output>, changes: &Changes) -> Result<()> {
+    let Some(mut output) = report else { return Ok(()) };
+    changes.write_report(&mut output).map_err(|e| Error::io("writing the report", e))?;
+    output.commit()
+}
+
+/// What was changed about lines, in one line; `None` if nothing was.
+pub(super) fn summary(changes: &Changes) -> Option<String> {
+    let counts = ChangeKind::ALL.iter().map(|&kind| (kind.name().replace('_', " "), changes.count(kind)));
+    let counts: Vec<String> =
+        counts.filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name} {count}")).collect();
+    (!counts.is_empty()).then(|| format!("changes to lines: {}", counts.join(", ")))
+}

@@ -1,0 +1,181 @@
+//! Points beside those of the input: the vertices of lines.
+//!
+//! They come before all others. A point of the input at the place of one of them is left out.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use foldhash::HashSet;
+
+use super::passes::Passes;
+use spmesh_core::error::Result;
+use spmesh_io::source::{Description, PointReader};
+use spmesh_model::attributes::Attributes;
+use spmesh_model::bounds::{Bounds, Point};
+
+/// Points of a batch.
+const BATCH: usize = 1 << 14;
+
+/// Points that are added to an input.
+#[derive(Debug, Default)]
+pub struct AddedPoints {
+    points: Vec<Point>,
+    /// x and y of all of them, as bits.
+    places: HashSet<[u64; 2]>,
+    /// Points of the input that the last pass left out.
+    replaced: AtomicU64,
+}
+
+impl AddedPoints {
+    /// Adds points, in stored coordinates of the input, to an input of the plane.
+    #[must_use]
+    pub fn new(points: Vec<Point>) -> AddedPoints {
+        let places = points.iter().map(place).collect();
+        AddedPoints { points, places, replaced: AtomicU64::new(0) }
+    }
+
+    /// Number of points that are added.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether no points are added.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// After a run: how many points of the input were left out.
+    #[must_use]
+    pub fn replaced(&self) -> u64 {
+        self.replaced.load(Ordering::Relaxed)
+    }
+}
+
+/// The bits of x and y; -0 is 0.
+fn place(point: &Point) -> [u64; 2] {
+    [(point[0] + 0.0).to_bits(), (point[1] + 0.0).to_bits()]
+}
+
+/// An input with added points.
+pub(super) struct WithAdded<'a, P: Passes + ?Sized> {
+    input: &'a P,
+    added: &'a AddedPoints,
+    description: Description,
+    /// The row of an added point.
+    row: Vec<u8>,
+}
+
+impl<'a, P: Passes + ?Sized> WithAdded<'a, P> {
+    pub(super) fn new(input: &'a P, added: &'a AddedPoints) -> Self {
+        let description = input.description().clone();
+        let bounds = Bounds::of_points(&added.points);
+        let description = Description {
+            stated_bounds: description
+                .stated_bounds
+                .map(|stated| bounds.map_or(stated, |own| stated.union(own))),
+            stated_points: description.stated_points.map(|points| points + added.points.len() as u64),
+            ..description
+        };
+        WithAdded { input, added, row: unknown_row(&description.attributes), description }
+    }
+}
+
+/// A row in which all values are unknown; 0 where an attribute has no number for that.
+fn unknown_row(attributes: &Attributes) -> Vec<u8> {
+    let numbers = attributes.iter().flat_map(|attribute| {
+        let zero = vec![0; attribute.number.width()];
+        let number = attribute.unknown.clone().unwrap_or(zero);
+        number.repeat(usize::from(attribute.components))
+    });
+    numbers.collect()
+}
+
+impl<P: Passes + ?Sized> Passes for WithAdded<'_, P> {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn read(&self) -> Result<Box<dyn PointReader + '_>> {
+        Ok(Box::new(WithAddedReader {
+            reader: self.input.read()?,
+            added: self.added,
+            row: &self.row,
+            next: 0,
+            replaced: 0,
+            rows: Vec::new(),
+        }))
+    }
+
+    fn is_costly(&self) -> bool {
+        self.input.is_costly()
+    }
+
+    fn name(&self) -> Option<String> {
+        self.input.name()
+    }
+}
+
+/// One pass over an input with added points.
+struct WithAddedReader<'a> {
+    reader: Box<dyn PointReader + 'a>,
+    added: &'a AddedPoints,
+    row: &'a [u8],
+    /// Added points that were passed on.
+    next: usize,
+    /// Points of the input that were left out.
+    replaced: u64,
+    rows: Vec<u8>,
+}
+
+impl WithAddedReader<'_> {
+    /// Leaves out the points of a batch at places of added points.
+    fn replace(&mut self, batch: &mut Vec<Point>) {
+        let (row_len, mut kept) = (self.row.len(), 0);
+        for index in 0..batch.len() {
+            if self.added.places.contains(&place(&batch[index])) {
+                self.replaced += 1;
+                continue;
+            }
+            batch[kept] = batch[index];
+            kept += 1;
+            self.rows.extend_from_slice(&self.reader.rows()[index * row_len..(index + 1) * row_len]);
+        }
+        batch.truncate(kept);
+    }
+}
+
+impl PointReader for WithAddedReader<'_> {
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        self.rows.clear();
+        let rest = &self.added.points[self.next..];
+        if !rest.is_empty() {
+            let points = &rest[..rest.len().min(BATCH)];
+            batch.clear();
+            batch.extend_from_slice(points);
+            self.next += points.len();
+            points.iter().for_each(|_| self.rows.extend_from_slice(self.row));
+            return Ok(());
+        }
+        loop {
+            self.reader.next_batch(batch)?;
+            if batch.is_empty() {
+                self.added.replaced.store(self.replaced, Ordering::Relaxed);
+                return Ok(());
+            }
+            self.rows.clear();
+            self.replace(batch);
+            if !batch.is_empty() {
+                return Ok(());
+            }
+        }
+    }
+
+    fn rows(&self) -> &[u8] {
+        &self.rows
+    }
+
+    fn invalid(&self) -> u64 {
+        self.reader.invalid()
+    }
+}

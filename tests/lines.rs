@@ -1,0 +1,176 @@
+//! Lines of files as a network, and as points of `spfinalize`.
+
+use std::path::PathBuf;
+
+use spmesh_core::error::ErrorKind;
+use spmesh_lines::{ChangeKind, Changes, Options, Target, read};
+use spmesh_model::network::Network;
+use spmesh_stream::{Coordinates, Crs};
+
+use crate::programs::{Folder, assert_outcome, outcome, run};
+
+const FORMATS: [&str; 4] = ["lines.txt", "lines.geojson", "lines.shp", "lines.gpkg"];
+
+fn sample(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+fn grid(scale: f64) -> Target {
+    let coordinates = Coordinates::I32 { scale: [scale; 3], offset: [0.0; 3] };
+    Target { coordinates, crs: Crs::Unknown, has_elevation: true }
+}
+
+fn network(name: &str, target: &Target) -> (Network, Changes) {
+    let options = Options { densify: None, lists_changes: true };
+    read(&[sample(name)], target, &options).expect("lines")
+}
+
+#[test]
+fn all_formats_give_one_network() {
+    for target in [grid(0.001), grid(0.1), Target { coordinates: Coordinates::F64, ..grid(1.0) }] {
+        let (expected, changes) = network(FORMATS[0], &target);
+        assert_eq!(changes.count(ChangeKind::Spike), 1);
+        assert_eq!(changes.count(ChangeKind::RepeatedVertex), 1);
+        assert!(changes.count(ChangeKind::Crossing) > 2);
+        for format in &FORMATS[1..] {
+            let (found, again) = network(format, &target);
+            assert_eq!(found, expected, "{format}");
+            assert_eq!(again.list(), changes.list(), "{format}");
+        }
+    }
+}
+
+#[test]
+fn all_files_are_one_set_of_lines() {
+    let twice = [sample("lines.geojson"), sample("lines.shp")];
+    let (both, changes) = read(&twice, &grid(0.001), &Options::default()).expect("lines");
+    assert_eq!(both, network("lines.txt", &grid(0.001)).0);
+    assert_eq!(changes.count(ChangeKind::Overlap), both.segments.len() as u64);
+}
+
+#[test]
+fn other_systems_are_refused() {
+    let system = |name: &str| spmesh_crs::requested(name).expect("a system");
+    let target = |name: &str| Target { crs: system(name), ..grid(0.001) };
+    for format in &FORMATS[1..] {
+        let read = |name: &str| read(&[sample(format)], &target(name), &Options::default());
+        let (_, changes) = read("EPSG:25832").expect("lines");
+        assert!(changes.notices.is_empty(), "{format}: {:?}", changes.notices);
+        let error = read("EPSG:25833").unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Usage);
+        assert!(error.to_string().contains("the points in EPSG:25833"), "{error}");
+        let (_, changes) = network(format, &grid(0.001));
+        assert!(changes.notices[0].contains("the points state no coordinate"), "{:?}", changes.notices);
+    }
+}
+
+#[test]
+fn damaged_files_are_errors() {
+    let folder = Folder::new();
+    for name in &FORMATS[1..] {
+        let bytes = std::fs::read(sample(name)).expect("a sample");
+        let step = bytes.len() / 90 + 1;
+        for at in (0..bytes.len()).step_by(step) {
+            let mut damaged = bytes.clone();
+            damaged[at] ^= 0xff;
+            let file = folder.write(name, &damaged);
+            let _ = read(&[PathBuf::from(&file)], &grid(0.001), &Options::default());
+            let cut = folder.write(name, &bytes[..at]);
+            let found = read(&[PathBuf::from(&cut)], &grid(0.001), &Options::default());
+            // A Shapefile may end behind any record.
+            assert!(found.is_err() || *name == "lines.shp", "{name} up to {at}");
+        }
+    }
+}
+
+/// A stream of a grid of points, with the lines of a file.
+fn finalized(folder: &Folder, arguments: &[&str]) -> (Vec<u8>, String) {
+    let mut points = String::new();
+    for number in 0..400 {
+        points += &format!("{} {} {}\n", number % 20, number / 20, number % 7);
+    }
+    let points = folder.write("points.txt", points);
+    let lines = sample("lines.gpkg");
+    let lines = lines.to_str().expect("text");
+    let output = run("spfinalize", &[&["--lines", lines, &points], arguments].concat(), b"");
+    let (code, message) = outcome(&output);
+    assert_eq!(code, Some(0), "{arguments:?}: {message}");
+    (output.stdout, message)
+}
+
+#[test]
+fn vertices_with_elevations_become_points() {
+    let folder = Folder::new();
+    let scale = ["--scale", "0.001,0.001,0.001"];
+    let (stream, message) = finalized(&folder, &[&scale[..], &["--stats=json"]].concat());
+    let (network, _) = network("lines.txt", &grid(0.001));
+    let at_points = network
+        .vertices
+        .iter()
+        .filter(|vertex| vertex.place.iter().all(|value| value % 1000.0 == 0.0))
+        .count();
+    let stats = message.lines().find(|line| line.starts_with('{')).expect("JSON");
+    let stats: serde_json::Value = serde_json::from_str(stats).expect("JSON");
+    assert_eq!(stats["lines"]["points"], network.vertices.len());
+    assert_eq!(stats["lines"]["replaced"], at_points);
+    assert_eq!(stats["points"], 400 + network.vertices.len() - at_points);
+    // Threads, passes and spools change nothing.
+    for arguments in [["--threads", "1"], ["--threads", "3"], ["--spool", "always"], ["--memory", "64M"]] {
+        assert!(finalized(&folder, &[&scale[..], &arguments].concat()).0 == stream, "{arguments:?}");
+    }
+    // Filters are for points: of these none is left.
+    let (_, message) = finalized(&folder, &[&scale[..], &["--keep-z", "100,200", "--stats=json"]].concat());
+    assert!(message.contains(&format!("\"points\":{},", network.vertices.len())), "{message}");
+}
+
+#[test]
+fn thinning_and_preserved_order_keep_all_vertices() {
+    let folder = Folder::new();
+    for arguments in [&["--thin", "50:first"][..], &["--preserve"], &["--compress"], &["--densify", "0.5"]] {
+        let (stream, _) = finalized(&folder, arguments);
+        let mesh = run("spdelaunay2d", &[], &stream);
+        assert_eq!(outcome(&mesh).0, Some(0), "{arguments:?}");
+        let (code, message) = outcome(&run("spinfo", &["--audit", "-"], &mesh.stdout));
+        assert_eq!(code, Some(0), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
+fn reports_list_all_changes() {
+    let folder = Folder::new();
+    let report = folder.path("report.tsv");
+    let (_, message) = finalized(&folder, &["--report", &report, "--densify", "1"]);
+    let text = std::fs::read_to_string(&report).expect("a report");
+    let mut rows = text.lines();
+    assert_eq!(rows.next(), Some("kind\tline\tx\ty"));
+    assert!(text.contains("\nspike\t2\t4\t3\n"), "{text}");
+    let densified = rows.filter(|row| row.starts_with("densified\t")).count();
+    assert!(densified > 10 && message.contains(&format!("densified {densified}")), "{message}");
+}
+
+#[test]
+fn requests_that_make_no_sense_are_refused() {
+    let folder = Folder::new();
+    let points = folder.write("points.txt", "0 0 0\n1 0 0\n0 1 0\n");
+    let lines = folder.write("lines.txt", "line 0 0 1 1 1 2\n");
+    let bad = folder.write("bad.txt", "line 0 0 1 1 1\n");
+    let far = folder.write("far.txt", "soft 0 0 5e9 1\n");
+    let binary = folder.write("image.tif", b"II*\0aaaa");
+    assert_outcome("spfinalize", &["--lines", &lines, "--octree", &points], b"", 2, "leave out --octree");
+    assert_outcome("spfinalize", &["--densify", "1", &points], b"", 2, "--lines");
+    assert_outcome("spfinalize", &["--lines", &lines, "--densify", "0", &points], b"", 2, "positive number");
+    assert_outcome("spfinalize", &["--lines", "-", "-"], b"", 2, "only one of");
+    assert_outcome("spfinalize", &["--lines", &bad, &points], b"", 3, "bad.txt: line 1: found 5 numbers");
+    assert_outcome(
+        "spfinalize",
+        &["--lines", &binary, &points],
+        b"",
+        3,
+        "found a TIFF image, expected lines",
+    );
+    assert_outcome("spfinalize", &["--lines", "none.gpkg", &points], b"", 1, "none.gpkg");
+    let scale = ["--scale", "0.01,0.01,0.01"];
+    let arguments = [&scale[..], &["--lines", &far, &points]].concat();
+    assert_outcome("spfinalize", &arguments, b"", 2, "far.txt: line 1: a vertex of a line has x 5000000000");
+    assert_outcome("spfinalize", &["--lines", &lines, "--report", &lines, &points], b"", 2, "--report");
+}
