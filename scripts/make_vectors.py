@@ -64,7 +64,7 @@ class Vector:
     """A stream under construction: pieces of bytes, each with a comment, and the lines of its text twin."""
 
     def __init__(self, kind="points", **fields):
-        self.pieces, self.lines, self.sequence, self.body = [], [], 0, None
+        self.pieces, self.lines, self.sequence, self.body, self.triangles = [], [], 0, None, 0
         self.header(kind, **fields)
 
     def put(self, data, comment):
@@ -73,13 +73,13 @@ class Vector:
         return self
 
     def header(self, kind, grid=None, dims=2, elevation=0, bounds=None, points=None, tree=None, region=None,
-               chunked=False, wkt=None, geokeys=None, producer="vector", compressed=False, attributes=(), edit=None,
-               raw=None):
+               chunked=False, wkt=None, geokeys=None, producer="vector", compressed=False, attributes=(), constrained=None,
+               edit=None, raw=None):
         """`grid` is scale and offset; `raw` overrides fields, by their names below, and payloads of records,
         by their tags, with bytes, and adds a "tail" behind the records; `edit` changes the list of records, which are pairs of tag and payload."""
         raw = raw or {}
         self.grid, self.dims, self.axes, self.attributes = grid, dims, dims + elevation, attributes
-        records = self.records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, producer)
+        records = self.records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, constrained, producer)
         records = [(tag, [(raw[tag.decode()], "damaged")] if tag.decode() in raw else payload) for tag, payload in records]
         edit = edit or (lambda records: records)
         records = [(tag, [(payload, "payload")] if isinstance(payload, bytes) else payload) for tag, payload in edit(records)]
@@ -126,10 +126,12 @@ class Vector:
         if geokeys is not None:
             self.say("geokeys " + " ".join(r.hex() or "-" for r in geokeys))
         self.say(*["attribute " + attribute.text() for attribute in attributes])
+        if constrained is not None:
+            self.say("constrained %s %s" % (yes[constrained[0]], number(constrained[1])))
         self.say('producer "%s"' % producer)
 
     @staticmethod
-    def records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, producer):
+    def records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, constrained, producer):
         """The records of the header in the order of the text: tags, and payloads as bytes with comments."""
         floats = lambda values: struct.pack("<%dd" % len(values), *map(float, values))
         records = []
@@ -151,6 +153,9 @@ class Vector:
             records.append((b"cGEO", [(struct.pack("<I", len(r)) + r, "GeoTIFF record") for r in geokeys]))
         if attributes:
             records.append((b"attr", [piece for attribute in attributes for piece in attribute.pieces()]))
+        if constrained is not None:
+            is_cut, kill = constrained
+            records.append((b"cons", [(bytes([is_cut]), "flags"), (floats([kill]), "kill length")]))
         if producer:
             records.append((b"prod", [(producer.encode(), "producer")]))
         return records
@@ -221,7 +226,7 @@ class Vector:
         self.lines += ["x cell %d" % code for code in codes]
         return self.block(b"CELL", [(struct.pack("<Q", code), "cell %d" % code) for code in codes])
 
-    def patch(self, first=0, new=(), imported=(), simplices=(), finalized=(), counts=None, rows=()):
+    def patch(self, first=0, new=(), imported=(), simplices=(), finalized=(), counts=None, rows=(), sides=None):
         pairs = [self.point(point) for point in new]
         counts = counts or [len(new), len(imported), len(simplices), len(finalized)]
         ids = list(range(first, first + len(new))) + list(imported)
@@ -229,7 +234,11 @@ class Vector:
         self.lines.append("# patch")
         self.with_rows(["v " + text for _, text in pairs], rows)
         letter, simplex = ("c ", "tetrahedron") if self.dims == 3 else ("f ", "triangle")
-        self.lines += [letter + " ".join(map(name, t)) for t in simplices] + ["x " + name(local) for local in finalized]
+        self.lines += [letter + " ".join(map(name, t)) for t in simplices]
+        if sides is not None:
+            self.sides(*sides)
+        self.triangles += len(simplices)
+        self.lines += ["x " + name(local) for local in finalized]
         payload = [(struct.pack("<Q", first), "first id"), (struct.pack("<4I", *counts), "counts N M S F")]
         payload += [(data, "vertex %d: %s" % (first + i, text)) for i, (data, text) in enumerate(pairs)]
         payload += [(struct.pack("<Q", vertex), "imports vertex %d" % vertex) for vertex in imported]
@@ -237,6 +246,28 @@ class Vector:
                     for t in simplices]
         payload += [(struct.pack("<I", local), "finalizes local vertex %d" % local) for local in finalized]
         return self.block(b"PTCH", payload)
+
+    def segments(self, *segments):
+        """Segments: the number of the line, and four coordinates as those of points."""
+        payload, axes = [], self.axes
+        for line, *ends in segments:
+            self.axes = 2
+            pairs = [self.point(ends[:2]), self.point(ends[2:])]
+            self.axes = axes
+            text = " ".join(" ".join(text.split(" ")[:2]) for _, text in pairs)
+            self.lines.append("segment %d %s" % (line, text))
+            payload.append((struct.pack("<I", line) + pairs[0][0] + pairs[1][0], "line %d: %s" % (line, text)))
+        return self.block(b"segm", payload)
+
+    def sides(self, *sides):
+        """Sides of the next patch: triangle, place and segment."""
+        self.lines += ["side %d %d %d" % (self.triangles + t + 1, place + 1, s + 1) for t, place, s in sides]
+        payload = [(struct.pack("<3I", *side), "triangle %d, place %d, segment %d" % side) for side in sides]
+        return self.block(b"side", payload)
+
+    def open(self, *numbers):
+        self.lines += ["open %d" % (n + 1) for n in numbers]
+        return self.block(b"open", [(struct.pack("<I", n), "open segment %d" % n) for n in numbers])
 
     def labels(self, *labels):
         self.lines += ["label %d" % label for label in labels]
@@ -601,6 +632,74 @@ def failing_attributes():
     yield "rows-unknown-required", "block tag \"ATTP\"", start().rows(*two, tag=b"ATTP").end(2)
 
 
+CONSTRAINED = dict(kind="triangle mesh", grid=HALF, elevation=1, constrained=(True, 2.5))
+# The first segment is the lower edge of the square and more, the second is its diagonal.
+SEGMENTS = ((7, 0, 0, 4, 0), (4294967295, 2, 0, 0, 2))
+
+
+def passing_constrained():
+    """Constrained triangle meshes."""
+    yield "constrained-square", "Two patches, an edge on a segment that both state, and a segment that leaves the mesh", Vector(
+        **CONSTRAINED).segments(*SEGMENTS).patch(0, SQUARE[:3], (), [(0, 1, 2)], (0,), sides=[(0, 0, 1), (0, 2, 0)]).segments(
+        (0, -1, -1, 5, 5)).patch(3, SQUARE[3:], (1, 2), [(0, 2, 1)], (0, 1, 2), sides=[(0, 0, 1)]).open(0).open(2).end(
+        4, vertices=4, simplices=2)
+    yield "constrained-f64", "In f64, with the whole hull; skipped blocks, and blocks without records", Vector(
+        "triangle mesh", constrained=(False, 0)).segments().segments((1, "0", "0", "0.1", "0")).skip().patch(
+        0, [("0", "0"), ("0.1", "0"), ("0", "1e-7")], (), [(0, 1, 2)], (0, 1, 2), sides=[(0, 2, 0)]).open().skip().end(
+        3, vertices=3, simplices=1)
+    yield "constrained-empty-sides", "A block of sides without records, a skipped block behind it, and attributes", Vector(
+        **CONSTRAINED, attributes=[CLASS]).segments(*SEGMENTS).sides().skip().patch(
+        0, SQUARE[:3], (), [(0, 1, 2)], (0, 1, 2), rows=[([1],), ([2],), ([3],)]).rows(([1],), ([2],), ([3],)).open(
+        0, 1).end(3, vertices=3, simplices=1)
+    yield "constrained-none", "A constrained mesh without segments", Vector("triangle mesh", constrained=(True, 0)).end()
+
+
+def failing_constrained():
+    """Constraints that break a rule."""
+    of = lambda payload, **more: Vector(**{**CONSTRAINED, **more}, raw=dict(cons=payload)).end()
+    cons = lambda flags, kill: bytes([flags]) + struct.pack("<d", kill)
+    yield "constrained-short", "8 bytes, expected 9", of(cons(1, 0)[:-1])
+    yield "constrained-long", "10 bytes, expected 9", of(cons(1, 0) + b"\0")
+    yield "constrained-flags", "flags 0x02", of(cons(2, 0))
+    yield "constrained-kill-negative", "kill length -1", of(cons(1, -1))
+    yield "constrained-kill-infinite", "kill length inf", of(cons(1, INF))
+    yield "constrained-kill-nan", "kill length", of(cons(1, NAN))
+    yield "constrained-kill-of-hull", "a border that is not cut", of(cons(0, 1))
+    yield "constrained-points", "is not constrained", Vector(constrained=(False, 0)).end()
+    yield "constrained-partial", "is not constrained", Vector(**PARTIAL, constrained=(False, 0)).end()
+    start = lambda: Vector(**CONSTRAINED).segments(*SEGMENTS)
+    corners = (SQUARE[:3], (), [(0, 1, 2)], (0, 1, 2))
+    whole = lambda vector: vector.end(3, vertices=3, simplices=1)
+    patch = lambda sides, vector=None: whole((vector or start()).patch(0, *corners, sides=sides))
+    plain = lambda: Vector("triangle mesh", grid=HALF, elevation=1)
+    raw = lambda data: [(data, "payload")]
+    yield "segments-not-constrained", 'block "segm" in a stream that is not constrained', plain().segments(SEGMENTS[0]).end()
+    yield "sides-not-constrained", 'block "side" in a stream that is not constrained', plain().sides().patch(0).end()
+    yield "open-not-constrained", 'block "open" in a stream that is not constrained', plain().open().end()
+    yield "segments-of-points", "may stand here", Vector(grid=HALF, elevation=1).segments(SEGMENTS[0]).end()
+    yield "segments-length", "whole number of records of 20", start().block(b"segm", raw(bytes(24))).end()
+    yield "segments-equal-ends", "line 9 has equal ends", start().segments((9, 1, 1, 1, 1)).end()
+    yield "segments-nan", "is not finite", Vector("triangle mesh", constrained=(False, 0)).segments(
+        (1, "0", "0", "nan", "0")).end()
+    yield "segments-after-open", "may stand here", whole(start().patch(0, *corners).open(0).segments(SEGMENTS[1]))
+    yield "sides-length", "whole number of records of 12", start().block(b"side", raw(bytes(16))).patch(0, *corners).end()
+    yield "sides-triangle", "triangle 1 of 1", patch([(1, 0, 0)])
+    yield "sides-place", "side 3 of a triangle", patch([(0, 3, 0)])
+    yield "sides-segment", "segment 2 of 2", patch([(0, 0, 2)])
+    yield "sides-segment-later", "segment 0 of 0", Vector(**CONSTRAINED).patch(
+        0, *corners, sides=[(0, 0, 0)]).segments(*SEGMENTS).end(3, vertices=3, simplices=1)
+    yield "sides-order", "not increasing by triangle", patch([(0, 1, 0), (0, 0, 1)])
+    yield "sides-repeated", "not increasing by triangle", patch([(0, 1, 0), (0, 1, 1)])
+    yield "sides-twice", 'block "side", expected the patch', patch([(0, 1, 0)], start().sides())
+    yield "sides-before-segments", 'block "segm", expected the patch', patch([(0, 1, 0)], start().sides().segments(SEGMENTS[0]))
+    yield "sides-before-end", 'block "END ", expected the patch', start().sides().end()
+    yield "open-length", "whole number of records of 4", start().block(b"open", raw(bytes(6))).end()
+    yield "open-segment", "open segment 2 of 2", start().open(2).end()
+    yield "open-order", "not increasing", start().open(1, 0).end()
+    yield "open-repeated", "not increasing", start().open(1).open(1).end()
+    yield "patch-after-open", "may stand here", patch([], start().open(0))
+
+
 def passing():
     """Name, title and vector of each stream that is well-formed."""
     yield "points-empty", "No points, nothing known but their number", Vector(
@@ -617,6 +716,7 @@ def passing():
     yield from passing_skipped()
     yield from passing_compressed()
     yield from passing_attributes()
+    yield from passing_constrained()
     yield "points-geokeys", "A CRS in GeoTIFF records, one of them empty", Vector(
         grid=HALF, elevation=1,
         geokeys=[bytes.fromhex("01000100000001000004000001000100"), b"", b"WGS 84|\0"]).points((1, 2, 3)).end(1)
@@ -1500,7 +1600,7 @@ def files():
         yield "pass/%s.spm" % name, vector.bytes()
         entry = dict(name=name, file="pass/%s.spm" % name, twin="pass/%s.txt" % name, what=title)
         manifest.append(dict(entry, **{"class": "well-formed", "exit_code": 0}))
-    for source in (failing_headers(), failing_streams(), failing_attributes()):
+    for source in (failing_headers(), failing_streams(), failing_attributes(), failing_constrained()):
         for name, words, vector in source:
             who = " by a reader with memory of cells and vertices" if name in NEED_MEMORY else ""
             too_new = name in TOO_NEW

@@ -103,7 +103,7 @@ assert crc32c(b"123456789") == 0xE3069283
 MAGIC = b"\x89SPM\r\n\x1a\n"
 KINDS = {
     1: ("points", (2, 3), ((b"PNTS", b"CELL"),)),
-    2: ("triangle mesh", (2,), ((b"PTCH",),)),
+    2: ("triangle mesh", (2,), ((b"segm", b"side", b"PTCH"), (b"open",))),
     3: ("partial triangle mesh", (2,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
     4: ("tetrahedral mesh", (3,), ((b"PTCH", b"LABL"),)),
     5: ("points in 4 dimensions", (4,), ((b"PNT4",),)),
@@ -152,7 +152,7 @@ class Header:
         self.has_knots = self.kind in ("configurations", "splines")
         self.is_mesh = self.kind not in ("points", "points in 4 dimensions") and not self.has_knots
         self.scale = self.offset = self.tree = self.bounds = self.region = self.wkt = self.geokeys = None
-        self.producer, self.attributes = "", []
+        self.producer, self.attributes, self.constrained = "", [], None
         for tag, payload in records.items():
             RECORDS[tag](self, payload)
         require(self.scale or not self.is_integer, 'no header record "GRID", which i32 coordinates need')
@@ -239,6 +239,14 @@ class Header:
             self.kind in with_attributes or self.kind.startswith("partial "),
             "a stream of kind %s has no attributes" % self.kind,
         )
+
+    def read_constrained(self, payload):
+        flags, kill = self.fields("cons", "Bd", payload)
+        require(self.kind == "triangle mesh", "a stream of kind %s is not constrained" % self.kind)
+        require(flags < 2, "flags 0x%02x, of which all bits but bit 0 must be 0" % flags)
+        require(0 <= kill < math.inf, "kill length %r, expected a finite number from 0 on" % kill)
+        require(flags or not kill, "a kill length, but a border that is not cut")
+        self.constrained = bool(flags), kill
 
     def row_length(self):
         return sum(attribute.row.size for attribute in self.attributes)
@@ -327,6 +335,7 @@ RECORDS = {
     b"cWKT": Header.read_wkt,
     b"cGEO": Header.read_geokeys,
     b"attr": Header.read_attributes,
+    b"cons": Header.read_constrained,
     b"prod": Header.read_producer,
 }
 
@@ -897,6 +906,7 @@ class Stream:
         self.degree = self.group = self.boundary = self.function = None
         self.has_pairs = False
         self.finalized = self.named = self.labels = self.phase = 0
+        self.segments, self.sides, self.open = 0, None, -1
 
     def take(self, length):
         data = self.source.read(length)
@@ -953,6 +963,9 @@ class Stream:
             b"PNTS": self.points,
             b"CELL": self.tags,
             b"PTCH": self.patch,
+            b"segm": self.segment,
+            b"side": self.side,
+            b"open": self.open_segment,
             b"LABL": self.label,
             b"RPNT": self.residual,
             b"WALL": self.walls,
@@ -969,6 +982,9 @@ class Stream:
             return tag
         if tag == b"attp" or self.waiting:
             return self.attributes(tag, payload, is_compressed, readers)
+        require(
+            self.sides is None or tag == b"PTCH", 'block "%s", expected the patch of the sides' % escaped(tag)
+        )
         if tag != b"END ":
             phase = next((i for i, tags in enumerate(self.header.phases) if tag in tags), -1)
             require(
@@ -976,6 +992,10 @@ class Stream:
                 "no block %r may stand here in a stream of kind %s" % (tag.decode(), self.header.kind),
             )
             self.phase = phase
+        require(
+            tag not in (b"segm", b"side", b"open") or self.header.constrained,
+            'block "%s" in a stream that is not constrained' % escaped(tag),
+        )
         if is_compressed:
             require(tag != b"END ", "END is compressed: it must not be")
             payload = decompressed(payload)
@@ -1071,7 +1091,42 @@ class Stream:
         self.total["simplices"] += s
         self.finalized += f
         simplices = [[ids[local] for local in simplex] for simplex in simplices]
-        self.text.patch(new, simplices, [ids[local] for local in finalized])
+        sides, self.sides = self.sides or [], None
+        for triangle, place, segment in sides:
+            require(triangle < s, "a side of triangle %d of %d in its patch" % (triangle, s))
+            require(place < 3, "side %d of a triangle, expected 0, 1 or 2" % place)
+            require(segment < self.segments, "a side on segment %d of %d" % (segment, self.segments))
+        require(is_increasing([side[:2] for side in sides]), "sides are not increasing by triangle and place")
+        before = self.total["simplices"] - s
+        sides = [(before + triangle, place, segment) for triangle, place, segment in sides]
+        self.text.patch(new, simplices, sides, [ids[local] for local in finalized])
+
+    # --- 4.17 segm, side, open
+
+    def segment(self, payload):
+        layout = struct.Struct("<I4" + ("i" if self.header.is_integer else "d"))
+        require(
+            len(payload) % layout.size == 0,
+            "%d bytes are not a whole number of records of %d" % (len(payload), layout.size),
+        )
+        for line, *ends in layout.iter_unpack(payload):
+            require(all(map(math.isfinite, ends)), "a coordinate of a segment is not finite")
+            require(ends[:2] != ends[2:], "a segment of line %d has equal ends" % line)
+            self.segments += 1
+            require(self.segments <= 2**32, "more than %d segments" % 2**32)
+            self.text.line("segment %d %s" % (line, self.text.plane(ends)))
+
+    def side(self, payload):
+        require(len(payload) % 12 == 0, "%d bytes are not a whole number of records of 12" % len(payload))
+        self.sides = list(struct.iter_unpack("<3I", payload))
+
+    def open_segment(self, payload):
+        require(len(payload) % 4 == 0, "%d bytes are not a whole number of records of 4" % len(payload))
+        for (segment,) in struct.iter_unpack("<I", payload):
+            require(segment < self.segments, "open segment %d of %d" % (segment, self.segments))
+            require(segment > self.open, "open segments are not increasing")
+            self.open = segment
+            self.text.line("open %d" % (segment + 1))
 
     def label(self, payload):
         require(len(payload) % 8 == 0, "%d bytes are not a whole number of records of 8" % len(payload))
@@ -1404,6 +1459,10 @@ class Text:
             words += attribute.words(attribute.unknown) if attribute.unknown else ["-"]
             lines.append("attribute %s %s" % (json.dumps(attribute.name, ensure_ascii=False), " ".join(words)))
         self.attributes = header.attributes
+        if header.constrained:
+            is_cut, kill = header.constrained
+            lines.append("constrained %s %s" % (yes[is_cut], decimal(kill)))
+        self.plane = self.plane_grid(header) if header.is_integer else decimals
         lines.append("producer " + json.dumps(header.producer, ensure_ascii=False))
         for line in lines:
             self.line("#spmesh " + line)
@@ -1432,12 +1491,22 @@ class Text:
         world = self.world
         self.write("".join(["v %s\n%s" % (world(point), self.row()) for point in points]))
 
-    def patch(self, new, simplices, finalized):
+    def plane_grid(self, header):
+        """World coordinates of the ends of segments."""
+        axes = list(zip(header.scale, header.offset))[:2] * 2
+
+        def world(ends):
+            return " ".join([grid_decimal(c, *axis) for c, axis in zip(ends, axes)])
+
+        return world
+
+    def patch(self, new, simplices, sides, finalized):
         self.line("# patch")
         self.vertices(new)
         for simplex in simplices:
             letter = "c" if len(simplex) == 4 else "f"
             self.line(letter + "".join([" %d" % (vertex + 1) for vertex in simplex]))
+        self.write("".join(["side %d %d %d\n" % (t + 1, place + 1, s + 1) for t, place, s in sides]))
         self.write("".join(["x %d\n" % (vertex + 1) for vertex in finalized]))
 
     def numbers(self, word, numbers):

@@ -6,6 +6,8 @@ mod census;
 mod command;
 #[path = "audit/configurations.rs"]
 mod configurations;
+#[path = "audit/constrained.rs"]
+pub mod constrained;
 #[path = "audit/diagram.rs"]
 pub mod diagram;
 #[path = "audit/diagram_damage.rs"]

@@ -22,6 +22,8 @@ Formats:
   obj   Wavefront OBJ                     ply   Stanford PLY
   spa, spb   Isenburg's streaming points  sma, smb   Isenburg's streaming meshes
   vtu   VTK, for ParaView (written only)  medit  Medit's .mesh (written only)
+  dxf   AutoCAD R12, text (written only)  landxml  LandXML 1.2 (written only)
+  geojson    the edges of a constrained mesh that are on lines (written only)
   points     LAS, LAZ, COPC, lines of coordinates, VTK (read only)
 
 Examples:
@@ -30,6 +32,7 @@ Examples:
   spconvert old.smb -o mesh.spm
   spconvert tile.laz --to text | less
   spconvert protein.spm -o protein.vtu
+  spconvert mesh.spm -o tin.xml                   a LandXML surface with breaklines
   spconvert --local-origin mesh.spm -o mesh.obj   for viewers with 32-bit numbers
   spconvert --compress mesh.spm -o small.spm      without the flag, the stream is expanded
   spconvert mesh.spm --to text | spconvert --to spm | cmp - mesh.spm
@@ -37,7 +40,8 @@ Examples:
 The input may be compressed with gzip. Its format is recognized by its content, or its name; that of the \
 output by its name. Only spm and text hold a CRS and integer coordinates; the others get world coordinates, \
 SMB rounded to 32 bits. A notice says what is lost. Of tetrahedra, OBJ and PLY get the hull; VTU has the \
-labels of vertices as point data, Medit as references. Coordinates on a grid become the shortest decimals that \
+labels of vertices as point data, Medit as references. Of a constrained mesh, DXF has the edges on lines as \
+lines of a layer of their own, and LandXML has them as breaklines. Coordinates on a grid become the shortest decimals that \
 stand for them: 28016 steps of 0.001 are 28.016. A text twin with a number off its grid is refused. Meshes of OBJ and PLY do not say when vertices are \
 final: all of them are at the end.
 
@@ -91,7 +95,7 @@ pub struct Flags {
     #[arg(long, value_parser = clap::value_parser!(u8).range(2..=3))]
     dims: Option<u8>,
 
-    /// Folder for temporary files: writing PLY, VTU and Medit needs them, and reading points through a pipe
+    /// Folder for temporary files: writing PLY, VTU, Medit and LandXML needs them, and reading points through a pipe
     #[arg(long, value_name = "DIR")]
     temp_dir: Option<PathBuf>,
 

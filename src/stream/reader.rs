@@ -242,14 +242,14 @@ impl<R: Read> StreamReader<R> {
                 return Err(Error::malformed(format!("block \"{name}\", expected the patch of the sides")));
             }
         }
-        if tag.is_of_constraints() && self.header.constrained.is_none() {
-            return Err(Error::malformed(format!("block \"{name}\" in a stream that is not constrained")));
-        }
         if !self.header.kind.allows(self.last_tag, tag) {
             return Err(Error::malformed(format!(
                 "no block \"{name}\" may stand here in a stream of kind {}",
                 self.header.kind.name()
             )));
+        }
+        if tag.is_of_constraints() && self.header.constrained.is_none() {
+            return Err(Error::malformed(format!("block \"{name}\" in a stream that is not constrained")));
         }
         self.last_tag = Some(tag);
         Ok(())

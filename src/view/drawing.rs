@@ -25,7 +25,9 @@ use spmesh_io::outline::{ConcaveOutline, EdgeLimit, Waiting};
 use spmesh_io::raster::colour_map::Colour;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::cells::CellCode;
-use spmesh_stream::{ConfigurationSet, Coordinates, Event, Header, Kind, Patch, StreamReader};
+use spmesh_stream::{
+    ConfigurationSet, ConstraintEdges, Coordinates, Event, Header, Kind, Patch, StreamReader,
+};
 
 /// Live vertices, and residual points.
 const LIVE: Mark = Mark { shape: Shape::Dot, colour: [214, 40, 40], words: "live vertices" };
@@ -34,6 +36,8 @@ const RESIDUAL: Mark = Mark { shape: Shape::Dot, colour: [214, 40, 40], words: "
 const BORDER: Mark =
     Mark { shape: Shape::Line, colour: [230, 120, 0], words: "border of the triangles so far" };
 const WALLS: Mark = Mark { shape: Shape::Line, colour: [230, 120, 0], words: "walls" };
+/// Edges on segments of a constrained mesh.
+const LINES: Mark = Mark { shape: Shape::Line, colour: [178, 24, 43], words: "edges on lines" };
 /// Final and open cells.
 const CLOSED: Colour = [59, 82, 139];
 const FINAL: Mark = Mark {
@@ -115,6 +119,9 @@ struct Drawing<'a> {
     cells: Option<Cells>,
     residual: Vec<Point>,
     walls: Vec<[Point; 2]>,
+    /// The edges on segments, to be drawn on top.
+    constraint_edges: ConstraintEdges,
+    lines: Vec<[Point; 2]>,
     /// Number of triangles so far, or of points.
     done: u64,
     /// The value of `done` at the last picture.
@@ -172,6 +179,8 @@ impl<'a> Drawing<'a> {
             cells,
             residual: Vec::new(),
             walls: Vec::new(),
+            constraint_edges: ConstraintEdges::default(),
+            lines: Vec::new(),
             done: 0,
             taken: None,
             is_over: false,
@@ -239,6 +248,12 @@ impl<'a> Drawing<'a> {
         let (coordinates, shown) = (self.coordinates, &self.shown);
         let place = |number: usize, stored: Point| shown.place(coordinates.to_world(stored), rows, number);
         self.front.begin(patch, place)?;
+        for (ends, _) in self.constraint_edges.enter(patch) {
+            let ends = ends.map(|local| self.front.place(local));
+            if self.scene.as_ref().is_none_or(|scene| scene.may_show(&ends)) {
+                self.lines.push(ends);
+            }
+        }
         for local in patch.triangles() {
             self.take_due(take)?;
             if self.is_over {
@@ -401,6 +416,10 @@ impl<'a> Drawing<'a> {
         let is_partial = !self.residual.is_empty();
         let dots = if is_partial { (RESIDUAL, &self.residual) } else { (LIVE, &vertices) };
         let lines = if is_partial { (WALLS, &self.walls) } else { (BORDER, &border) };
+        if !self.lines.is_empty() {
+            *map += &points::lines("lines", LINES.colour, &self.lines, scene);
+            marks.push(LINES);
+        }
         if !lines.1.is_empty() {
             *map += &points::lines("border", lines.0.colour, lines.1, scene);
             marks.push(lines.0);

@@ -57,6 +57,11 @@ impl Front {
         Ok(())
     }
 
+    /// The place of a vertex of the current patch.
+    pub(super) fn place(&self, local: u32) -> Point {
+        self.local[local as usize].1.at
+    }
+
     /// A triangle of the current patch, with its number in the stream, and its corners in stored coordinates.
     pub(super) fn triangle(&mut self, local: [u32; 3], number: u64) -> (Triangle, [Point2; 3]) {
         let vertices = local.map(|local| self.local[local as usize]);

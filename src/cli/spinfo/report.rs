@@ -8,7 +8,7 @@ use spmesh_audit::diagram::{Proof, Violation};
 use spmesh_audit::{Counts, Inventory, Report};
 use spmesh_core::error::Error;
 use spmesh_model::bounds::Point;
-use spmesh_stream::{Coordinates, Crs, Header, Kind};
+use spmesh_stream::{Constrained, Coordinates, Crs, Header, Kind};
 
 /// Everything that is known of a stream after it was read.
 pub(super) struct Summary<'a> {
@@ -50,6 +50,11 @@ impl Summary<'_> {
                 [region.min, region.max].map(|side| words(&side[..usize::from(self.header.dims)]));
             line("region", format!("from {min} to {max} (stored)"));
         }
+        if let Some(Constrained { is_cut, kill }) = self.header.constrained {
+            let border = if is_cut { "cut" } else { "the convex hull" };
+            let kill = if kill > 0.0 { format!(", edges up to {kill} (stored)") } else { String::new() };
+            line("constrained", format!("yes, the border is {border}{kill}"));
+        }
         self.counts(&mut line);
         if let Some(report) = &self.audit {
             text += &self.audit_text(report);
@@ -73,6 +78,7 @@ impl Summary<'_> {
             true => ["functions", "coefficients"],
             false => ["vertices", "residual"],
         };
+        let constraints = self.inventory.constraints();
         let counts = [
             ("points", totals.points),
             ("merged", totals.merged),
@@ -82,6 +88,10 @@ impl Summary<'_> {
             ("cells", totals.cells),
             (residual, totals.residual_points),
             ("walls", totals.walls),
+            ("lines", constraints.lines()),
+            ("segments", constraints.segments),
+            ("open", constraints.open_segments),
+            ("sides", constraints.sides),
         ];
         for (name, count) in counts {
             if count > 0 || name == "points" {
@@ -173,6 +183,7 @@ impl Summary<'_> {
             true => ["functions", "coefficients"],
             false => ["vertices", "residual_points"],
         };
+        let constraints = self.inventory.constraints();
         let object = json!({
             "input": self.name,
             "kind": header.kind.name(),
@@ -203,6 +214,14 @@ impl Summary<'_> {
                 residual: totals.residual_points,
                 "walls": totals.walls,
             },
+            "constrained": header.constrained.map(|Constrained { is_cut, kill }| json!({
+                "is_cut": is_cut,
+                "kill": kill,
+                "lines": constraints.lines(),
+                "segments": constraints.segments,
+                "open_segments": constraints.open_segments,
+                "sides": constraints.sides,
+            })),
             "width": self.inventory.width(),
             "patches": self.inventory.patches(),
             "largest_patch": {

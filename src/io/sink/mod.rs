@@ -1,9 +1,13 @@
 //! Writers of every format that a stream can be converted to. Their input is the events of a stream.
 //! Arrays and sparse matrices for numpy get their rows from their caller.
 
+mod constrained;
+mod constraint_geojson;
+mod dxf;
 mod elements;
 mod historical_cells;
 mod hull;
+mod landxml;
 mod medit;
 mod npy;
 mod obj;
@@ -27,7 +31,10 @@ mod volume;
 mod vtu;
 mod world;
 
+pub use constraint_geojson::GeoJsonSink;
+pub use dxf::DxfSink;
 pub use hull::{HullSink, surface_header};
+pub use landxml::LandXmlSink;
 pub use medit::MeditSink;
 pub use npy::{NPY_F64, NpyRows, npy_header};
 pub use obj::ObjSink;
@@ -85,7 +92,9 @@ fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
             "{format} holds no integer grid: coordinates are rounded to the nearest number of 64 bits or less"
         )
     });
-    crs.into_iter().chain(grid).collect()
+    let segments =
+        header.constrained.map(|_| format!("{format} holds no segments: the mesh is written without them"));
+    crs.into_iter().chain(grid).chain(segments).collect()
 }
 
 /// Notices about scales and unknown numbers of attributes, in a format that holds the stored numbers.

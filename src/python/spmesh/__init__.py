@@ -21,10 +21,12 @@ from .blocks import (
     Function,
     Functions,
     Labels,
+    OpenSegments,
     Patch,
     Points,
     Points4,
     ResidualPoints,
+    Segments,
     Simplices4,
     Walls,
 )

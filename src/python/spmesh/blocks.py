@@ -36,6 +36,8 @@ class Patch:
     simplices: np.ndarray
     finalized: np.ndarray
     rows: np.ndarray | None = None
+    # Of a constrained mesh, (n, 3) uint32: triangle, the corner opposite to the side, segment.
+    sides: np.ndarray = field(default_factory=lambda: np.empty((0, 3), np.uint32))
 
     @property
     def ids(self) -> np.ndarray:
@@ -47,6 +49,21 @@ class Patch:
     def simplices_by_id(self) -> np.ndarray:
         """Simplices (m, corners) as ids of vertices of the whole stream."""
         return self.ids[self.simplices]
+
+
+@dataclass
+class Segments:
+    """Segments of a constrained mesh: `lines` (n,) uint32, numbers of lines; `ends` (n, 2, 2), x and y of both ends."""
+
+    lines: np.ndarray
+    ends: np.ndarray
+
+
+@dataclass
+class OpenSegments:
+    """Numbers (n,) uint32 of segments that leave the mesh."""
+
+    numbers: np.ndarray
 
 
 @dataclass

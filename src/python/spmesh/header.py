@@ -17,7 +17,7 @@ UNKNOWN = 2**64 - 1
 # Name, dimensions, and tags of blocks in their order.
 KINDS = {
     1: ("points", (2, 3), ((b"PNTS", b"CELL"),)),
-    2: ("triangle mesh", (2,), ((b"PTCH",),)),
+    2: ("triangle mesh", (2,), ((b"segm", b"side", b"PTCH"), (b"open",))),
     3: ("partial triangle mesh", (2,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
     4: ("tetrahedral mesh", (3,), ((b"PTCH", b"LABL"),)),
     5: ("points in 4 dimensions", (4,), ((b"PNT4",),)),
@@ -162,6 +162,8 @@ class Header:
     wkt: str | None = None
     geokeys: tuple[bytes, bytes, bytes] | None = None
     attributes: list[Attribute] = field(default_factory=list)
+    # Of a constrained mesh: whether its border is cut, and the kill length or 0.
+    constrained: tuple[bool, float] | None = None
     producer: str = "spmesh (Python)"
 
     @property
@@ -236,6 +238,11 @@ class Header:
             require(ordered, "the region is empty or not a number")
         require(not self.chunked or (self.kind == "points" and self.tree), "only points with a tree can be chunked")
         self._check_attributes()
+        if self.constrained is not None:
+            is_cut, kill = self.constrained
+            require(self.kind == "triangle mesh", f"a stream of kind {self.kind} is not constrained")
+            require(0 <= kill < math.inf, f"kill length {kill}, expected a finite number from 0 on")
+            require(is_cut or kill == 0, "a kill length, but a border that is not cut")
 
     def _check_bounds(self) -> None:
         if self.bounds is None:
@@ -322,6 +329,7 @@ class Header:
             (b"cWKT", self.wkt is not None and self.wkt.encode()),
             (b"cGEO", crs),
             (b"attr", b"".join(attribute.encode() for attribute in self.attributes)),
+            (b"cons", self.constrained is not None and struct.pack("<?d", *self.constrained)),
             (b"prod", self.producer.encode()),
         ]
         for tag, payload in records:
@@ -380,6 +388,12 @@ def _geokeys(header, payload):
     header.geokeys = tuple(parts)
 
 
+def _constrained(header, payload):
+    (kill,) = _floats(payload[1:], 1)
+    require(payload[0] < 2, f"flags {payload[0]}, of which all bits but bit 0 must be 0")
+    header.constrained = bool(payload[0]), kill
+
+
 def _producer(header, payload):
     header.producer = _text(payload, "producer")
 
@@ -392,5 +406,6 @@ _RECORDS = {
     b"cWKT": lambda header, payload: setattr(header, "wkt", _text(payload, "CRS")),
     b"cGEO": _geokeys,
     b"attr": lambda header, payload: setattr(header, "attributes", _attributes(payload)),
+    b"cons": _constrained,
     b"prod": _producer,
 }

@@ -11,6 +11,7 @@ from crc32c import crc32c
 
 from . import blocks as b
 from .compression import decompress
+from .constraints import Constraints, sides_of
 from .errors import SpmeshError, needs, require
 from .header import CODES, KINDS, UNKNOWN, Header, check_tag
 from .rules import Chunks, FinalCells, LiveVertices
@@ -47,6 +48,7 @@ class Reader:
         self._degree = self._group = self._boundary = self._function = None
         self._has_pairs = False
         self._point_size = header.axes * header.dtype.itemsize
+        self._constraints, self._sides = Constraints(header), None
         self._row = header.row_dtype if header.attributes else None
 
     def close(self) -> None:
@@ -82,6 +84,9 @@ class Reader:
             return None
         try:
             tag, payload = self._known_block()
+            if tag == b"side":
+                self._sides = sides_of(payload)
+                tag, payload = self._known_block()
             place = self.place
             block = self._decode(tag, payload)
             points = self._points_of(block)
@@ -115,7 +120,7 @@ class Reader:
             require(sequence == self._number % 2**32, "a block is missing or repeated")
             self._number += 1
             check_tag(tag, "block")
-            if tag in _DECODERS or tag == b"attp":
+            if tag in _DECODERS or tag in (b"attp", b"side"):
                 break
             if not tag[0] & 0x20:
                 needs(f"block tag {tag!r}")
@@ -123,10 +128,13 @@ class Reader:
             require(self._row is not None, "attributes in a stream without them")
             require(expects_rows, "attributes behind no points")
             require(tag == b"attp", f"block {tag!r}, expected the attributes of the points before it")
-        elif tag != b"END ":
+        require(self._sides is None or tag == b"PTCH", f"block {tag!r}, expected the patch of the sides")
+        if tag not in (b"attp", b"END "):
             phase = next((i for i, tags in enumerate(self._phases) if tag in tags), -1)
             require(phase >= self._phase, f"no block {tag!r} may stand here in a stream of kind {self.header.kind}")
             self._phase = phase
+            constrained = self.header.constrained is not None or tag not in (b"segm", b"side", b"open")
+            require(constrained, f"block {tag!r} in a stream that is not constrained")
         if compressed:
             require(tag != b"END ", "END is compressed")
             payload = decompress(payload)
@@ -204,6 +212,9 @@ class Reader:
             for other in range(one):
                 require((simplices[:, one] != simplices[:, other]).all(), "simplex uses a vertex twice")
         patch = b.Patch(first, new, imported, simplices, finalized)
+        if self._sides is not None:
+            patch.sides, self._sides = self._sides, None
+            self._constraints.check_sides(patch)
         if self._live:
             self._live.patch(patch)
         self.totals["vertices"] += n
@@ -425,6 +436,8 @@ _DECODERS = {
     b"PNTS": Reader._points,
     b"CELL": Reader._tags,
     b"PTCH": Reader._patch,
+    b"segm": lambda reader, payload: reader._constraints.segment(payload),
+    b"open": lambda reader, payload: reader._constraints.open(payload),
     b"LABL": Reader._label,
     b"RPNT": Reader._residual,
     b"WALL": Reader._walls,

@@ -18,6 +18,8 @@ class Stream:
 
     `stored` (n, axes): points, vertices or knots in stored coordinates, `xyz` the same in the world. `simplices` (m,
     corners): triangles or tetrahedra as indices of vertices. `rows` (n,): structured array of attributes.
+    Of a constrained mesh: `segment_lines` (k,) and `segment_ends` (k, 2, 2), stored; `sides` (m, corners) int64: for each
+    triangle the segments opposite to its corners, or -1; `open_segments`, numbers of segments that leave the mesh.
     """
 
     header: Header
@@ -32,6 +34,10 @@ class Stream:
     configurations: list[b.Configurations] = field(default_factory=list)
     functions: list[b.Function] = field(default_factory=list)
     coefficients: np.ndarray | None = None
+    segment_lines: np.ndarray | None = None
+    segment_ends: np.ndarray | None = None
+    sides: np.ndarray | None = None
+    open_segments: np.ndarray | None = None
     totals: dict[str, int] = field(default_factory=dict)
 
     @property
@@ -62,6 +68,11 @@ def read(file, memory: bool = True) -> Stream:
                 put("stored", block.new)
                 put("rows", block.rows)
                 put("simplices", block.simplices_by_id)
+                if header.constrained is not None:
+                    put("sides", _sides(block))
+            elif isinstance(block, b.Segments):
+                put("segment_lines", block.lines)
+                put("segment_ends", block.ends)
             elif isinstance(block, b.ResidualPoints):
                 put("residual", block)
             elif isinstance(block, b.Points4):
@@ -77,7 +88,7 @@ def read(file, memory: bool = True) -> Stream:
                 totals = block.totals
             else:
                 put(*_ARRAYS[type(block)](block))
-    arrays = {name: _joined(parts.get(name, [])) for name in ("rows", "simplices", "labels", "walls", "values", "coefficients")}
+    arrays = {name: _joined(parts.get(name, [])) for name in _NAMES}
     axes = 4 if header.dims == 4 else header.axes
     stored = _joined(parts.get("stored", []))
     stored = np.empty((0, axes), header.dtype) if stored is None else stored
@@ -96,13 +107,26 @@ def read(file, memory: bool = True) -> Stream:
     )
 
 
+_NAMES = (
+    "rows", "simplices", "labels", "walls", "values", "coefficients", "segment_lines", "segment_ends", "sides",
+    "open_segments",
+)
 _ARRAYS = {
+    b.OpenSegments: lambda block: ("open_segments", block.numbers),
     b.Cells: lambda block: ("codes", block.codes),
     b.Labels: lambda block: ("labels", block.labels),
     b.Walls: lambda block: ("walls", block.corners),
     b.Simplices4: lambda block: ("simplices", block.corners),
     b.Coefficients: lambda block: ("coefficients", block.values),
 }
+
+
+def _sides(patch: b.Patch) -> np.ndarray:
+    """For each triangle the segments opposite to its corners, or -1."""
+    sides = np.full((len(patch.simplices), 3), -1, np.int64)
+    triangle, place, segment = patch.sides.T
+    sides[triangle, place] = segment
+    return sides
 
 
 def _joined(parts: list) -> np.ndarray | None:

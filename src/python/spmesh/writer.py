@@ -9,7 +9,8 @@ from typing import BinaryIO
 import numpy as np
 from crc32c import crc32c
 
-from .blocks import NOT_A_VERTEX, TOTALS
+from .blocks import NOT_A_VERTEX, TOTALS, OpenSegments, Patch, Segments
+from .constraints import Constraints, segment_dtype
 from .header import KINDS, CODES, Header
 from .reader import KNOTS_OF
 
@@ -35,6 +36,7 @@ class Writer:
         self._sequence, self._phase = 0, 0
         self.totals = dict.fromkeys(TOTALS, 0)
         self._finalized = 0
+        self._constraints = Constraints(header)
         self._file.write(self._data)
 
     def __enter__(self) -> "Writer":
@@ -112,9 +114,12 @@ class Writer:
         self._block(b"CELL", codes.tobytes())
         self.totals["cells"] += len(codes)
 
-    def patch(self, new, imported, simplices, finalized, attributes=None, stored: bool = False) -> None:
+    def patch(
+        self, new, imported, simplices, finalized, attributes=None, stored: bool = False, sides=()
+    ) -> None:
         """New vertices (n, axes), ids (m,) of imported ones, simplices (s, corners) and finalized vertices as local
-        indices, which count the new vertices first."""
+        indices, which count the new vertices first. Of a constrained mesh also `sides` (n, 3): triangle, the corner
+        opposite to the side, segment."""
         points = self._stored(np.asarray(new).reshape(-1, self.header.axes), stored)
         imported = np.ascontiguousarray(imported, "<u8")
         simplices = np.ascontiguousarray(simplices, "<u4").reshape(-1, self.header.corners)
@@ -125,12 +130,39 @@ class Writer:
         counts = (len(points), len(imported), len(simplices), len(finalized))
         head = struct.pack("<Q4I", self.totals["vertices"], *counts)
         parts = (points, imported, simplices, finalized)
+        if len(sides):
+            sides = np.ascontiguousarray(sides, "<u4").reshape(-1, 3)
+            self._constraints.check_sides(Patch(0, points, imported, simplices, finalized, sides=sides))
+            self._block(b"side", sides.tobytes())
         self._block(b"PTCH", head + b"".join(part.tobytes() for part in parts))
         if rows:
             self._block(b"attp", rows)
         self.totals["vertices"] += len(points)
         self.totals["simplices"] += len(simplices)
         self._finalized += len(finalized)
+
+    def segments(self, lines, ends, stored: bool = False) -> None:
+        """Segments of a constrained mesh: numbers (n,) of lines, and x and y of both ends (n, 2, 2)."""
+        ends = np.asarray(ends).reshape(-1, 2, 2)
+        if not stored:
+            padded = np.zeros((len(ends) * 2, self.header.axes))
+            padded[:, :2] = ends.reshape(-1, 2)
+            if self.header.axes == 3 and self.header.offset is not None:
+                padded[:, 2] = self.header.offset[2]
+            ends = self.header.stored(padded)[:, :2].reshape(-1, 2, 2)
+        records = np.empty(len(ends), segment_dtype(self.header))
+        records["line"], records["ends"] = lines, ends
+        self._constraints.check_segments(Segments(records["line"], records["ends"]))
+        step = PAYLOAD_MAX // records.itemsize
+        for at in range(0, len(records), step):
+            self._block(b"segm", records[at : at + step].tobytes())
+
+    def open_segments(self, numbers) -> None:
+        """Numbers (n,) of segments that leave the mesh, increasing. No patch follows."""
+        numbers = np.ascontiguousarray(numbers, "<u4")
+        self._constraints.check_open(OpenSegments(numbers))
+        for at in range(0, len(numbers), PAYLOAD_MAX // 4):
+            self._block(b"open", numbers[at : at + PAYLOAD_MAX // 4].tobytes())
 
     def labels(self, labels) -> None:
         """Labels (n,) of the next vertices without one."""

@@ -51,7 +51,12 @@ def copied(data):
         elif isinstance(block, spmesh.Cells):
             writer.cells(block.codes)
         elif isinstance(block, spmesh.Patch):
-            writer.patch(block.new, block.imported, block.simplices, block.finalized, rows, stored=True)
+            parts = block.new, block.imported, block.simplices, block.finalized
+            writer.patch(*parts, rows, stored=True, sides=block.sides)
+        elif isinstance(block, spmesh.Segments):
+            writer.segments(block.lines, block.ends, stored=True)
+        elif isinstance(block, spmesh.OpenSegments):
+            writer.open_segments(block.numbers)
         elif isinstance(block, spmesh.Labels):
             writer.labels(block.labels)
         elif isinstance(block, spmesh.ResidualPoints):

@@ -25,6 +25,12 @@ pub enum Format {
     Vtu,
     /// Medit's meshes as text; written only.
     Medit,
+    /// AutoCAD's DXF as text; written only.
+    Dxf,
+    /// LandXML; written only.
+    LandXml,
+    /// GeoJSON of the edges on lines; written only.
+    GeoJson,
     /// Points as `spfinalize` reads them: LAS, LAZ, COPC, lines of coordinates, VTK; read only.
     Points,
 }
@@ -39,7 +45,7 @@ struct Row {
     is_written: bool,
 }
 
-const ROWS: [Row; 11] = [
+const ROWS: [Row; 14] = [
     Row {
         format: Format::Spm,
         name: "spm",
@@ -116,6 +122,30 @@ const ROWS: [Row; 11] = [
         format: Format::Medit,
         name: "medit",
         extension: "mesh",
+        is_binary: false,
+        is_read: false,
+        is_written: true,
+    },
+    Row {
+        format: Format::Dxf,
+        name: "dxf",
+        extension: "dxf",
+        is_binary: false,
+        is_read: false,
+        is_written: true,
+    },
+    Row {
+        format: Format::LandXml,
+        name: "landxml",
+        extension: "xml",
+        is_binary: false,
+        is_read: false,
+        is_written: true,
+    },
+    Row {
+        format: Format::GeoJson,
+        name: "geojson",
+        extension: "geojson",
         is_binary: false,
         is_read: false,
         is_written: true,

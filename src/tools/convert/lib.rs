@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_io::detect::{SPCONVERT, read_head};
 use spmesh_io::sink::{
-    EventSink, HullSink, MeditSink, ObjSink, PlyEncoding, PlySink, SmaSink, SmbSink, SpaSink, SpbSink,
-    SpmSink, TwinSink, VtuSink, surface_header,
+    DxfSink, EventSink, GeoJsonSink, HullSink, LandXmlSink, MeditSink, ObjSink, PlyEncoding, PlySink,
+    SmaSink, SmbSink, SpaSink, SpbSink, SpmSink, TwinSink, VtuSink, surface_header,
 };
 use spmesh_io::source::{
     AttributeChoice, Checked, EventSource, Input, PointEvents, SourceOptions, SpEvents, SpaReader, SpbReader,
@@ -119,7 +119,7 @@ pub fn open_source(
         }
         Format::Ply => open_ply(input, name, dims)?,
         Format::Points => open_points(input, name, options)?,
-        Format::Vtu | Format::Medit => {
+        Format::Vtu | Format::Medit | Format::Dxf | Format::LandXml | Format::GeoJson => {
             let name = format.name();
             return Err(in_input(Error::usage(format!("{name} is written by this program, but not read"))));
         }
@@ -181,6 +181,9 @@ fn open_sink<'a>(
         Format::Ply => Box::new(PlySink::new(output, header, encoding, temp_dir)?),
         Format::Vtu => Box::new(VtuSink::new(output, header, temp_dir)?),
         Format::Medit => Box::new(MeditSink::new(output, header, temp_dir)?),
+        Format::Dxf => Box::new(DxfSink::new(output, header)?),
+        Format::LandXml => Box::new(LandXmlSink::new(output, header, temp_dir)?),
+        Format::GeoJson => Box::new(GeoJsonSink::new(output, header)?),
         Format::Spa => Box::new(SpaSink::new(output, header)?),
         Format::Spb => Box::new(SpbSink::new(output, header)?),
         Format::Sma => Box::new(SmaSink::new(output, header)?),
