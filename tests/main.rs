@@ -32,6 +32,7 @@ mod programs;
 mod raster;
 mod sources;
 mod spacetime;
+mod spconstrain;
 mod splinefit;
 mod stream;
 mod system;
