@@ -90,8 +90,8 @@ impl Grid {
     }
 }
 
-/// The distance of neighbours on the grid for coordinates of f64: 2^(e - 40), where 2^e is the least power of two above
-/// all magnitudes.
+/// The distance of neighbours on the grid for coordinates of f64: 2^(e - 40), where 2^e is the least power of
+/// two above all magnitudes.
 fn step<'a>(lines: impl Iterator<Item = &'a Breakline>) -> f64 {
     let values = lines.flat_map(|line| &line.vertices).flatten();
     let most = values.fold(0.0f64, |most, value| most.max(value.abs()));

@@ -1,8 +1,8 @@
 //! Breaklines: from lines in files to a planar network on the grid of a stream.
 //!
-//! Steps: `io` reads the lines; their systems are compared with that of the points (`systems`); gaps in elevations are
-//! filled and long parts divided (`prepare`); coordinates are rounded to the grid of the stream (`grid`); and
-//! `geometry::noding` makes crossings and overlaps common vertices.
+//! Steps: `io` reads the lines; their systems are compared with that of the points (`systems`); gaps in
+//! elevations are filled and long parts divided (`prepare`); coordinates are rounded to the grid of the
+//! stream (`grid`); and `geometry::noding` makes crossings and overlaps common vertices.
 
 mod changes;
 mod grid;
@@ -52,13 +52,13 @@ pub struct Options {
 
 /// Reads the lines of files as one network. Lines are numbered over all files, in their order.
 ///
-/// The network depends on the set of lines alone, but for the numbers of lines. Its coordinates are those that the
-/// stream stores. If these are f64, they are rounded to multiples of 2^(e - 40), where 2^e is the least power of two
-/// above the magnitudes of all coordinates of the lines.
+/// The network depends on the set of lines alone, but for the numbers of lines. Its coordinates are those
+/// that the stream stores. If these are f64, they are rounded to multiples of 2^(e - 40), where 2^e is the
+/// least power of two above the magnitudes of all coordinates of the lines.
 ///
 /// # Errors
-/// Those of reading; usage, if the system of a file differs from that of the stream, or a coordinate is beyond the
-/// grid of the stream; malformed, if there are too many vertices or crossings.
+/// Those of reading; usage, if the system of a file differs from that of the stream, or a coordinate is
+/// beyond the grid of the stream; malformed, if there are too many vertices or crossings.
 pub fn read(paths: &[PathBuf], target: &Target, options: &Options) -> Result<(Network, Changes)> {
     if options.densify.is_some_and(|longest| !(longest > 0.0 && longest.is_finite())) {
         return Err(Error::usage("the longest part of a line must be a positive number"));
