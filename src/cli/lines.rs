@@ -14,8 +14,8 @@ use spmesh_model::network::Network;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Lines")]
 pub(super) struct LineFlags {
-    /// Read lines from this file: GeoJSON, Shapefile, GeoPackage or text; may be given several times. A line of text is
-    /// the word line with X Y Z of each vertex, or soft with X Y
+    /// Read lines from this file: GeoJSON, Shapefile, GeoPackage or text; may be given several times. A line
+    /// of text is the word line with X Y Z of each vertex, or soft with X Y
     #[arg(long = "lines", value_name = "FILE")]
     pub(super) files: Vec<PathBuf>,
 
@@ -23,7 +23,8 @@ pub(super) struct LineFlags {
     #[arg(long, value_name = "LENGTH", value_parser = parse_length)]
     densify: Option<f64>,
 
-    /// Write a table of all that was changed about lines: kind, line (numbered from 0), x and y, separated by tabs
+    /// Write a table of all that was changed about lines: kind, line (numbered from 0), x and y, separated by
+    /// tabs
     #[arg(long, value_name = "FILE")]
     pub(super) report: Option<PathBuf>,
 }

@@ -123,7 +123,8 @@ impl Changes {
         self.list.as_deref().unwrap_or_default()
     }
 
-    /// Writes the list as tab-separated values, with a line of names. Lines are numbered from 0, over all files.
+    /// Writes the list as tab-separated values, with a line of names. Lines are numbered from 0, over all
+    /// files.
     ///
     /// # Errors
     /// If writing fails.

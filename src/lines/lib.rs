@@ -1,8 +1,8 @@
 //! Breaklines: from lines in files to a planar network on the grid of a stream.
 //!
-//! Steps: `io` reads the lines; their systems are compared with that of the points (`systems`); gaps in elevations are
-//! filled and long parts divided (`prepare`); coordinates are rounded to the grid of the stream (`grid`); and
-//! `geometry::noding` makes crossings and overlaps common vertices.
+//! Steps: `io` reads the lines; their systems are compared with that of the points (`systems`); gaps in
+//! elevations are filled and long parts divided (`prepare`); coordinates are rounded to the grid of the
+//! stream (`grid`); and `geometry::noding` makes crossings and overlaps common vertices.
 
 mod areas;
 mod changes;
@@ -54,13 +54,13 @@ pub struct Options {
 
 /// Reads the lines of files as one network. Lines are numbered over all files, in their order.
 ///
-/// The network depends on the set of lines alone, but for the numbers of lines. Its coordinates are those that the
-/// stream stores. If these are f64, they are rounded to decimals: as many places as leave fewer than 2^42 steps up to
-/// the greatest magnitude of the lines, 6 for coordinates in millions.
+/// The network depends on the set of lines alone, but for the numbers of lines. Its coordinates are those
+/// that the stream stores. If these are f64, they are rounded to decimals: as many places as leave fewer than
+/// 2^42 steps up to the greatest magnitude of the lines, 6 for coordinates in millions.
 ///
 /// # Errors
-/// Those of reading; usage, if the system of a file differs from that of the stream, or a coordinate is beyond the
-/// grid of the stream; malformed, if there are too many vertices or crossings.
+/// Those of reading; usage, if the system of a file differs from that of the stream, or a coordinate is
+/// beyond the grid of the stream; malformed, if there are too many vertices or crossings.
 pub fn read(paths: &[PathBuf], target: &Target, options: &Options) -> Result<(Network, Changes)> {
     let sources = Sources { lines: paths, ..Sources::default() };
     read_with_areas(&sources, target, options).map(|(network, _, changes)| (network, changes))

@@ -9,8 +9,8 @@ use spmesh_model::points::Point2;
 /// A vertex in world coordinates, with its elevation.
 type Vertex = (Point2, Option<f64>);
 
-/// Prepares a line: leaves out vertices that repeat the one before, interpolates elevations between known ones, and
-/// divides parts longer than `densify` evenly.
+/// Prepares a line: leaves out vertices that repeat the one before, interpolates elevations between known
+/// ones, and divides parts longer than `densify` evenly.
 ///
 /// # Errors
 /// Malformed, if a part would have to be divided into too many.
@@ -44,7 +44,8 @@ pub(crate) fn prepare(
     }
 }
 
-/// Interpolates elevations linearly along the line, between the next vertices before and behind that have one.
+/// Interpolates elevations linearly along the line, between the next vertices before and behind that have
+/// one.
 fn fill(vertices: &mut [Vertex], number: u32, changes: &mut Changes) {
     let mut before: Option<usize> = None;
     for index in 0..vertices.len() {
@@ -58,8 +59,8 @@ fn fill(vertices: &mut [Vertex], number: u32, changes: &mut Changes) {
     }
 }
 
-/// Fills the gap between the first and the last vertex. The end that is lexicographically lesser comes first in
-/// sums, so that the direction of the line does not matter.
+/// Fills the gap between the first and the last vertex. The end that is lexicographically lesser comes first
+/// in sums, so that the direction of the line does not matter.
 fn fill_gap(gap: &mut [Vertex], number: u32, changes: &mut Changes) {
     let (first, last) = (gap[0], gap[gap.len() - 1]);
     let is_reversed = (last.0, last.1) < (first.0, first.1);

@@ -4,8 +4,8 @@ use spmesh_core::error::{Error, Result};
 use spmesh_crs::{System, differences};
 use spmesh_stream::Crs;
 
-/// Compares the system of the lines in a file with that of the points; returns a message for the user if only one
-/// of them is known.
+/// Compares the system of the lines in a file with that of the points; returns a message for the user if only
+/// one of them is known.
 ///
 /// # Errors
 /// Usage, if they differ.

@@ -1,4 +1,5 @@
-//! Snap rounding by definition: all pairs of segments, all segments and all pixels, with fractions of big integers.
+//! Snap rounding by definition: all pairs of segments, all segments and all pixels, with fractions of big
+//! integers.
 
 use num_bigint::BigInt;
 use std::cmp::Ordering;
@@ -63,8 +64,8 @@ fn common([a, b]: [Place; 2], [c, d]: [Place; 2]) -> Option<[Fraction; 2]> {
     Some([t.along(a[0], b[0]), t.along(a[1], b[1])])
 }
 
-/// The least parameter at which a segment is in the half-open pixel, and whether it is there only behind that;
-/// `None` if it is never there.
+/// The least parameter at which a segment is in the half-open pixel, and whether it is there only behind
+/// that; `None` if it is never there.
 fn entry([a, b]: [Place; 2], centre: Place) -> Option<(Fraction, bool)> {
     // Lower bounds of the parameter, upper bounds, and whether these are included.
     let mut low = Fraction::new(0.into(), 1.into());
@@ -101,8 +102,8 @@ fn entry([a, b]: [Place; 2], centre: Place) -> Option<(Fraction, bool)> {
     is_met.then_some((low, is_low_open))
 }
 
-/// The vertices and segments that snap rounding makes of polylines: segments with their lesser end first, and the
-/// least number of a polyline that they are part of.
+/// The vertices and segments that snap rounding makes of polylines: segments with their lesser end first, and
+/// the least number of a polyline that they are part of.
 pub fn snap_round(lines: &[Vec<Place>]) -> (BTreeSet<Place>, BTreeMap<[Place; 2], usize>) {
     let parts: Vec<(usize, [Place; 2])> = lines
         .iter()

@@ -69,8 +69,8 @@ struct Bends {
 }
 
 impl Bends {
-    /// Replaces the content of `chain` by the nodes of a segment in their order along it: x does not decrease, and
-    /// y does not turn back.
+    /// Replaces the content of `chain` by the nodes of a segment in their order along it: x does not
+    /// decrease, and y does not turn back.
     fn chain(&self, ends: [u32; 2], touches: &[u64], chain: &mut Vec<u32>) {
         let [a, b] = ends.map(|end| self.nodes.of_place(end));
         chain.clear();
@@ -100,9 +100,9 @@ impl Bends {
         }
     }
 
-    /// Interpolates between consecutive nodes for which lines state elevations, where a part with elevations at both
-    /// ends runs along. The ends of such a part are nodes of this kind, so that it runs along all pieces between two
-    /// of them or along none.
+    /// Interpolates between consecutive nodes for which lines state elevations, where a part with elevations
+    /// at both ends runs along. The ends of such a part are nodes of this kind, so that it runs along all
+    /// pieces between two of them or along none.
     fn interpolate(&mut self, chain: &[u32], cover: &Cover) {
         let along = {
             let [a, b] = [chain[0], chain[chain.len() - 1]].map(|node| self.nodes.places[node as usize]);

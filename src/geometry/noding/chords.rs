@@ -1,15 +1,16 @@
 //! Whether segments that pass through a cell from side to side meet in it.
 //!
-//! Such segments are chords of the cell. Two chords cross if and only if their ends alternate around the cell. Going
-//! around it once, with a stack of the chords whose first end has been passed, finds out for all chords together.
+//! Such segments are chords of the cell. Two chords cross if and only if their ends alternate around the
+//! cell. Going around it once, with a stack of the chords whose first end has been passed, finds out for all
+//! chords together.
 
 use std::cmp::Ordering;
 
 use super::exact::{Place, cross, minus};
 use super::search::Cell;
 
-/// Longest side of a cell that can be examined, doubled: a position on a side is then a fraction of a numerator below
-/// 2^82 and a denominator up to 2^44, and products of both fit i128.
+/// Longest side of a cell that can be examined, doubled: a position on a side is then a fraction of a
+/// numerator below 2^82 and a denominator up to 2^44, and products of both fit i128.
 const SIDE_MAX: i64 = 1 << 38;
 
 /// Numbers of the sides, in counterclockwise order.
@@ -18,8 +19,8 @@ const RIGHT: u8 = 1;
 const TOP: u8 = 2;
 const LEFT: u8 = 3;
 
-/// A place on the border of a cell: a side, and the fraction of units that it is behind the start of the side, going
-/// counterclockwise. The end of a side counts as the start of the next.
+/// A place on the border of a cell: a side, and the fraction of units that it is behind the start of the
+/// side, going counterclockwise. The end of a side counts as the start of the next.
 #[derive(Debug, Clone, Copy)]
 struct End {
     side: u8,
@@ -55,9 +56,9 @@ pub(super) struct Chords {
 }
 
 impl Chords {
-    /// Whether no two of the segments meet in the half-open cell. No segment may end in it, and no two may overlap. If
-    /// the cell is one pixel, the answer is exact. For others it is false also where segments meet on the border, and
-    /// for large cells.
+    /// Whether no two of the segments meet in the half-open cell. No segment may end in it, and no two may
+    /// overlap. If the cell is one pixel, the answer is exact. For others it is false also where segments
+    /// meet on the border, and for large cells.
     pub(super) fn are_apart(&mut self, cell: &Cell, segments: impl Iterator<Item = [Place; 2]>) -> bool {
         let frame = Frame::of(cell);
         if frame.len.iter().any(|&len| len > SIDE_MAX) {
@@ -89,7 +90,8 @@ impl Chords {
         }
     }
 
-    /// Whether the ends of chords do not alternate, and no two chords have an end in common inside of the cell.
+    /// Whether the ends of chords do not alternate, and no two chords have an end in common inside of the
+    /// cell.
     fn go_around(&mut self) -> bool {
         self.open.clear();
         for (rank, group) in self.ends.chunk_by(|a, b| a.order(b) == Ordering::Equal).enumerate() {
@@ -134,8 +136,8 @@ impl Frame {
         Frame { min, len: minus(cell.max.map(|max| 2 * max - 1), min) }
     }
 
-    /// The ends of a chord along a line through two places, the first of which is lexicographically lesser; `None` if
-    /// the line does not meet the closed cell.
+    /// The ends of a chord along a line through two places, the first of which is lexicographically lesser;
+    /// `None` if the line does not meet the closed cell.
     fn chord(&self, segment: [Place; 2], chord: u32) -> Option<[End; 2]> {
         let [a, b] = segment.map(|place| place.map(|value| 2 * value));
         let ([dx, dy], [width, height]) = (minus(b, a), self.len);

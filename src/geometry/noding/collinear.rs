@@ -1,7 +1,8 @@
 //! Parts of lines that overlap along a straight line become one segment.
 //!
-//! This changes no result, as all ends of the parts are hot pixels, and the long segment passes through them. It
-//! makes segments few where lines repeat, and leaves only crossings between segments that are not parallel.
+//! This changes no result, as all ends of the parts are hot pixels, and the long segment passes through them.
+//! It makes segments few where lines repeat, and leaves only crossings between segments that are not
+//! parallel.
 
 use std::cmp::Ordering;
 

@@ -30,8 +30,8 @@ pub(super) struct Cover {
 }
 
 impl Cover {
-    /// Replaces the content by what `parts` cover of the segment with this `chain` of nodes. The parts start in
-    /// increasing order along it.
+    /// Replaces the content by what `parts` cover of the segment with this `chain` of nodes. The parts start
+    /// in increasing order along it.
     pub(super) fn find(&mut self, nodes: &Nodes, chain: &[u32], parts: &[Part]) {
         self.pieces.clear();
         self.is_end.clear();

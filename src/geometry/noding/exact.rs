@@ -1,8 +1,8 @@
 //! Exact arithmetic of snap rounding, on coordinates of at most [`COORDINATE_MAX`].
 //!
-//! Differences of coordinates are below 2^44 when doubled, so cross products of two of them are below 2^89 and fit
-//! i128. The place of a crossing is a quotient of products below 2^132, which do not fit: [`crossing_pixel`] divides
-//! in two steps of 22 bits.
+//! Differences of coordinates are below 2^44 when doubled, so cross products of two of them are below 2^89
+//! and fit i128. The place of a crossing is a quotient of products below 2^132, which do not fit:
+//! [`crossing_pixel`] divides in two steps of 22 bits.
 
 use std::cmp::Ordering;
 
@@ -26,7 +26,8 @@ fn side(a: Place, b: Place, c: Place) -> i128 {
     cross(minus(b, a), minus(c, a))
 }
 
-/// The pixel in which two segments cross, if a place inside of both is common to them and they are not parallel.
+/// The pixel in which two segments cross, if a place inside of both is common to them and they are not
+/// parallel.
 ///
 /// The pixel of a real place is the one with the centre `floor(place + 1/2)`, per axis.
 pub(super) fn crossing_pixel([a, b]: [Place; 2], [c, d]: [Place; 2]) -> Option<Place> {
@@ -78,8 +79,8 @@ pub(super) fn meets_pixel([a, b]: [Place; 2], centre: Place) -> bool {
     if along[0] == 0 || along[1] == 0 {
         return true;
     }
-    // The part of the segment in the column of the pixel is from `first` to `last`, where it has left the column
-    // if it does not end there. `height` compares the line with a place: above is greater.
+    // The part of the segment in the column of the pixel is from `first` to `last`, where it has left the
+    // column if it does not end there. `height` compares the line with a place: above is greater.
     let (first, last) = (a[0].max(min[0]), b[0].min(max[0]));
     let height = |x: i64, y: i64| cross(along, [a[0] - x, a[1] - y]).signum().cmp(&0);
     if along[1] > 0 {

@@ -1,18 +1,19 @@
-//! Noding of polylines by snap rounding: from polylines that cross and overlap to segments that meet at common
-//! vertices only, all on a grid of integers.
+//! Noding of polylines by snap rounding: from polylines that cross and overlap to segments that meet at
+//! common vertices only, all on a grid of integers.
 //!
-//! A *hot pixel* is the half-open unit square around a vertex, or around the grid place nearest to a crossing. Every
-//! segment that passes through a hot pixel is bent to its centre. Hobby, and Guibas and Marimont, prove that no new
-//! crossing arises; `docs/theory/noding.md` states the proof for half-open pixels.
+//! A *hot pixel* is the half-open unit square around a vertex, or around the grid place nearest to a
+//! crossing. Every segment that passes through a hot pixel is bent to its centre. Hobby, and Guibas and
+//! Marimont, prove that no new crossing arises; `docs/theory/noding.md` states the proof for half-open
+//! pixels.
 //!
-//! Steps: vertices at one place become one (`places`); overlapping parts of a line become one segment (`collinear`);
-//! a recursive division of the plane finds crossings, and the segments in each hot pixel (`search`, with `chords`);
-//! segments are bent, and elevations found (`bend`).
+//! Steps: vertices at one place become one (`places`); overlapping parts of a line become one segment
+//! (`collinear`); a recursive division of the plane finds crossings, and the segments in each hot pixel
+//! (`search`, with `chords`); segments are bent, and elevations found (`bend`).
 //!
-//! Sources: J. D. Hobby, "Practical segment intersection with finite precision output", Computational Geometry 13
-//! (1999); L. J. Guibas and D. H. Marimont, "Rounding arrangements dynamically", International Journal of
-//! Computational Geometry and Applications 8 (1998). Both sweep the plane. The division here needs no order of
-//! crossings along a sweep line, so each decision is one exact sign.
+//! Sources: J. D. Hobby, "Practical segment intersection with finite precision output", Computational
+//! Geometry 13 (1999); L. J. Guibas and D. H. Marimont, "Rounding arrangements dynamically", International
+//! Journal of Computational Geometry and Applications 8 (1998). Both sweep the plane. The division here needs
+//! no order of crossings along a sweep line, so each decision is one exact sign.
 
 mod bend;
 mod chain;
@@ -78,23 +79,23 @@ pub struct NodingOptions {
     pub crossings_max: usize,
 }
 
-/// Nodes polylines: `starts` are the numbers of the first vertices of each, in increasing order. `note` is told each
-/// change with the number of a line and a place.
+/// Nodes polylines: `starts` are the numbers of the first vertices of each, in increasing order. `note` is
+/// told each change with the number of a line and a place.
 ///
 /// The same lines give the same result in any order and direction, up to the numbers of lines.
 ///
-/// A vertex takes the lowest elevation that lines state at its place. If none does, elevations are interpolated
-/// between the next vertices before and behind that have one, along each segment with an elevation at both of its
-/// ends that passes; the lowest counts.
+/// A vertex takes the lowest elevation that lines state at its place. If none does, elevations are
+/// interpolated between the next vertices before and behind that have one, along each segment with an
+/// elevation at both of its ends that passes; the lowest counts.
 ///
 /// Shape: about 70 bytes per vertex, beside arguments and result.
 ///
 /// # Errors
-/// Malformed, if there are more than `LINE_VERTICES_MAX` vertices, a coordinate exceeds [`COORDINATE_MAX`], or there
-/// are more crossings than `options` allow.
+/// Malformed, if there are more than `LINE_VERTICES_MAX` vertices, a coordinate exceeds [`COORDINATE_MAX`],
+/// or there are more crossings than `options` allow.
 ///
-/// Cost: O(n log n) steps for n vertices, plus O(log) of the extent for each crossing and each bend; more where
-/// many segments that are not parallel run close beside each other.
+/// Cost: O(n log n) steps for n vertices, plus O(log) of the extent for each crossing and each bend; more
+/// where many segments that are not parallel run close beside each other.
 pub fn node_lines(
     vertices: &[LineVertex],
     starts: &[u32],

@@ -1,9 +1,9 @@
 //! Crossings, and the segments that pass through hot pixels, by division of the plane.
 //!
 //! A cell is a rectangle of pixels. It is divided until few segments meet it, or until it has no vertex and
-//! [`super::chords`] proves that no two of its segments meet in it. A cell of one pixel needs no division either: it
-//! is hot if it has a vertex or a crossing, and then all of its segments are bent to its centre. So segments that
-//! share a vertex, or run close to each other, are compared in pairs nowhere.
+//! [`super::chords`] proves that no two of its segments meet in it. A cell of one pixel needs no division
+//! either: it is hot if it has a vertex or a crossing, and then all of its segments are bent to its centre.
+//! So segments that share a vertex, or run close to each other, are compared in pairs nowhere.
 
 use super::chords::Chords;
 use super::collinear::Segments;
@@ -23,8 +23,8 @@ const MARGIN: f64 = 1.0 / 64.0;
 pub(super) struct Found {
     /// Pixels of crossings that have no vertex, all different.
     pub(super) crossings: Vec<Place>,
-    /// A segment, and a hot pixel that it passes through without ending there: the number of a place, or beyond
-    /// these, of a crossing.
+    /// A segment, and a hot pixel that it passes through without ending there: the number of a place, or
+    /// beyond these, of a crossing.
     pub(super) touches: Vec<[u32; 2]>,
 }
 
@@ -83,9 +83,9 @@ impl Cell {
         let first = places.first().copied().unwrap_or_default();
         let mut cell = Cell { min: first, max: first };
         for place in places {
-            for axis in 0..2 {
-                cell.min[axis] = cell.min[axis].min(place[axis]);
-                cell.max[axis] = cell.max[axis].max(place[axis]);
+            for (axis, &value) in place.iter().enumerate() {
+                cell.min[axis] = cell.min[axis].min(value);
+                cell.max[axis] = cell.max[axis].max(value);
             }
         }
         cell.max = cell.max.map(|max| max + 1);
@@ -183,7 +183,8 @@ impl Search<'_> {
         self.cells[start..].iter().all(|&segment| self.geometry[segment as usize].has_end(place))
     }
 
-    /// The axis along which a cell is divided: the longer one, unless the middle of the other one cuts no segment.
+    /// The axis along which a cell is divided: the longer one, unless the middle of the other one cuts no
+    /// segment.
     fn axis(&self, cell: &Cell, start: usize) -> usize {
         let long = usize::from(cell.len(1) > cell.len(0));
         let short = 1 - long;
@@ -255,11 +256,10 @@ impl Search<'_> {
         for &segment in &self.cells[start..] {
             let geometry = &self.geometry[segment as usize];
             let [low, high] = geometry.range(1);
-            let is_near = geometry.a[0] - 1.0 < x && x < geometry.b[0] + 1.0;
-            if is_near && low - 1.0 < y && y < high + 1.0 {
-                if !geometry.has_end([x, y]) && meets_pixel(geometry.ends(), pixel) {
-                    self.found.touches.push([segment, number]);
-                }
+            let is_near =
+                geometry.a[0] - 1.0 < x && x < geometry.b[0] + 1.0 && low - 1.0 < y && y < high + 1.0;
+            if is_near && !geometry.has_end([x, y]) && meets_pixel(geometry.ends(), pixel) {
+                self.found.touches.push([segment, number]);
             }
         }
         // Crossings of two segments bend four times at most, the vertices of lines once each in good lines.

@@ -29,8 +29,8 @@ impl Collector {
         self.polygons += 1;
     }
 
-    /// Enters a part of a geometry: x, y and z of each vertex; a z that is not finite is unknown. `position` is asked
-    /// for once a line.
+    /// Enters a part of a geometry: x, y and z of each vertex; a z that is not finite is unknown. `position`
+    /// is asked for once a line.
     ///
     /// # Errors
     /// Malformed, if x or y is not finite, or there are too many vertices.

@@ -1,7 +1,7 @@
 //! GeoJSON, read as it arrives: of a file of many lines, only the numbers are held.
 //!
-//! Members of an object may come in any order, so coordinates are read before it is known of what geometry they are:
-//! as numbers, with the nesting of lists.
+//! Members of an object may come in any order, so coordinates are read before it is known of what geometry
+//! they are: as numbers, with the nesting of lists.
 
 mod coordinates;
 
@@ -79,7 +79,8 @@ struct File {
     failure: Option<Error>,
 }
 
-/// Reads an object: a collection, a feature or a geometry. The features of a collection are entered as they come.
+/// Reads an object: a collection, a feature or a geometry. The features of a collection are entered as they
+/// come.
 struct Object<'a> {
     file: &'a mut File,
     is_root: bool,

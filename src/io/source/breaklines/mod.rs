@@ -1,4 +1,5 @@
-//! Lines that become edges of a mesh: text, GeoJSON, Shapefiles and GeoPackages, each recognized by its content.
+//! Lines that become edges of a mesh: text, GeoJSON, Shapefiles and GeoPackages, each recognized by its
+//! content.
 
 mod collect;
 mod geojson;
@@ -50,13 +51,14 @@ pub struct Breaklines {
     pub crs: Crs,
 }
 
-/// Reads the lines of a file; `-` is stdin, from which text and GeoJSON are read. Both may be compressed with gzip.
+/// Reads the lines of a file; `-` is stdin, from which text and GeoJSON are read. Both may be compressed with
+/// gzip.
 ///
-/// In a line of text, the word `line` starts a line with X Y Z of each vertex, and the word `soft` one with X Y. The
-/// vertices of a line may continue on the next lines of text. `nan` stands for an unknown Z.
+/// In a line of text, the word `line` starts a line with X Y Z of each vertex, and the word `soft` one with X
+/// Y. The vertices of a line may continue on the next lines of text. `nan` stands for an unknown Z.
 ///
-/// In GeoJSON, third coordinates are elevations. Points are lines of one vertex. A Shapefile may have Z; its system is
-/// in the `.prj` file beside it. Of a GeoPackage, all tables of features are read.
+/// In GeoJSON, third coordinates are elevations. Points are lines of one vertex. A Shapefile may have Z; its
+/// system is in the `.prj` file beside it. Of a GeoPackage, all tables of features are read.
 ///
 /// # Errors
 /// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a

@@ -1,7 +1,7 @@
 //! Shapefiles: the main file (`.shp`) has the geometry, the file beside it (`.prj`) the system.
 //!
-//! Source: ESRI Shapefile Technical Description, 1998. Lengths in the file are not trusted: memory is taken for bytes
-//! that have arrived.
+//! Source: ESRI Shapefile Technical Description, 1998. Lengths in the file are not trusted: memory is taken
+//! for bytes that have arrived.
 
 use std::io::{ErrorKind, Read};
 use std::path::Path;

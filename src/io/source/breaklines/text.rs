@@ -58,7 +58,7 @@ fn close(open: Option<Open>, lines: &mut Collector) -> Result<()> {
 impl Open {
     fn extend(&mut self, words: &[&[u8]]) -> Result<()> {
         let (len, names) = if self.is_hard { (3, "x, y and z") } else { (2, "x and y") };
-        if words.len() % len != 0 {
+        if !words.len().is_multiple_of(len) {
             let found = words.len();
             return Err(Error::malformed(format!("found {found} numbers, expected {names} of each vertex")));
         }
