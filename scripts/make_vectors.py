@@ -1571,7 +1571,7 @@ def failing_configurations(raw):
 # Sections of the text about the parts of a stream.
 SECTIONS = {b"PNTS": "4.2", b"CELL": "4.3", b"PTCH": "4.4", b"LABL": "4.5", b"RPNT": "4.6", b"WALL": "4.7",
             b"PNT4": "4.8", b"CEL4": "4.9", b"SIM4": "4.10", b"CONF": "4.11", b"FUNC": "4.12", b"COEF": "4.13",
-            b"attp": "4.14", b"END ": "4.15"}
+            b"attp": "4.14", b"END ": "4.15", b"segm": "4.17", b"side": "4.17", b"open": "4.17"}
 
 
 def place_of(name, data):

@@ -7,7 +7,9 @@ mod command;
 #[path = "audit/configurations.rs"]
 mod configurations;
 #[path = "audit/constrained.rs"]
-pub mod constrained;
+mod constrained;
+#[path = "audit/constrained_mesh.rs"]
+pub mod constrained_mesh;
 #[path = "audit/diagram.rs"]
 pub mod diagram;
 #[path = "audit/diagram_damage.rs"]

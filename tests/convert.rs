@@ -7,6 +7,7 @@ mod independent;
 mod peers;
 mod ply;
 mod samples;
+mod survey;
 mod text;
 mod volume;
 

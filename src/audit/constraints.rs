@@ -123,7 +123,7 @@ impl Constraints {
 
     /// Proves that the edges on each segment cover it, unless it is open. The edges on a segment do not overlap,
     /// so what they cover is known from where their chains end. Where the mesh covers the convex hull, which is
-    /// `outline`, open segments must leave it.
+    /// `outline`, all of an open segment in it must be covered.
     pub(super) fn check_chains(
         &self,
         outline: Option<&Outline>,
@@ -131,7 +131,11 @@ impl Constraints {
     ) -> Result<(), Violation> {
         let mut found = vec![[false; 2]; self.segments.len()];
         let mut gaps: HashMap<u32, Corner, RandomState> = HashMap::default();
+        let mut chains: HashMap<u32, Vec<Xy>, RandomState> = HashMap::default();
         for (&(segment, id), &at) in &self.ends {
+            if self.open.binary_search(&segment).is_ok() {
+                chains.entry(segment).or_default().push(at);
+            }
             match self.segments[segment as usize].iter().position(|&end| end == at) {
                 Some(end) => found[segment as usize][end] = true,
                 None => {
@@ -148,15 +152,30 @@ impl Constraints {
             if is_covered == is_open {
                 return Err(self.wrong_chain(number, is_open, gaps.get(&number)));
             }
-            let is_inside = |outline: &Outline| {
-                self.segments[number as usize].iter().all(|&end| !outline.is_outside(end, ledger))
-            };
-            if is_open && outline.is_some_and(is_inside) {
-                let message = format!("segment {number} is open, but it lies in the convex hull");
+            let chain = chains.get(&number).map_or(&[][..], |chain| chain);
+            if is_open && outline.is_some_and(|outline| !self.leaves(number, chain, outline, ledger)) {
+                let message =
+                    format!("segment {number} is open, but a part of it in the convex hull is no edge");
                 return Err(self.of_segment(number, message));
             }
         }
         Ok(())
+    }
+
+    /// Whether all of a segment that is in the convex hull is one chain of edges, with these ends.
+    fn leaves(&self, number: u32, chain: &[Xy], outline: &Outline, ledger: &mut Ledger) -> bool {
+        let [a, b] = self.segments[number as usize];
+        match *chain {
+            [] => outline.is_apart([a, b], ledger),
+            [p, q] => {
+                let is_forward = lexicographic(a, b) == lexicographic(p, q);
+                let [p, q] = if is_forward { [p, q] } else { [q, p] };
+                [[p, a], [q, b]]
+                    .iter()
+                    .all(|&[last, end]| last == end || outline.is_left_at(last, end, ledger))
+            }
+            _ => false,
+        }
     }
 
     fn wrong_chain(&self, number: u32, is_open: bool, gap: Option<&Corner>) -> Violation {

@@ -19,25 +19,42 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    /// Whether a point is outside, not on an edge.
-    pub(super) fn is_outside(&self, at: Xy, ledger: &mut Ledger) -> bool {
-        self.is_beyond(&self.lower, at, Ordering::Less, ledger)
-            || self.is_beyond(&self.upper, at, Ordering::Greater, ledger)
+    /// Whether the segment from a corner to another point is outside, but for the corner.
+    pub(super) fn is_left_at(&self, corner: Xy, end: Xy, ledger: &mut Ledger) -> bool {
+        self.sides().any(|(chain, outside)| {
+            let at = chain.partition_point(|&other| lexicographic(other, corner) == Ordering::Less);
+            let around = at.saturating_sub(1)..(at + 2).min(chain.len());
+            chain.get(at) == Some(&corner)
+                && chain[around].windows(2).any(|pair| turn(pair[0], pair[1], end, ledger) == outside)
+        })
     }
 
-    /// Whether a point is on this side of a chain, or before its start or after its end.
-    fn is_beyond(&self, chain: &[Xy], at: Xy, side: Ordering, ledger: &mut Ledger) -> bool {
-        let after = chain.partition_point(|&corner| lexicographic(corner, at) == Ordering::Less);
-        match (after.checked_sub(1).map(|before| chain[before]), chain.get(after)) {
-            (_, Some(&corner)) if corner == at => false,
-            (Some(before), Some(&corner)) => {
-                let turn = orientation(before, corner, at);
-                ledger.count(Check::Constraints, turn.exactly);
-                turn.sign == side
+    /// Whether a segment has no point in common with the inside, nor a part of an edge. Cost: the polygon.
+    pub(super) fn is_apart(&self, [a, b]: [Xy; 2], ledger: &mut Ledger) -> bool {
+        let is_beyond = |pair: &[Xy], outside: Ordering, ledger: &mut Ledger| {
+            let turns = [a, b].map(|end| turn(pair[0], pair[1], end, ledger));
+            turns.contains(&outside) && !turns.contains(&outside.reverse())
+        };
+        let mut turns = Vec::new();
+        for (chain, outside) in self.sides() {
+            if chain.windows(2).any(|pair| is_beyond(pair, outside, ledger)) {
+                return true;
             }
-            _ => true,
+            turns.extend(chain.iter().map(|&corner| turn(a, b, corner, ledger)));
         }
+        !turns.contains(&Ordering::Less) || !turns.contains(&Ordering::Greater)
     }
+
+    /// Both chains, from left to right, and the side of their edges that is outside.
+    fn sides(&self) -> impl Iterator<Item = (&[Xy], Ordering)> {
+        [(&self.lower[..], Ordering::Less), (&self.upper[..], Ordering::Greater)].into_iter()
+    }
+}
+
+fn turn(p: Xy, q: Xy, r: Xy, ledger: &mut Ledger) -> Ordering {
+    let turn = orientation(p, q, r);
+    ledger.count(Check::Constraints, turn.exactly);
+    turn.sign
 }
 
 /// Corners of the boundary.

@@ -204,7 +204,7 @@ fn the_examples_of_the_specification_are_twins() {
     let text = std::fs::read_to_string(crate::vectors::repository("formats/text.md")).unwrap();
     let lines: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("    ")).collect();
     let starts: Vec<usize> = (0..lines.len()).filter(|&i| lines[i] == "#spmesh version 2").collect();
-    assert_eq!(starts.len(), 4);
+    assert_eq!(starts.len(), 5);
     for (i, &start) in starts.iter().enumerate() {
         let end = starts.get(i + 1).copied().unwrap_or(lines.len());
         let example = lines[start..end].join("\n") + "\n";

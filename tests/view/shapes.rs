@@ -225,3 +225,16 @@ fn the_ending_of_a_name_says_the_format() {
             && page.contains(std::str::from_utf8(&svg).unwrap())
     );
 }
+
+#[test]
+fn edges_on_lines_are_drawn_once() {
+    let vectors = crate::vectors::load("pass", "txt");
+    let vector = vectors.iter().find(|vector| vector.name.ends_with("constrained-square")).unwrap();
+    for form in [Form::Vector, Form::Raster] {
+        let drawn = picture(&vector.bytes, &Options { form, ..Options::new("square") });
+        let elements = parse(&drawn.svg);
+        let lines = &named(&elements, "lines").unwrap().attributes["d"];
+        assert_eq!(lines.matches('M').count(), 2, "{lines}");
+        assert!(drawn.svg.contains("edges on lines"));
+    }
+}
