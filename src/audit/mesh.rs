@@ -57,12 +57,13 @@ impl MeshAudit {
         let (hull, unused) = (&mut self.hull, &mut self.unused);
         self.triangles
             .patch(patch, ledger, |vertex, ledger| finalize(vertex, is_cut, hull, unused, ledger))?;
-        if self.triangles.triangles > 0 { self.unused.check_none("triangle") } else { Ok(()) }
+        // Vertices outside of a border that was cut keep no triangle.
+        if self.triangles.triangles > 0 && !is_cut { self.unused.check_none("triangle") } else { Ok(()) }
     }
 
     pub(super) fn end(&mut self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
         self.triangles.vertices.check_finalized()?;
-        if self.triangles.triangles == 0 {
+        if self.triangles.triangles == 0 && !self.is_cut() {
             self.unused.check_line(ledger)?;
             self.check_chains(None, ledger)?;
         } else if self.is_cut() {
@@ -138,7 +139,9 @@ fn finalize(
     let fans = vertex.star;
     match (fans.entering, fans.leaving) {
         (0, 0) if !fans.is_used => {
-            unused.add(Corner::of(vertex));
+            if !is_cut {
+                unused.add(Corner::of(vertex));
+            }
             Ok(())
         }
         (0, 0) => fans.winding.check_once(vertex),

@@ -254,28 +254,37 @@ pub struct Inside {
 }
 
 impl Inside {
-    /// The next triangle.
+    /// The next triangle that is inside.
     ///
     /// # Errors
     /// If the temporary file cannot be read.
     pub fn next_triangle(&mut self) -> Result<Option<Waiting>> {
-        while self.next < self.is_outside.len() {
-            let number = self.next;
-            self.next += 1;
-            let triangle = match &mut self.file {
-                Some((name, file)) if (number as u64) < self.spilled => {
-                    let mut triangle = Waiting::zeroed();
-                    file.read_exact(bytemuck::bytes_of_mut(&mut triangle))
-                        .map_err(|cause| Error::io(READING, cause).of_input(name.as_str()))?;
-                    triangle
-                }
-                _ => self.waiting[number - self.spilled as usize],
-            };
-            if !self.is_outside[number] {
+        while let Some((triangle, is_inside)) = self.next_decided()? {
+            if is_inside {
                 return Ok(Some(triangle));
             }
         }
         Ok(None)
+    }
+
+    /// The next triangle, and whether it is inside.
+    ///
+    /// # Errors
+    /// If the temporary file cannot be read.
+    pub fn next_decided(&mut self) -> Result<Option<(Waiting, bool)>> {
+        let number = self.next;
+        let Some(is_outside) = self.is_outside.get(number) else { return Ok(None) };
+        self.next += 1;
+        let triangle = match &mut self.file {
+            Some((name, file)) if (number as u64) < self.spilled => {
+                let mut triangle = Waiting::zeroed();
+                file.read_exact(bytemuck::bytes_of_mut(&mut triangle))
+                    .map_err(|cause| Error::io(READING, cause).of_input(name.as_str()))?;
+                triangle
+            }
+            _ => self.waiting[number - self.spilled as usize],
+        };
+        Ok(Some((triangle, !is_outside)))
     }
 }
 

@@ -55,13 +55,15 @@ pub(super) struct CellBox {
 impl CellBox {
     pub(super) fn of(places: &[Point2]) -> CellBox {
         let mut bounds = CellBox { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
-        for place in places {
-            for axis in 0..2 {
-                bounds.min[axis] = bounds.min[axis].min(place[axis]);
-                bounds.max[axis] = bounds.max[axis].max(place[axis]);
-            }
-        }
+        places.iter().for_each(|&place| bounds.extend(place));
         bounds
+    }
+
+    pub(super) fn extend(&mut self, place: Point2) {
+        for axis in 0..2 {
+            self.min[axis] = self.min[axis].min(place[axis]);
+            self.max[axis] = self.max[axis].max(place[axis]);
+        }
     }
 }
 
@@ -148,6 +150,14 @@ impl Cells {
     fn cell(&self, place: Point2) -> usize {
         let [column, row] = self.local(place).map(|x| x as usize);
         row.min(self.rows - 1) * self.columns + column.min(self.columns - 1)
+    }
+
+    /// The vertex of the network at a place in the box of the network.
+    pub(super) fn vertex_at(&self, place: Point2, network: &Network) -> Option<u32> {
+        let cell = self.cell(place);
+        let items = &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+        let mut vertices = items.iter().filter_map(|item| item.checked_sub(self.segments));
+        vertices.find(|&vertex| network.vertices[vertex as usize].place == place)
     }
 
     /// Notes that a vertex is found. `is_found` says which are, this one included.

@@ -125,6 +125,10 @@ fn check(header: &Header) -> Result<()> {
             "a stream of {name}, expected a triangle mesh, as spdelaunay2d writes it"
         )));
     }
+    if header.constrained.is_some() {
+        let message = "the mesh has lines already: give all lines at once, to the mesh without lines";
+        return Err(Error::usage(message));
+    }
     Ok(())
 }
 
@@ -198,6 +202,7 @@ impl<W: Write> Filter<'_, W> {
     /// others that are on segments.
     fn divide(&mut self, patch: &mut Patch) -> Result<()> {
         let locals = self.live.enter(patch, |_, point| point)?;
+        self.lines.enter(locals.iter().map(|(_, [x, y, _])| [*x, *y]));
         let mut kept = 0;
         for first in (0..patch.simplices.len()).step_by(3) {
             let corners = [0, 1, 2].map(|corner| patch.simplices[first + corner]);
@@ -259,11 +264,8 @@ impl<W: Write> Filter<'_, W> {
         let outside =
             (0..).zip(&network.segments).filter(|(_, segment)| segment.ends.into_iter().any(is_outside));
         self.open.extend(outside.map(|(number, _)| number));
-        self.open.sort_unstable();
-        self.open.dedup();
-        self.stats.open_segments = self.open.len() as u64;
         self.stats.outside = network.vertices.len() as u64 - self.stats.found - self.stats.added;
         self.stats.held_max = self.holding.triangles_max as u64;
-        self.writing.end(&self.open, points + self.stats.added, merged, self.stats)
+        self.writing.end(self.open, points + self.stats.added, merged, self.stats)
     }
 }

@@ -15,6 +15,8 @@ pub(super) struct Lines<'n> {
     /// For each vertex of the network whether it is a vertex of the mesh.
     pub(super) found: Vec<bool>,
     predicates: FiniteFloatPredicates,
+    /// Around the present patch, all vertices within twice this distance were found. In stored units.
+    margin: f64,
     segments: Vec<u32>,
     vertices: Vec<u32>,
 }
@@ -48,6 +50,7 @@ impl<'n> Lines<'n> {
             cells: Cells::new(network),
             found: vec![false; network.vertices.len()],
             predicates: FiniteFloatPredicates::default(),
+            margin: 0.0,
             segments: Vec::new(),
             vertices: Vec::new(),
         }
@@ -59,9 +62,21 @@ impl<'n> Lines<'n> {
         if self.cells.is_found(&CellBox { min: at, max: at }) {
             return None;
         }
-        let vertices = &self.network.vertices;
-        let found = vertices.binary_search_by(|vertex| lexicographic(vertex.place, place));
-        found.ok().map(|number| number as u32)
+        self.cells.vertex_at(place, self.network)
+    }
+
+    /// Takes note of the box of a patch: whether all vertices around it were found. `places` are those of its
+    /// vertices.
+    pub(super) fn enter(&mut self, places: impl Iterator<Item = Point2>) {
+        let mut bounds = CellBox::of(&[]);
+        places.for_each(|place| bounds.extend(self.cells.local(place)));
+        let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
+        self.margin = 0.0;
+        let margin = 0.5 * width.max(height);
+        let around = CellBox { min: bounds.min.map(|x| x - margin), max: bounds.max.map(|x| x + margin) };
+        if margin.is_finite() && self.cells.is_found(&around) {
+            self.margin = 0.49 * margin / self.cells.scale();
+        }
     }
 
     /// What meets a triangle, whose corners are counterclockwise; `None` if nothing does.
@@ -90,7 +105,8 @@ impl<'n> Lines<'n> {
     #[inline]
     fn collect(&mut self, corners: [Point2; 3]) {
         let local = corners.map(|corner| self.cells.local(corner));
-        let (triangle, circle) = (CellBox::of(&local), Circle::of(corners, local, self.cells.scale()));
+        let triangle = CellBox::of(&local);
+        let is_small = self.is_small(corners);
         let (segments, vertices, found) = (&mut self.segments, &mut self.vertices, &self.found);
         segments.clear();
         vertices.clear();
@@ -104,6 +120,10 @@ impl<'n> Lines<'n> {
                 },
             );
         }
+        if is_small {
+            return;
+        }
+        let circle = Circle::of(corners, local, self.cells.scale());
         if !self.cells.is_found(&circle.bounds()) {
             self.cells.for_each_in(
                 &circle.bounds(),
@@ -114,6 +134,20 @@ impl<'n> Lines<'n> {
                 },
             );
         }
+    }
+
+    /// Whether the circle of a triangle of the present patch stays where all vertices were found: whether its
+    /// diameter is less than the margin. The square of the diameter is the product of the squares of the sides
+    /// over that of twice the area.
+    #[inline]
+    fn is_small(&self, [a, b, c]: [Point2; 3]) -> bool {
+        let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
+        let w = [u[0] - v[0], u[1] - v[1]];
+        let [uu, vv, ww] = [u, v, w].map(|p| p[0] * p[0] + p[1] * p[1]);
+        let twice_area = u[0] * v[1] - u[1] * v[0];
+        let reach = self.margin * twice_area;
+        // Rounding errors of the area matter in flat triangles only, which are not small.
+        uu * vv * ww < reach * reach && twice_area * twice_area > 1e-12 * uu * vv
     }
 
     /// Notes that a vertex of the network is a vertex of the mesh.

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::Stats;
-use super::cut::{Cut, segments_of};
+use super::cut::Cut;
 use super::strip::Strip;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
@@ -85,11 +85,11 @@ impl<W: Write> Writing<W> {
         on: [Option<u32>; 3],
         ids: impl FnOnce() -> [u64; 3],
     ) -> Result<bool> {
-        if !self.cut.keeps(places) {
-            return Ok(false);
-        }
-        if !self.cut.may_wait() {
+        if !self.cut.is_cut() {
             return Ok(true);
+        }
+        if !self.cut.keeps(places, on) {
+            return Ok(false);
         }
         let ids = ids().map(|id| self.id(id));
         Ok(!self.cut.waits(ids, places, on)?)
@@ -97,7 +97,7 @@ impl<W: Write> Writing<W> {
 
     /// Whether a triangle that may be cut off has this vertex of the input.
     pub(super) fn holds(&self, id: u64) -> bool {
-        self.cut.may_wait() && self.cut.holds(self.id(id))
+        self.cut.is_cut() && self.cut.holds(self.id(id))
     }
 
     /// Writes a patch of the input.
@@ -117,7 +117,7 @@ impl<W: Write> Writing<W> {
         let first_new = self.new.len() as u64;
         for piece in &strip.pieces {
             let places = piece.points.map(|point| strip.places[point as usize]);
-            if self.cut.keeps(places) {
+            if self.cut.keeps(places, piece.segments) {
                 let vertices = piece.points.map(|point| match (point as usize).checked_sub(ids.len()) {
                     None => self.id(ids[point as usize]),
                     Some(new) => NEW - (first_new + new as u64),
@@ -144,7 +144,7 @@ impl<W: Write> Writing<W> {
         for triangle in &mut triangles {
             triangle.vertices = triangle.vertices.map(resolve);
         }
-        if self.cut.may_wait() {
+        if self.cut.is_cut() {
             triangles = self.without_waiting(triangles)?;
         }
         finalized.extend(first..first + new.len() as u64);
@@ -218,12 +218,20 @@ impl<W: Write> Writing<W> {
 
     /// Writes the triangles that waited and were not cut off, and ends the stream. `open` are the segments that are
     /// not wholly edges. Returns the counts with those that are known now.
-    pub(super) fn end(mut self, open: &[u32], points: u64, merged: u64, stats: Stats) -> Result<(W, Stats)> {
-        if let Some((mut inside, mut vertices)) = self.cut.finish()? {
+    pub(super) fn end(
+        mut self,
+        mut open: Vec<u32>,
+        points: u64,
+        merged: u64,
+        stats: Stats,
+    ) -> Result<(W, Stats)> {
+        if let Some((mut waiting, mut vertices)) = self.cut.finish()? {
             let mut triangles = Vec::with_capacity(PATCH_MAX);
-            while let Some(waiting) = inside.next_triangle()? {
-                let (vertices, segments) = (waiting.ids, segments_of(&waiting));
-                triangles.push(Triangle { vertices, segments, places: [[0.0; 2]; 3] });
+            while let Some((triangle, is_kept)) = waiting.next_decided()? {
+                let segments = self.cut.decide(&triangle, is_kept);
+                if is_kept {
+                    triangles.push(Triangle { vertices: triangle.ids, segments, places: [[0.0; 2]; 3] });
+                }
                 if triangles.len() == PATCH_MAX {
                     self.write(&[], &triangles, &mut Vec::new())?;
                     triangles.clear();
@@ -231,11 +239,15 @@ impl<W: Write> Writing<W> {
             }
             self.write(&[], &triangles, &mut vertices)?;
         }
+        open.extend(self.cut.take_open());
+        open.sort_unstable();
+        open.dedup();
         for open in open.chunks(SEGMENTS_MAX) {
             self.writer.open_segments(open)?;
         }
         let triangles = [stats.triangles[0], self.writer.totals().simplices];
-        let stats = Stats { triangles, removed: self.cut.removed, ..stats };
+        let open_segments = open.len() as u64;
+        let stats = Stats { triangles, open_segments, removed: self.cut.removed, ..stats };
         Ok((self.writer.end(points, merged)?, stats))
     }
 }
