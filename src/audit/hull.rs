@@ -35,14 +35,28 @@ impl Outline {
             let turns = [a, b].map(|end| turn(pair[0], pair[1], end, ledger));
             turns.contains(&outside) && !turns.contains(&outside.reverse())
         };
+        // Corners on the line of the segment, and on which sides the others are.
+        let mut on: Vec<Xy> = Vec::new();
         let mut turns = Vec::new();
         for (chain, outside) in self.sides() {
             if chain.windows(2).any(|pair| is_beyond(pair, outside, ledger)) {
                 return true;
             }
-            turns.extend(chain.iter().map(|&corner| turn(a, b, corner, ledger)));
+            for &corner in chain {
+                let side = turn(a, b, corner, ledger);
+                turns.push(side);
+                on.extend((side == Ordering::Equal).then_some(corner));
+            }
         }
-        !turns.contains(&Ordering::Less) || !turns.contains(&Ordering::Greater)
+        on.sort_by(|&p, &q| lexicographic(p, q));
+        let ends = if lexicographic(a, b) == Ordering::Less { [a, b] } else { [b, a] };
+        let has_part_of_edge = on.first().zip(on.last()).is_some_and(|(&first, &last)| {
+            let start = if lexicographic(first, ends[0]).is_ge() { first } else { ends[0] };
+            let end = if lexicographic(last, ends[1]).is_le() { last } else { ends[1] };
+            lexicographic(start, end) == Ordering::Less
+        });
+        let is_on_one_side = !turns.contains(&Ordering::Less) || !turns.contains(&Ordering::Greater);
+        is_on_one_side && !has_part_of_edge
     }
 
     /// Both chains, from left to right, and the side of their edges that is outside.

@@ -147,7 +147,7 @@ impl Diagram<'_> {
             .collect();
         let map = self.rings("start", UPPER, start)
             + &self.rings("inside", INSIDE, inside.iter().copied())
-            + &points::lines("link", LINK, &edges, &self.scene);
+            + &points::lines("link", LINK, 1.5, &edges, &self.scene);
         let words = [
             Mark { shape: Shape::Dot, colour: CHOSEN, words: "the set of knots" },
             Mark { shape: Shape::Line, colour: LINK, words: "its link" },

@@ -37,7 +37,7 @@ const BORDER: Mark =
     Mark { shape: Shape::Line, colour: [230, 120, 0], words: "border of the triangles so far" };
 const WALLS: Mark = Mark { shape: Shape::Line, colour: [230, 120, 0], words: "walls" };
 /// Edges on segments of a constrained mesh.
-const LINES: Mark = Mark { shape: Shape::Line, colour: [178, 24, 43], words: "edges on lines" };
+const LINES: Mark = Mark { shape: Shape::Line, colour: [230, 30, 40], words: "edges on lines" };
 /// Final and open cells.
 const CLOSED: Colour = [59, 82, 139];
 const FINAL: Mark = Mark {
@@ -417,11 +417,11 @@ impl<'a> Drawing<'a> {
         let dots = if is_partial { (RESIDUAL, &self.residual) } else { (LIVE, &vertices) };
         let lines = if is_partial { (WALLS, &self.walls) } else { (BORDER, &border) };
         if !self.lines.is_empty() {
-            *map += &points::lines("lines", LINES.colour, &self.lines, scene);
+            *map += &points::lines("lines", LINES.colour, 2.5, &self.lines, scene);
             marks.push(LINES);
         }
         if !lines.1.is_empty() {
-            *map += &points::lines("border", lines.0.colour, lines.1, scene);
+            *map += &points::lines("border", lines.0.colour, 1.5, lines.1, scene);
             marks.push(lines.0);
         }
         if !dots.1.is_empty() {

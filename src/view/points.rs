@@ -87,8 +87,8 @@ pub(super) fn marks(id: &str, colour: Colour, radius: f64, places: &[Point], sce
     text + "</g>\n"
 }
 
-/// Lines of one colour, without those too short to be visible.
-pub(super) fn lines(id: &str, colour: Colour, lines: &[[Point; 2]], scene: &Scene) -> String {
+/// Lines of one colour and width, in pixels, without those too short to be visible.
+pub(super) fn lines(id: &str, colour: Colour, width: f64, lines: &[[Point; 2]], scene: &Scene) -> String {
     let mut path = String::new();
     for ends in lines.iter().filter(|ends| scene.may_show(*ends)) {
         let ends = ends.map(|end| scene.view.place(end)).map(|[x, y, _]| [x, y]);
@@ -98,7 +98,7 @@ pub(super) fn lines(id: &str, colour: Colour, lines: &[[Point; 2]], scene: &Scen
         }
     }
     format!(
-        "<path id=\"{id}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" stroke-linecap=\"round\" \
+        "<path id=\"{id}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\" stroke-linecap=\"round\" \
          vector-effect=\"non-scaling-stroke\" d=\"{path}\"/>\n",
         hex(colour)
     )
