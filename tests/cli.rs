@@ -5,11 +5,12 @@ use std::path::Path;
 
 use crate::programs::{Folder, outcome, run, sample};
 
-const TOOLS: [&str; 13] = [
+const TOOLS: [&str; 14] = [
     "spfinalize",
     "spdelaunay2d",
     "spdelaunay3d",
     "spdem",
+    "spconstrain",
     "spheight",
     "spcanopy",
     "spview",
@@ -149,12 +150,13 @@ fn each_failure_has_its_exit_code() {
 #[test]
 fn names_of_other_formats_are_refused() {
     let folder = Folder::new();
-    let tools: [(&str, &[&str]); 13] = [
+    let tools: [(&str, &[&str]); 14] = [
         ("spfinalize", &["-"]),
         ("spdelaunay2d", &[]),
         ("spdelaunay3d", &[]),
         ("spdem", &[]),
         ("spdem", &["--contours", "1"]),
+        ("spconstrain", &["--kill", "1"]),
         ("spheight", &["--ground", "none", "none.las"]),
         ("spcanopy", &["--ground", "none", "none.las"]),
         ("spview", &[]),

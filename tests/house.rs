@@ -5,24 +5,25 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Crates of the workspace that each crate of `src` may use. Tools are listed below.
-const ARROWS: [(&str, &[&str]); 10] = [
+const ARROWS: [(&str, &[&str]); 11] = [
     ("core", &[]),
     ("model", &["core"]),
     ("stream", &["model", "core"]),
     ("geometry", &["model", "core"]),
     ("crs", &["stream", "core"]),
     ("io", &["crs", "stream", "model", "core"]),
+    ("lines", &["io", "crs", "geometry", "stream", "model", "core"]),
     ("splines", &["geometry", "model", "core"]),
     // The audit would not be independent if it shared code with the kernels that it checks.
     ("audit", &["stream", "model", "core"]),
     ("view", &["io", "crs", "geometry", "stream", "model", "core"]),
-    ("cli", &["audit", "core", "crs", "geometry", "io", "model", "splines", "stream", "view"]),
+    ("cli", &["audit", "core", "crs", "geometry", "io", "lines", "model", "splines", "stream", "view"]),
 ];
 
 /// Crates of the workspace that any tool may use. No tool may use another.
 const OF_TOOLS: &[&str] = &["io", "crs", "geometry", "stream", "model", "core"];
 /// Additional crates, by tool.
-const OF_TOOL: [(&str, &[&str]); 1] = [("splinefit", &["splines"])];
+const OF_TOOL: [(&str, &[&str]); 2] = [("constrain", &["lines"]), ("splinefit", &["splines"])];
 
 /// Packages that only one crate may use, so that a library user does not pay for them.
 const PACKAGES: [(&str, &str); 6] = [

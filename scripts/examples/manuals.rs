@@ -6,8 +6,8 @@ use std::path::Path;
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use spmesh_cli::{
-    configgen, dd4, spcanopy, spconvert, spdelaunay2d, spdelaunay3d, spdem, spfinalize, spheight, spinfo,
-    splinefit, spview, tess3,
+    configgen, dd4, spcanopy, spconstrain, spconvert, spdelaunay2d, spdelaunay3d, spdem, spfinalize,
+    spheight, spinfo, splinefit, spview, tess3,
 };
 
 fn main() -> std::io::Result<()> {
@@ -36,6 +36,7 @@ fn tools() -> [Command; 13] {
         spdelaunay2d::Flags::command(),
         spdelaunay3d::Flags::command(),
         spdem::Flags::command(),
+        spconstrain::Flags::command(),
         spheight::Flags::command(),
         spcanopy::Flags::command(),
         spview::Flags::command(),
