@@ -35,6 +35,20 @@ fn parse_length(text: &str) -> std::result::Result<f64, String> {
 }
 
 impl LineFlags {
+    /// Checks that flags about lines come with lines.
+    ///
+    /// # Errors
+    /// Usage, if they do not.
+    pub(super) fn check(&self, has_areas: bool) -> Result<()> {
+        let flags = [("--densify", self.densify.is_some()), ("--report", self.report.is_some())];
+        match flags.iter().find(|(_, is_given)| *is_given) {
+            Some((flag, _)) if self.files.is_empty() && !has_areas => {
+                Err(Error::usage(format!("{flag} is about lines: give --lines, too")))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Reads the lines as a network on the grid of `target`; `None` without lines.
     ///
     /// # Errors

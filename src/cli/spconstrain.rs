@@ -71,9 +71,6 @@ pub struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    #[command(flatten)]
-    lines: LineFlags,
-
     /// Keep only what is inside of these polygons, of any format of lines. May be given several times
     #[arg(long, value_name = "FILE")]
     hull: Vec<PathBuf>,
@@ -103,6 +100,9 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
+
+    #[command(flatten)]
+    lines: LineFlags,
 }
 
 /// Runs the tool.
@@ -173,6 +173,7 @@ impl Flags {
     }
 
     fn check(&self) -> Result<()> {
+        self.lines.check(!self.hull.is_empty() || !self.holes.is_empty())?;
         let areas = self.hull.iter().chain(&self.holes).chain([&self.input]);
         let paths: Vec<&Path> = self.lines.files.iter().chain(areas).map(PathBuf::as_path).collect();
         if paths.len() == 1 && self.kill.is_none() {

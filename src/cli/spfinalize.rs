@@ -186,6 +186,7 @@ enum Spool {
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let options = flags.options()?;
+    flags.lines.check(false)?;
     // Fail before the work if the output cannot be created.
     let mut output = Output::create(&flags.output, true)?;
     let paths = flags.paths()?;

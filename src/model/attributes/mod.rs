@@ -171,6 +171,17 @@ impl Attributes {
         self.0.iter().map(Attribute::width).sum()
     }
 
+    /// A row in which all values are unknown; 0 where an attribute has no number for that.
+    #[must_use]
+    pub fn unknown_row(&self) -> Vec<u8> {
+        let numbers = self.0.iter().flat_map(|attribute| {
+            let zero = vec![0; attribute.number.width()];
+            let number = attribute.unknown.clone().unwrap_or(zero);
+            number.repeat(usize::from(attribute.components))
+        });
+        numbers.collect()
+    }
+
     /// Each attribute with its place in a row.
     pub fn places(&self) -> impl Iterator<Item = (&Attribute, Range<usize>)> {
         self.0.iter().scan(0, |end, attribute| {

@@ -54,7 +54,7 @@ impl<W: Write> Writing<W> {
             let segment = |it: &NetworkSegment| Segment { line: it.line, ends: network.places(it) };
             writer.segments(&segments.iter().map(segment).collect::<Vec<_>>())?;
         }
-        let row = vec![0; writer.header().attributes.row_len()];
+        let row = writer.header().attributes.unknown_row();
         Ok(Writing {
             writer,
             shifts: Vec::new(),

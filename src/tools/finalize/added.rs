@@ -9,7 +9,6 @@ use foldhash::HashSet;
 use super::passes::Passes;
 use spmesh_core::error::Result;
 use spmesh_io::source::{Description, PointReader};
-use spmesh_model::attributes::Attributes;
 use spmesh_model::bounds::{Bounds, Point};
 
 /// Points of a batch.
@@ -77,18 +76,8 @@ impl<'a, P: Passes + ?Sized> WithAdded<'a, P> {
             stated_points: description.stated_points.map(|points| points + added.points.len() as u64),
             ..description
         };
-        WithAdded { input, added, row: unknown_row(&description.attributes), description }
+        WithAdded { input, added, row: description.attributes.unknown_row(), description }
     }
-}
-
-/// A row in which all values are unknown; 0 where an attribute has no number for that.
-fn unknown_row(attributes: &Attributes) -> Vec<u8> {
-    let numbers = attributes.iter().flat_map(|attribute| {
-        let zero = vec![0; attribute.number.width()];
-        let number = attribute.unknown.clone().unwrap_or(zero);
-        number.repeat(usize::from(attribute.components))
-    });
-    numbers.collect()
 }
 
 impl<P: Passes + ?Sized> Passes for WithAdded<'_, P> {

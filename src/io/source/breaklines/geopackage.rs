@@ -2,6 +2,8 @@
 //!
 //! Source: OGC 12-128r19, GeoPackage Encoding Standard 1.4.
 
+use std::fs::File;
+use std::io::Read;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
@@ -31,6 +33,7 @@ struct Table {
 pub(super) fn read(path: &Path) -> Result<Breaklines> {
     let flags =
         OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    check_whole(path)?;
     let database = Connection::open_with_flags(uri(path)?, flags).map_err(malformed)?;
     // A file may not run code of its own, and may not take all memory.
     database.pragma_update(None, "trusted_schema", false).map_err(malformed)?;
@@ -50,6 +53,32 @@ pub(super) fn read(path: &Path) -> Result<Breaklines> {
         return Err(Error::malformed("the database has no table of features: it is no GeoPackage of lines"));
     }
     lines.finish(crs.map_or(Crs::Unknown, |(crs, _)| crs))
+}
+
+/// Checks that the file has all of its pages: SQLite reads what it needs of a file that was cut off.
+///
+/// The header has the size of pages at byte 16 (1 stands for 65536) and their number at byte 28, which counts if bytes
+/// 24 and 92 state the same change.
+fn check_whole(path: &Path) -> Result<()> {
+    let reading = |e| Error::io("reading", e);
+    let mut file = File::open(path).map_err(|e| Error::io("opening", e))?;
+    let found = file.metadata().map_err(reading)?.len();
+    let mut header = [0; 100];
+    if file.read_exact(&mut header).is_err() {
+        return Err(Error::malformed(format!("the database was cut off: {found} bytes")));
+    }
+    let number = |at: usize| u64::from(u32::from_be_bytes([0, 1, 2, 3].map(|byte| header[at + byte])));
+    let page = match u64::from(u16::from_be_bytes([header[16], header[17]])) {
+        1 => 65536,
+        page => page,
+    };
+    let expected = if number(24) == number(92) { page * number(28) } else { page };
+    if found < expected || page > 0 && found % page != 0 {
+        return Err(Error::malformed(format!(
+            "the database was cut off: {found} bytes, expected {expected}"
+        )));
+    }
+    Ok(())
 }
 
 /// The file as one that does not change: SQLite then makes no files beside it.

@@ -58,10 +58,18 @@ pub(super) fn read(mut input: impl Read, path: &Path) -> Result<Breaklines> {
     kind(i32_le(&header[32..]))?;
     let mut lines = Collector::default();
     let mut content = Vec::new();
+    // The header states the length of the file in words of two bytes, itself included.
+    let stated = 2 * i64::from(i32::from_be_bytes([header[24], header[25], header[26], header[27]]));
+    let mut found = HEADER_LEN as i64;
     for number in 1u64.. {
         if !next_record(&mut input, &mut content).map_err(|e| e.at(format!("record {number}")))? {
+            // A file that was cut off behind a record.
+            if found < stated {
+                return Err(cut_off().at(format!("record {number}")));
+            }
             break;
         }
+        found += 8 + content.len() as i64;
         record(&content, &mut lines, number).map_err(|e| e.at(format!("record {number}")))?;
     }
     lines.finish(system(path)?)
