@@ -112,9 +112,14 @@ impl<W: Write> EventSink for LandXmlSink<W> {
         let header = self.mesh.header();
         let system = System::of(&header.crs);
         let is_coded = system.horizontal.is_some_and(|horizontal| horizontal.code.is_some());
-        let crs = (header.crs != Crs::Unknown)
-            .then(|| if is_coded { "the EPSG code of x and y" } else { "no CRS without an EPSG code" });
-        let crs = crs.map(|what| format!("of the CRS, LandXML gets {what}"));
+        let crs = match &header.crs {
+            Crs::Unknown => None,
+            _ if is_coded => {
+                Some("LandXML gets the EPSG code of x and y only: the rest of the CRS is dropped")
+            }
+            _ => Some("LandXML holds no CRS without an EPSG code: dropped"),
+        };
+        let crs = crs.map(String::from);
         crs.into_iter().chain(lost_attributes(header, "LandXML")).collect()
     }
 }
