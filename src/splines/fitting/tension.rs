@@ -57,10 +57,9 @@ pub fn choose_tension(
         let equations = equations(basis, normal, &energy, tension)?;
         // The square of the wave number that a plate halves, times the area of an observation.
         let halved = (normal.weight * area / of_plate / normal.count as f64).sqrt();
-        let least = plain.least / (1.0 + (tension / std::f64::consts::PI).powi(2));
         // This start halves the same waves.
-        let start = (of_plate / (1.0 + tension * tension / halved)).max(least);
-        let limits = Limits { start, least, ..plain };
+        let start = (of_plate / (1.0 + tension * tension / halved)).max(plain.least);
+        let limits = Limits { start, ..plain };
         let choice = match tensions.len() {
             1 => likelihood.of_one(&equations, limits)?,
             _ => likelihood.choose(&equations, limits)?,
