@@ -76,10 +76,7 @@ fn triangles(basis: &Basis) -> Result<Vec<[Point2; 3]>> {
 ///
 /// # Errors
 /// A domain without an area.
-pub(super) fn for_each_triangle(
-    basis: &Basis,
-    mut visit: impl FnMut(&[Point2; 3], &[Point2]),
-) -> Result<()> {
+pub(super) fn for_each_triangle(basis: &Basis, mut visit: impl FnMut(&[Point2; 3], &[Point2])) -> Result<()> {
     let mut clipper = Clipper::default();
     for triangle in triangles(basis)? {
         visit(&triangle, in_domain(basis, &triangle, &mut clipper));

@@ -39,9 +39,8 @@ impl LinearPart {
 
     pub(super) fn correction(&self, factor: &Factor, lambda: f64) -> Correction<'_> {
         let solved = self.products.each_ref().map(|product| factor.solve(product));
-        let rest = [0, 1].map(|i| {
-            [0, 1].map(|j| self.gram[i][j] - lambda * dot(&self.products[i], &solved[j]))
-        });
+        let rest =
+            [0, 1].map(|i| [0, 1].map(|j| self.gram[i][j] - lambda * dot(&self.products[i], &solved[j])));
         Correction { part: self, lambda, solved, rest }
     }
 }

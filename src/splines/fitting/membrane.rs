@@ -51,9 +51,8 @@ pub fn membrane(basis: &Basis) -> Result<Symmetric> {
 
 fn nodes(corners: [Point2; 3]) -> [Point2; 3] {
     let share = |node: usize, corner: usize| if node == corner { NEAR } else { FAR };
-    [0, 1, 2].map(|node| {
-        [0, 1].map(|axis| (0..3).map(|corner| share(node, corner) * corners[corner][axis]).sum())
-    })
+    [0, 1, 2]
+        .map(|node| [0, 1].map(|axis| (0..3).map(|corner| share(node, corner) * corners[corner][axis]).sum()))
 }
 
 /// Adds the products of the gradients of all functions at one place.

@@ -41,9 +41,11 @@ fn energies_of_quadratic_polynomials_are_exact() {
 #[test]
 fn energies_of_splines_are_those_of_differences() {
     let mut random = Random::new(9);
-    for (basis, tolerance) in
-        [(pulled_apart(&grid(5, 0.2)), 0.05), (pulled_apart(&grid(4, 0.0)), 0.05), (cubic(&grid(3, 0.2)), 0.05)]
-    {
+    for (basis, tolerance) in [
+        (pulled_apart(&grid(5, 0.2)), 0.05),
+        (pulled_apart(&grid(4, 0.0)), 0.05),
+        (cubic(&grid(3, 0.2)), 0.05),
+    ] {
         let energy = membrane(&basis).expect("an energy");
         for _ in 0..3 {
             let coefficients: Vec<f64> = (0..basis.len()).map(|_| random.unit()).collect();
