@@ -36,10 +36,10 @@ as knots are for splines of degree 2 over their convex hull: the border is pulle
 
 Without --lambda, given knots get the coefficients of least squares. Coefficients that the points leave \
 undetermined are those of least energy. For other knots, lambda and the tension are chosen by restricted \
-maximum likelihood (reml), which bridges gaps and adapts to noise and to steps of the ground. No choice is less than a floor that depends on the distance \
-of points. LAMBDA multiplies an energy, which is added to the sum of squares of residuals. It is that of a thin plate \
-(plus a thousandth of the bending of the control mesh), and T squared, divided by the area of a point, times \
-that of a membrane.
+maximum likelihood (reml), which bridges gaps and adapts to noise and to steps of the ground. No choice of \
+lambda is less than a floor that depends on the distance of points. LAMBDA multiplies an energy, which is \
+added to the sum of squares of residuals. It is that of a thin plate (plus a thousandth of the bending of the \
+control mesh) and, with a tension T, T squared over the area of a point times that of a membrane.
 
 --features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which \
 values are linear. Their vertices become knots. Long segments get more knots, and other knots near them are \
@@ -89,8 +89,8 @@ pub(super) struct Flags {
     #[arg(long, value_name = "LAMBDA|reml|gcv|cv[:FOLDS]", allow_negative_numbers = true)]
     lambda: Option<Smoothing>,
 
-    /// Tension: 0 for thin plates; surfaces with a greater T follow the points more closely, like membranes, along
-    /// waves longer than six distances of points over T [default: chosen with reml, or else 0]
+    /// Tension: 0 for a thin plate; with more, waves longer than six distances of points over T are those of
+    /// a membrane, which follows points more closely [default: chosen with reml, or else 0]
     #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_tension)]
     #[arg(conflicts_with_all = ["robust", "interpolate"])]
     tension: Option<f64>,

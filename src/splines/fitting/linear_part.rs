@@ -1,9 +1,9 @@
 //! Energies without the part that linear functions have.
 //!
-//! The membrane energy of a plane depends on its slope, but a slope says nothing about how rough a surface is.
-//! So the energy of a spline is the least one after subtraction of a linear function. If the columns of X are
-//! the slopes x and y, and S = X'EX, its matrix is E - EX S^-1 X'E. That matrix is full, but it differs from E
-//! by rank 2: solutions and determinants follow from those with E (Sherman, Morrison and Woodbury).
+//! The membrane energy of a plane depends on its slope, but a slope says nothing about how rough a surface
+//! is. So the energy of a spline is the least one after subtraction of a linear function. If the columns of X
+//! are the slopes x and y, and S = X'EX, its matrix is E - EX S^-1 X'E. That matrix is full, but it differs
+//! from E by rank 2: solutions and determinants follow from those with E (Sherman, Morrison and Woodbury).
 
 use super::cholesky::Factor;
 use super::symmetric::Symmetric;

@@ -1,8 +1,8 @@
 //! The membrane energy of splines: the integral of f_x^2 + f_y^2 over the domain.
 //!
 //! Surfaces of least membrane energy follow observations more closely than thin plates, with peaks at them.
-//! A sum of both energies makes *splines in tension*: thin plates for waves shorter than a certain length, and
-//! membranes for longer ones (Franke 1985; Mitasova and Mitas 1993).
+//! A sum of both energies makes *splines in tension*: thin plates for waves shorter than a certain length,
+//! and membranes for longer ones (Franke 1985; Mitasova and Mitas 1993).
 
 use super::energy::{for_each_triangle, is_flat};
 use super::polygon;
@@ -12,8 +12,8 @@ use crate::bases::{Basis, Scratch};
 use spmesh_core::error::Result;
 use spmesh_geometry::predicates::Point2;
 
-/// Barycentric coordinates of the three nodes of a rule of degree 2 on triangles. Each has a third of the area
-/// as weight (Strang and Fix 1973).
+/// Barycentric coordinates of the three nodes of a rule of degree 2 on triangles. Each has a third of the
+/// area as weight (Strang and Fix 1973).
 const NEAR: f64 = 2.0 / 3.0;
 const FAR: f64 = 1.0 / 6.0;
 
