@@ -24,7 +24,7 @@ pub fn generalised_cross_validation(equations: &Equations) -> Result<Choice> {
     search(Limits::of(equations), |lambda| {
         equations.with_factor(lambda, |factor| {
             equations.check(factor, lambda)?;
-            let coefficients = equations.coefficients(factor);
+            let coefficients = equations.coefficients(factor, lambda);
             let free = 1.0 - trace_of_quotient(factor, &normal.matrix) / count;
             let score = normal.residual_square(&coefficients) / count / (free * free);
             Ok(if free > 0.0 { score } else { f64::INFINITY })

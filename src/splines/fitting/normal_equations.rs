@@ -71,6 +71,12 @@ impl NormalEquations {
         self.weight * area / (self.count as f64 * std::f64::consts::PI.powi(2)).powi(2)
     }
 
+    /// The area of the domain per observation.
+    #[must_use]
+    pub fn area_per_observation(&self, basis: &Basis) -> f64 {
+        polygon::area(&basis.domain_corners()) / self.count as f64
+    }
+
     /// Refuses equations without observations, and values whose squares exceed f64.
     pub(super) fn check(&self) -> Result<()> {
         if !self.square.is_finite() {
