@@ -25,12 +25,17 @@ const LINEAR: f64 = 3.0;
 /// # Errors
 /// Those of [`Equations::solve`], if it fails for every `lambda`.
 pub fn restricted_likelihood(equations: &Equations) -> Result<Choice> {
+    likelihood_near(equations, None)
+}
+
+/// [`restricted_likelihood`], for a `lambda` that is nearly the best one.
+pub(super) fn likelihood_near(equations: &Equations, near: Option<f64>) -> Result<Choice> {
     let normal = equations.normal();
     let free = normal.count as f64 - LINEAR;
     let bent = normal.matrix.len() as f64 - LINEAR;
     // The logarithm of the determinant is the sum of large numbers: only its change counts.
     let mut first = None;
-    search(Limits::of(equations), |lambda| {
+    search(Limits::of(equations).near(near), |lambda| {
         equations.with_factor(lambda, |factor| {
             equations.check(factor, lambda)?;
             let volume = factor.log_determinant() - bent * lambda.ln();

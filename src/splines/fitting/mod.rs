@@ -16,7 +16,7 @@
 //! | `energy`, `cells`, `overlaps`, `polygon` | the thin-plate energy for smoothing |
 //! | `control_energy` | the energy of control meshes |
 //! | `choice`, `likelihood`, `cross_validation`, `automatic` | the choice of the smoothing parameter |
-//! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
+//! | `residuals`, `quantile_sketch`, `local_scale`, `robust` | residuals, their quantiles, and robust weights |
 //! | `interpolation` | interpolation at Greville sites |
 //! | `mesh`, `spline_space` | triangulated knots, and the functions over them |
 //! | `spacing`, `knot_placement` | knots on grids |
@@ -36,6 +36,7 @@ mod interpolation;
 mod knot_placement;
 mod least_energy;
 mod likelihood;
+mod local_scale;
 mod mesh;
 mod normal_equations;
 mod observations;
@@ -69,7 +70,7 @@ pub use observations::{Observation, ObservationReader, Observations};
 pub use quantile_sketch::QuantileSketch;
 pub use refine::{Refined, refine};
 pub use residuals::{Residual, Summary, for_each_residual, summarise};
-pub use robust::{Loss, RobustFit, robust, robust_from};
+pub use robust::{Loss, RobustFit, RobustStart, robust, robust_from, robust_on};
 pub use solve::{Equations, Solution, Undetermined, least_squares};
 pub use spacing::spacing;
 pub use spline_space::SplineSpace;

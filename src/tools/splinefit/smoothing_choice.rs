@@ -5,7 +5,9 @@ use super::options::{Options, Smoothing};
 use super::points::PointsInFrame;
 use spmesh_core::error::Result;
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{self, Choice, Equations, Method, NormalEquations, Solution, Symmetric};
+use spmesh_splines::fitting::{
+    self, Choice, Equations, Method, NormalEquations, RobustStart, Solution, Symmetric,
+};
 
 /// The smoothing of a fit, and the reason for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +29,8 @@ pub(super) struct Problem {
     /// For stored coordinates.
     pub(super) lambda: f64,
     pub(super) chosen: SmoothingChoice,
+    /// Where a robust fit starts, if `lambda` was chosen with robust weights.
+    pub(super) start: Option<RobustStart>,
 }
 
 impl Problem {
@@ -53,7 +57,7 @@ pub(super) fn choose_smoothing(
 ) -> Result<Problem> {
     let (basis, threads) = (&layout.basis, options.threads);
     let normal = NormalEquations::of(basis, all, threads)?;
-    let (mut undetermined, mut choice) = (None, None);
+    let (mut undetermined, mut choice, mut start) = (None, None, None);
     if options.smoothing.is_none() && are_given {
         undetermined = Some(Equations::new(basis, &normal, None)?.undetermined(0.0)?.len());
     }
@@ -72,8 +76,14 @@ pub(super) fn choose_smoothing(
     };
     let lambda = match (&energy, method, options.smoothing) {
         (Some(energy), Some(method), _) => {
-            let choose = if options.loss.is_some() { fitting::choose_robustly } else { fitting::choose };
-            choice.insert(choose(&normal, basis, all, energy, method, threads)?).best.lambda
+            let found = if options.loss.is_some() {
+                let (found, robust) = fitting::choose_robustly(&normal, basis, all, energy, method, threads)?;
+                start = Some(robust);
+                found
+            } else {
+                fitting::choose(&normal, basis, all, energy, method, threads)?
+            };
+            choice.insert(found).best.lambda
         }
         (Some(_), _, Some(Smoothing::Lambda(lambda))) => lambda / area,
         _ => 0.0,
@@ -85,5 +95,5 @@ pub(super) fn choose_smoothing(
         choice.failed.iter_mut().for_each(|trial| trial.lambda *= area);
     }
     let chosen = SmoothingChoice { lambda: lambda * area, undetermined, is_solved: true, choice };
-    Ok(Problem { normal, energy, lambda, chosen })
+    Ok(Problem { normal, energy, lambda, chosen, start })
 }
