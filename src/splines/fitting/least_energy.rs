@@ -13,76 +13,50 @@ use super::cholesky::{CURVATURE_MIN, Factor};
 use super::solve::Solution;
 use super::symmetric::Symmetric;
 
-/// The factors s, in units of [`super::Equations::unit`], each for as many steps as it needs. A direction that
-/// observations determine better than s converges in a few steps; the ones below it, each of which is
-/// determined differently, take about a step each. So steps with a lesser s follow. The first s is great,
-/// because the rounding errors of undetermined directions grow with 1 / s.
-pub(super) const SHARES: [f64; 4] = [1e-4, 1e-6, 1e-8, 1e-10];
+/// The factor s, in units of [`super::Equations::unit`]: directions that observations determine at least this
+/// well converge in a few steps.
+pub(super) const SHARE: f64 = 1e-4;
 /// The steps end when each residual is this part of what its right side can be at most. Rounding errors of
 /// the right side are less; where observations determine nothing, steps that pursue them are far too long.
 const RESIDUAL: f64 = 1e-13;
-/// Steps with one s, at most.
-const STEPS_MAX: usize = 30;
+/// Steps, at most: about ten are needed.
+const STEPS_MAX: usize = 100;
 
-/// The way to the solution of `matrix` c = `right` that has the least energy. With a diagonal entry d of the
-/// matrix, a right side is at most `size` times the root of d (Cauchy and Schwarz), where `size` is the root
-/// of the weighted sum of squares of the values.
-pub(super) struct LeastEnergy<'a> {
-    matrix: &'a Symmetric,
-    right: &'a [f64],
-    /// For each row, the residual that may be a rounding error.
-    rounding: Vec<f64>,
-    coefficients: Vec<f64>,
-    residual: Vec<f64>,
-}
-
-impl<'a> LeastEnergy<'a> {
-    pub(super) fn new(matrix: &'a Symmetric, right: &'a [f64], size: f64) -> LeastEnergy<'a> {
-        let rounding = matrix.diagonal().map(|entry| RESIDUAL * size * entry.sqrt()).collect();
-        let coefficients = vec![0.0; right.len()];
-        LeastEnergy { matrix, right, rounding, coefficients, residual: right.to_vec() }
-    }
-
-    /// Takes steps with the factor of the matrix plus a small part of the energy, and returns whether they
-    /// have reached the solution.
-    ///
-    /// Source: Hestenes and Stiefel, "Methods of conjugate gradients for solving linear systems", 1952.
-    pub(super) fn step(&mut self, factor: &Factor) -> bool {
-        let mut direction = factor.solve_once(&self.residual);
-        let mut product = dot(&self.residual, &direction);
-        for _ in 0..STEPS_MAX {
-            if self.is_rounding() {
-                break;
-            }
-            let image = self.matrix.times(&direction);
-            let curvature = dot(&direction, &image);
-            let diagonal = self.matrix.diagonal().zip(&direction);
-            let alone: f64 = diagonal.map(|(entry, along)| entry * along * along).sum();
-            if curvature <= CURVATURE_MIN * alone {
-                break;
-            }
-            let length = product / curvature;
-            add(&mut self.coefficients, length, &direction);
-            add(&mut self.residual, -length, &image);
-            let step = factor.solve_once(&self.residual);
-            let next = dot(&self.residual, &step);
-            let kept = next / product;
-            direction.iter_mut().zip(&step).for_each(|(along, step)| *along = step + kept * *along);
-            product = next;
+/// The solution of `matrix` c = `right` that has the least energy. `factor` is that of the matrix plus a
+/// small part of the energy. `size` is the root of the weighted sum of squares of the values: with a diagonal
+/// entry d of the matrix, a right side is at most `size` times the root of d (Cauchy and Schwarz).
+///
+/// Source: Hestenes and Stiefel, "Methods of conjugate gradients for solving linear systems", 1952.
+pub(super) fn solve(matrix: &Symmetric, factor: &Factor, right: &[f64], size: f64) -> Solution {
+    let diagonal: Vec<f64> = matrix.diagonal().collect();
+    let is_rounding = |residual: &[f64]| {
+        let mut both = residual.iter().zip(&diagonal);
+        both.all(|(residual, entry)| residual.abs() <= RESIDUAL * size * entry.sqrt())
+    };
+    let mut coefficients = vec![0.0; right.len()];
+    let mut residual = right.to_vec();
+    let mut direction = factor.solve_once(&residual);
+    let mut product = dot(&residual, &direction);
+    for _ in 0..STEPS_MAX {
+        if is_rounding(&residual) {
+            return Solution { coefficients, has_converged: true };
         }
-        // The steps add up rounding errors of the residual.
-        let image = self.matrix.times(&self.coefficients);
-        self.residual = self.right.iter().zip(image).map(|(right, left)| right - left).collect();
-        self.is_rounding()
+        let image = matrix.times(&direction);
+        let curvature = dot(&direction, &image);
+        let alone: f64 = diagonal.iter().zip(&direction).map(|(entry, along)| entry * along * along).sum();
+        if curvature <= CURVATURE_MIN * alone {
+            break;
+        }
+        let length = product / curvature;
+        add(&mut coefficients, length, &direction);
+        add(&mut residual, -length, &image);
+        let step = factor.solve_once(&residual);
+        let next = dot(&residual, &step);
+        let kept = next / product;
+        direction.iter_mut().zip(&step).for_each(|(along, step)| *along = step + kept * *along);
+        product = next;
     }
-
-    pub(super) fn solution(self) -> Solution {
-        Solution { has_converged: self.is_rounding(), coefficients: self.coefficients }
-    }
-
-    fn is_rounding(&self) -> bool {
-        self.residual.iter().zip(&self.rounding).all(|(residual, most)| residual.abs() <= *most)
-    }
+    Solution { has_converged: is_rounding(&residual), coefficients }
 }
 
 fn add(sum: &mut [f64], factor: f64, other: &[f64]) {
@@ -100,12 +74,6 @@ mod tests {
     use crate::fitting::rows::Rows;
 
     const COUNT: usize = 400;
-
-    fn solve(matrix: &Symmetric, factor: &Factor, right: &[f64], size: f64) -> Solution {
-        let mut steps = LeastEnergy::new(matrix, right, size);
-        steps.step(factor);
-        steps.solution()
-    }
 
     /// A matrix with `beside` next to its diagonal.
     fn chain(diagonal: f64, beside: f64) -> Symmetric {

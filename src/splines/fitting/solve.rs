@@ -3,7 +3,7 @@
 use super::cholesky::{Elimination, Factor};
 use super::control_energy::bending;
 use super::energy::check_domain;
-use super::least_energy::{LeastEnergy, SHARES};
+use super::least_energy;
 use super::normal_equations::NormalEquations;
 use super::observations::Observations;
 use super::symmetric::Symmetric;
@@ -128,17 +128,20 @@ impl<'a> Equations<'a> {
     /// Functions that are not determined, with their number and the place of the first one; a `lambda` that
     /// is negative or not finite, or above zero without an energy.
     pub fn solution(&self, lambda: f64) -> Result<Solution> {
-        let found = match lambda == 0.0 && self.energy.is_some() {
-            true => self.of_least_energy()?,
-            false => self.with_factor(lambda, |factor| {
-                self.check(factor, lambda)?;
-                Ok(Solution { coefficients: self.coefficients(factor), has_converged: true })
-            })?,
-        };
-        if found.coefficients.iter().all(|c| c.is_finite()) {
-            return Ok(found);
-        }
-        Err(Error::malformed("coefficients are too great for 64 bits: scale the values"))
+        // Least energy: so much of it as makes equations regular.
+        let is_least = lambda == 0.0 && self.energy.is_some();
+        let factored = if is_least { least_energy::SHARE * self.unit() } else { lambda };
+        self.with_factor(factored, |factor| {
+            self.check(factor, lambda)?;
+            let found = match is_least {
+                true => self.of_least_energy(factor),
+                false => Solution { coefficients: self.coefficients(factor), has_converged: true },
+            };
+            if found.coefficients.iter().all(|c| c.is_finite()) {
+                return Ok(found);
+            }
+            Err(Error::malformed("coefficients are too great for 64 bits: scale the values"))
+        })
     }
 
     /// All functions that are not determined, in order. Of several functions that depend on each other, all
@@ -193,23 +196,10 @@ impl<'a> Equations<'a> {
         self.with_trend(factor.solve(&self.right))
     }
 
-    fn of_least_energy(&self) -> Result<Solution> {
+    fn of_least_energy(&self, factor: &Factor) -> Solution {
         let size = self.normal.square.sqrt();
-        let mut steps = LeastEnergy::new(&self.normal.matrix, &self.right, size);
-        let unit = self.unit();
-        for share in SHARES {
-            let is_done = self.with_factor(share * unit, |factor| {
-                if share == SHARES[0] {
-                    self.check(factor, 0.0)?;
-                }
-                Ok(steps.step(factor))
-            })?;
-            if is_done {
-                break;
-            }
-        }
-        let rest = steps.solution();
-        Ok(Solution { coefficients: self.with_trend(rest.coefficients), ..rest })
+        let rest = least_energy::solve(&self.normal.matrix, factor, &self.right, size);
+        Solution { coefficients: self.with_trend(rest.coefficients), ..rest }
     }
 
     fn with_trend(&self, rest: Vec<f64>) -> Vec<f64> {
