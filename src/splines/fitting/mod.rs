@@ -16,7 +16,7 @@
 //! | `energy`, `cells`, `overlaps`, `polygon` | the thin-plate energy for smoothing |
 //! | `control_energy` | the energy of control meshes |
 //! | `choice`, `likelihood`, `cross_validation`, `automatic` | the choice of the smoothing parameter |
-//! | `residuals`, `quantile_sketch`, `local_scale`, `robust` | residuals, their quantiles, and robust weights |
+//! | `residuals`, `quantile_sketch`, `local_scale`, `robust` | residuals, their scales, and robust weights |
 //! | `interpolation` | interpolation at Greville sites |
 //! | `mesh`, `spline_space` | triangulated knots, and the functions over them |
 //! | `spacing`, `knot_placement` | knots on grids |
