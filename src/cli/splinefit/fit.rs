@@ -47,8 +47,8 @@ dropped. In GeoJSON points are corners, and lines and rings are creases, unless 
 spline with one of the words. Polylines may meet at common vertices only.
 
 --robust weighs points by their residuals, iteratively: huber reduces weights beyond 1.345 standard \
-deviations, tukey reduces them to zero at 4.685. Points beyond 4.685 are rejected. The deviation is \
-estimated from the median of magnitudes. If lambda is chosen, it is chosen with these weights.";
+deviations, tukey reduces them to zero at 4.685, where points are rejected. The deviation is estimated from \
+the median of magnitudes; for rejecting points it is greater where many residuals nearby are. If lambda is chosen, it is chosen with these weights.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]

@@ -26,7 +26,12 @@ const LINEAR: f64 = 3.0;
 /// # Errors
 /// Those of [`Equations::solve`], if it fails for every `lambda`.
 pub fn restricted_likelihood(equations: &Equations) -> Result<Choice> {
-    Likelihood::default().of_one(equations, Limits::of(equations))
+    likelihood_near(equations, None)
+}
+
+/// [`restricted_likelihood`], for a `lambda` that is nearly the best one.
+pub(super) fn likelihood_near(equations: &Equations, near: Option<f64>) -> Result<Choice> {
+    Likelihood::default().of_one(equations, Limits::of(equations).near(near))
 }
 
 /// Scores of several energies for the same observations and functions.

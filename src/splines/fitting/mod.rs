@@ -17,7 +17,7 @@
 //! | `control_energy` | the energy of control meshes |
 //! | `membrane`, `linear_part` | the membrane energy, and energies less those of planes |
 //! | `choice`, `likelihood`, `cross_validation`, `tension`, `automatic` | the choice of the smoothing parameters |
-//! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
+//! | `residuals`, `quantile_sketch`, `local_scale`, `robust` | residuals, their scales, and robust weights |
 //! | `interpolation` | interpolation at Greville sites |
 //! | `mesh`, `spline_space` | triangulated knots, and the functions over them |
 //! | `spacing`, `knot_placement` | knots on grids |
@@ -38,6 +38,7 @@ mod knot_placement;
 mod least_energy;
 mod likelihood;
 mod linear_part;
+mod local_scale;
 mod membrane;
 mod mesh;
 mod normal_equations;
@@ -74,7 +75,7 @@ pub use observations::{Observation, ObservationReader, Observations};
 pub use quantile_sketch::QuantileSketch;
 pub use refine::{Refined, refine};
 pub use residuals::{Residual, Summary, for_each_residual, summarise};
-pub use robust::{Loss, RobustFit, robust, robust_from};
+pub use robust::{Loss, RobustFit, RobustStart, robust, robust_from, robust_on};
 pub use solve::{Equations, Solution, Undetermined, least_squares};
 pub use spacing::spacing;
 pub use spline_space::SplineSpace;

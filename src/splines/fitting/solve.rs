@@ -13,6 +13,7 @@ use crate::bases::Basis;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// Coefficients that solve equations.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,7 +47,7 @@ pub struct Equations<'a> {
     basis: &'a Basis,
     normal: &'a NormalEquations,
     energy: Option<&'a Symmetric>,
-    elimination: Elimination,
+    elimination: Arc<Elimination>,
     /// The linear function that is nearest to the observations.
     trend: Trend,
     /// The right side of the equations for the difference from the trend.
@@ -65,6 +66,17 @@ impl<'a> Equations<'a> {
         normal: &'a NormalEquations,
         energy: Option<&'a Symmetric>,
     ) -> Result<Equations<'a>> {
+        Equations::eliminated(basis, normal, energy, None)
+    }
+
+    /// Like [`Equations::new`], with the order of elimination of other equations of the same pattern: those
+    /// of the same observations with other weights.
+    pub(super) fn eliminated(
+        basis: &'a Basis,
+        normal: &'a NormalEquations,
+        energy: Option<&'a Symmetric>,
+        elimination: Option<Arc<Elimination>>,
+    ) -> Result<Equations<'a>> {
         let found = normal.matrix.len();
         if found != basis.len() || energy.is_some_and(|energy| energy.len() != found) {
             return Err(Error::usage(format!(
@@ -76,9 +88,10 @@ impl<'a> Equations<'a> {
             check_domain(basis)?;
         }
         normal.check()?;
-        let elimination = match energy {
-            Some(energy) => Elimination::of(&normal.matrix.plus(0.0, energy))?,
-            None => Elimination::of(&normal.matrix)?,
+        let elimination = match (elimination, energy) {
+            (Some(known), _) => known,
+            (None, Some(energy)) => Arc::new(Elimination::of(&normal.matrix.plus(0.0, energy))?),
+            (None, None) => Arc::new(Elimination::of(&normal.matrix)?),
         };
         let trend = trend(basis, normal);
         let done = normal.matrix.times(&trend.coefficients);
@@ -91,6 +104,11 @@ impl<'a> Equations<'a> {
     #[must_use]
     pub fn in_tension(self) -> Equations<'a> {
         Equations { linear: self.energy.map(|energy| LinearPart::of(self.basis, energy)), ..self }
+    }
+
+    /// The order of elimination, for equations of the same pattern.
+    pub(super) fn elimination(&self) -> Arc<Elimination> {
+        Arc::clone(&self.elimination)
     }
 
     /// The normal equations.

@@ -5,7 +5,9 @@ use super::options::{Options, Smoothing};
 use super::points::PointsInFrame;
 use spmesh_core::error::{Error, Result};
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{self, Choice, Equations, Method, NormalEquations, Solution, Symmetric, Tense};
+use spmesh_splines::fitting::{
+    self, Choice, Equations, Method, NormalEquations, RobustStart, Solution, Symmetric, Tense,
+};
 
 /// The smoothing of a fit, and the reason for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +31,8 @@ pub(super) struct Problem {
     /// For stored coordinates.
     pub(super) lambda: f64,
     pub(super) chosen: SmoothingChoice,
+    /// Where a robust fit starts, if `lambda` was chosen with robust weights.
+    pub(super) start: Option<RobustStart>,
 }
 
 impl Problem {
@@ -59,6 +63,7 @@ pub(super) fn choose_smoothing(
     let (basis, threads) = (&layout.basis, options.threads);
     let normal = NormalEquations::of(basis, all, threads)?;
     check_tension(basis, options, are_given)?;
+    let mut start = None;
     let undetermined = match options.smoothing {
         None if are_given => Some(Equations::new(basis, &normal, None)?.undetermined(0.0)?.len()),
         _ => None,
@@ -89,8 +94,14 @@ pub(super) fn choose_smoothing(
             (Some(energy), choice.best.lambda, tension, Some(choice))
         }
         (Some(bending), Some(method), _) => {
-            let choose = if options.loss.is_some() { fitting::choose_robustly } else { fitting::choose };
-            let choice = choose(&normal, basis, all, &bending, method, threads)?;
+            let choice = if options.loss.is_some() {
+                let (choice, robust) =
+                    fitting::choose_robustly(&normal, basis, all, &bending, method, threads)?;
+                start = Some(robust);
+                choice
+            } else {
+                fitting::choose(&normal, basis, all, &bending, method, threads)?
+            };
             (Some(bending), choice.best.lambda, 0.0, Some(choice))
         }
         (Some(bending), None, Some(Smoothing::Lambda(lambda))) => {
@@ -101,7 +112,7 @@ pub(super) fn choose_smoothing(
     };
     let choice = choice.map(|choice| in_world(choice, area));
     let chosen = SmoothingChoice { lambda: lambda * area, tension, undetermined, is_solved: true, choice };
-    Ok(Problem { normal, energy, lambda, chosen })
+    Ok(Problem { normal, energy, lambda, chosen, start })
 }
 
 fn in_world(mut choice: Choice, area: f64) -> Choice {
