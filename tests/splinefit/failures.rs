@@ -16,7 +16,7 @@ fn each_failure_has_its_exit_code() {
         (folder.write("line.txt", "0 0\n1 1\n2 2\n3 3\n"), folder.write("far.txt", "0 0\n1e6 0\n0 1e6\n"));
     let pairs = folder.write("pairs.txt", "1 2\n");
     let plane = points(500, 1, plane);
-    let cases: [(&[&str], &[u8], i32, &str); 26] = [
+    let cases: [(&[&str], &[u8], i32, &str); 29] = [
         (&["fit", "no/such/file"], b"", 1, "no/such/file"),
         (&["fit"], b"", 3, "stdin: empty"),
         (&["fit"], b"0 0 1\n1 x 2\n", 3, "stdin: line 2"),
@@ -29,6 +29,9 @@ fn each_failure_has_its_exit_code() {
         (&["fit", "--lambda", "-1"], b"", 2, "--lambda"),
         (&["fit", "--lambda=ml"], b"", 2, "expected a number that is not negative"),
         (&["fit", "--lambda", "cv:1"], b"", 2, "above one"),
+        (&["fit", "--tension", "-1"], b"", 2, "from zero on"),
+        (&["fit", "--tension", "1", "--robust", "huber"], b"", 2, "--robust"),
+        (&["fit", "--tension", "1", "--step", "9", "--lambda", "gcv"], plane.as_bytes(), 2, "lambda reml"),
         (&["fit", "--degree", "3"], plane.as_bytes(), 2, "use configgen"),
         (&["fit", "--knots", &knots, "--degree", "3"], plane.as_bytes(), 2, "with configgen"),
         (&["fit", "--knots", &knots, "--tol", "1"], b"", 2, "cannot be used with"),

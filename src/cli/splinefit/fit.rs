@@ -35,10 +35,11 @@ most 300,000), which predicts terrain best. With --step, knots form a grid with 
 as knots are for splines of degree 2 over their convex hull: the border is pulled apart.
 
 Without --lambda, given knots get the coefficients of least squares. Coefficients that the points leave \
-undetermined are those of least energy. For other knots, lambda is chosen by restricted maximum likelihood \
-(reml), which bridges gaps and adapts to noise. No choice is less than a floor that depends on the distance \
-of points. LAMBDA multiplies the thin-plate energy (plus a thousandth of the bending of the control mesh), \
-which is added to the sum of squares of residuals.
+undetermined are those of least energy. For other knots, lambda and the tension are chosen by restricted \
+maximum likelihood (reml), which bridges gaps and adapts to noise and to steps of the ground. No choice of \
+lambda is less than a floor that depends on the distance of points. LAMBDA multiplies an energy, which is \
+added to the sum of squares of residuals. It is that of a thin plate (plus a thousandth of the bending of the \
+control mesh) and, with a tension T, T squared over the area of a point times that of a membrane.
 
 --features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which \
 values are linear. Their vertices become knots. Long segments get more knots, and other knots near them are \
@@ -46,8 +47,8 @@ dropped. In GeoJSON points are corners, and lines and rings are creases, unless 
 spline with one of the words. Polylines may meet at common vertices only.
 
 --robust weighs points by their residuals, iteratively: huber reduces weights beyond 1.345 standard \
-deviations, tukey reduces them to zero at 4.685. Points beyond 4.685 are rejected. The deviation is \
-estimated from the median of magnitudes. If lambda is chosen, it is chosen with these weights.";
+deviations, tukey reduces them to zero at 4.685, where points are rejected. The deviation is estimated from \
+the median of magnitudes; for rejecting points it is greater where many residuals nearby are. If lambda is chosen, it is chosen with these weights.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
@@ -87,6 +88,12 @@ pub(super) struct Flags {
     /// cross-validation), or cv or cv:FOLDS (cross-validation)
     #[arg(long, value_name = "LAMBDA|reml|gcv|cv[:FOLDS]", allow_negative_numbers = true)]
     lambda: Option<Smoothing>,
+
+    /// Tension: 0 for a thin plate; with more, waves longer than six distances of points over T are those of
+    /// a membrane, which follows points more closely [default: chosen with reml, or else 0]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_tension)]
+    #[arg(conflicts_with_all = ["robust", "interpolate"])]
+    tension: Option<f64>,
 
     /// Weigh points by their residuals, so that gross errors count little, or not at all
     #[arg(long, value_enum, value_name = "huber|tukey", hide_possible_values = true)]
@@ -216,6 +223,7 @@ impl Flags {
     fn options(&self) -> Result<Options> {
         Ok(Options {
             smoothing: self.lambda,
+            tension: self.tension,
             loss: self.robust.map(|loss| match loss {
                 LossFlag::Huber => Loss::Huber,
                 LossFlag::Tukey => Loss::Tukey,
@@ -293,6 +301,11 @@ fn read_weights(path: &Path) -> Result<Vec<f64>> {
             Err(Error::malformed("found two numbers on a line, expected one weight").of_input(name))
         }
     }
+}
+
+fn parse_tension(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse().ok().filter(|&number: &f64| number >= 0.0 && number.is_finite());
+    number.ok_or_else(|| format!("{text:?} is not a finite number from zero on"))
 }
 
 fn parse_positive(text: &str) -> std::result::Result<f64, String> {

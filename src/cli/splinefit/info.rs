@@ -91,7 +91,7 @@ impl Flags {
         let spline = Spline::open(&self.spline)?;
         let options = SourceOptions { reader: &SPLINEFIT, ..SourceOptions::default() };
         let points = Points::open(&self.points, &options, None, false, |_| ())?;
-        let found = Statistics::of(&spline, &points, f64::INFINITY, self.threads.get(), &|_| ())?;
+        let found = Statistics::of(&spline, &points, |_| false, self.threads.get(), &|_| ())?;
         let Spline { layout, coefficients } = spline;
         let (extent, residuals) = (found.extent, Some(found));
         Ok(Compared { layout, coefficients: Some(coefficients), extent, residuals })

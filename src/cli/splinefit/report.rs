@@ -41,7 +41,7 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
             notices.push(format!("the energy of undetermined functions may not be the least: {remedy}"));
         }
         if let Some(choice) = &chosen.choice {
-            notices.extend(of_choice(choice));
+            notices.extend(of_choice(choice, chosen.tension));
         }
     }
     if let Some((scale, has_settled)) = report.scale {
@@ -60,10 +60,11 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
     notices
 }
 
-/// Notices about a chosen `lambda`.
-fn of_choice(choice: &Choice) -> Vec<String> {
+/// Notices about a chosen `lambda` and its tension.
+fn of_choice(choice: &Choice, tension: f64) -> Vec<String> {
     let floor = if choice.is_at_floor() { ", the least that the distance of points allows" } else { "" };
-    let mut notices = vec![format!("smoothed with lambda {}{floor}", short(choice.best.lambda))];
+    let tension = if tension > 0.0 { format!(" in tension {}", short(tension)) } else { String::new() };
+    let mut notices = vec![format!("smoothed with lambda {}{tension}{floor}", short(choice.best.lambda))];
     if let Some(first) = choice.failed.first() {
         let all = choice.failed.len() + choice.trials.len();
         notices.push(format!(
@@ -162,6 +163,7 @@ fn number_rows(fitted: &Fitted) -> Vec<Row<f64>> {
     let mut rows = Vec::new();
     rows.extend(report.search.as_ref().map(|search| ("tolerance", "tolerance", search.goal.tolerance)));
     rows.extend(report.chosen.as_ref().map(|chosen| ("lambda", "lambda", chosen.lambda)));
+    rows.extend(report.chosen.as_ref().map(|chosen| ("tension", "tension", chosen.tension)));
     rows.extend(report.scale.map(|(scale, _)| ("standard deviation", "scale", scale)));
     rows.extend(residual_rows(&report.residuals));
     rows

@@ -11,6 +11,8 @@ use spmesh_core::error::{Error, Result};
 /// Steps of the search, in the logarithm of `lambda` to base 10. After the last step, a parabola through the
 /// three best trials gives the minimum.
 const STEP: f64 = 0.5;
+/// Steps from a `lambda` that is nearly the best one.
+const STEP_NEAR: f64 = 0.25;
 /// Accuracy of the best `lambda`, in its logarithm to base 10.
 const TOLERANCE: f64 = 0.05;
 /// The most steps in one direction.
@@ -86,19 +88,27 @@ pub(super) struct Limits {
     pub(super) start: f64,
     /// The least one.
     pub(super) least: f64,
+    /// The first step, in the logarithm of `lambda` to base 10.
+    pub(super) step: f64,
     /// Scores that differ by a lesser part are equal.
     pub(super) indifference: f64,
 }
 
 impl Limits {
     /// The neutral element of [`Limits::both`].
-    pub(super) const NONE: Limits = Limits { start: 0.0, least: 0.0, indifference: 0.0 };
+    pub(super) const NONE: Limits = Limits { start: 0.0, least: 0.0, step: STEP, indifference: 0.0 };
 
     /// The limits for equations: they follow from the distance of observations.
     pub(super) fn of(equations: &Equations) -> Limits {
         let start = if equations.unit() > 0.0 { equations.default_lambda() } else { 0.0 };
         let indifference = INDIFFERENCE / equations.normal().count as f64;
-        Limits { start, least: FLOOR * start, indifference }
+        Limits { start, least: FLOOR * start, step: STEP, indifference }
+    }
+
+    /// The same limits for a search that starts close to its end.
+    pub(super) fn near(self, lambda: Option<f64>) -> Limits {
+        let Some(start) = lambda else { return self };
+        Limits { start: start.max(self.least), step: STEP_NEAR, ..self }
     }
 
     /// The same limits in other units of weights.
@@ -111,6 +121,7 @@ impl Limits {
         let greater = |a: f64, b: f64| a.max(b);
         Limits {
             start: greater(self.start, other.start),
+            step: self.step,
             least: greater(self.least, other.least),
             indifference: greater(self.indifference, other.indifference),
         }
@@ -147,18 +158,19 @@ struct Walk<S> {
 
 impl<S: FnMut(f64) -> Result<f64>> Walk<S> {
     fn run(&mut self) {
+        let step = self.limits.step;
         let middle = self.attempt(0.0);
         let floor = (self.limits.least / self.limits.start).log10().min(0.0);
-        let up = self.attempt(STEP);
+        let up = self.attempt(step);
         let bracket = if self.is_less(up, middle) || !middle.is_finite() {
-            self.follow([(0.0, middle), (STEP, up)], f64::INFINITY)
+            self.follow([(0.0, middle), (step, up)], f64::INFINITY)
         } else {
-            let below = (-STEP).max(floor);
+            let below = (-step).max(floor);
             let down = if below < 0.0 { self.attempt(below) } else { f64::INFINITY };
             if self.is_less(down, middle) {
                 self.follow([(0.0, middle), (below, down)], -floor)
             } else {
-                [(below, down), (0.0, middle), (STEP, up)]
+                [(below, down), (0.0, middle), (step, up)]
             }
         };
         self.refine(bracket, floor);
@@ -169,7 +181,7 @@ impl<S: FnMut(f64) -> Result<f64>> Walk<S> {
     fn follow(&mut self, [mut before, mut at]: [(f64, f64); 2], reach: f64) -> [(f64, f64); 3] {
         let sign = (at.0 - before.0).signum();
         for _ in 0..STEPS_MAX {
-            let exponent = sign * (at.0.abs() + STEP).min(reach);
+            let exponent = sign * (at.0.abs() + self.limits.step).min(reach);
             if exponent == at.0 {
                 break;
             }
@@ -238,7 +250,7 @@ mod tests {
     use super::*;
 
     fn chosen(least: f64, score: impl Fn(f64) -> Result<f64>) -> Choice {
-        search(Limits { start: 1.0, least, indifference: 1e-9 }, score).expect("a choice")
+        search(Limits { start: 1.0, least, step: STEP, indifference: 1e-9 }, score).expect("a choice")
     }
 
     #[test]
@@ -269,7 +281,7 @@ mod tests {
         let choice = chosen(1e-9, fails);
         assert_eq!(choice.best.lambda, 1.0);
         assert!(choice.failed.len() == 1 && choice.failed[0].reason.contains("too little"), "{choice:?}");
-        let limits = Limits { start: 1.0, least: 1e-9, indifference: 1e-9 };
+        let limits = Limits { start: 1.0, least: 1e-9, step: STEP, indifference: 1e-9 };
         assert!(search(limits, |_| Err(Error::usage("none"))).is_err());
         assert!(search(limits, |_| Ok(f64::NAN)).is_err());
         assert!(search(Limits { start: 0.0, ..limits }, |_| Ok(1.0)).is_err());

@@ -61,7 +61,7 @@ impl Elimination {
     /// # Errors
     /// Not enough memory; a pivot that is not positive, which sums of squares do not have.
     pub(super) fn factor<'a>(&'a self, matrix: &'a Symmetric) -> Result<Factor<'a>> {
-        debug_assert_eq!(self.entries, matrix.entries_len());
+        assert_eq!(self.entries, matrix.entries_len(), "a matrix of another pattern");
         let scale: Vec<f64> =
             matrix.diagonal().map(|entry| if entry > 0.0 { 1.0 / entry.sqrt() } else { 1.0 }).collect();
         let mut values = vec![0.0; self.symbolic.len_val()];

@@ -1,6 +1,7 @@
 //! The choice of the smoothing parameter by generalised and k-fold cross-validation.
 
 use super::choice::{Choice, Limits, search};
+use super::cholesky::Elimination;
 use super::normal_equations::{NormalEquations, Parts};
 use super::observations::Observations;
 use super::selected_inverse::trace_of_quotient;
@@ -10,6 +11,7 @@ use crate::bases::Basis;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::random::Random;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// Chooses by generalised cross-validation: the least (S / n) / (1 - t / n)^2, for n observations, the
 /// weighted sum S of squared residuals, and the trace t of the smoothing matrix, which is exact.
@@ -19,12 +21,17 @@ use std::num::NonZeroUsize;
 /// # Errors
 /// Those of [`Equations::solve`], if it fails for every `lambda`.
 pub fn generalised_cross_validation(equations: &Equations) -> Result<Choice> {
+    cross_validation_near(equations, None)
+}
+
+/// [`generalised_cross_validation`], for a `lambda` that is nearly the best one.
+pub(super) fn cross_validation_near(equations: &Equations, near: Option<f64>) -> Result<Choice> {
     let normal = equations.normal();
     let count = normal.count as f64;
-    search(Limits::of(equations), |lambda| {
+    search(Limits::of(equations).near(near), |lambda| {
         equations.with_factor(lambda, |factor| {
             equations.check(factor, lambda)?;
-            let coefficients = equations.coefficients(factor);
+            let coefficients = equations.coefficients(factor, lambda);
             let free = 1.0 - trace_of_quotient(factor, &normal.matrix) / count;
             let score = normal.residual_square(&coefficients) / count / (free * free);
             Ok(if free > 0.0 { score } else { f64::INFINITY })
@@ -92,15 +99,28 @@ impl Folds {
     /// # Errors
     /// Those of [`Equations::solve`], if it fails for every `lambda`.
     pub fn choose(&self, basis: &Basis, energy: &Symmetric) -> Result<Choice> {
-        let equations: Vec<Equations> = self
-            .problems
-            .iter()
-            .map(|(kept, _)| Equations::new(basis, kept, Some(energy)))
-            .collect::<Result<_>>()?;
+        self.choose_near(basis, energy, None, None)
+    }
+
+    /// [`Folds::choose`], for a `lambda` that is nearly the best one. The order of elimination is that of all
+    /// observations, if it is known.
+    pub(super) fn choose_near(
+        &self,
+        basis: &Basis,
+        energy: &Symmetric,
+        near: Option<f64>,
+        mut elimination: Option<Arc<Elimination>>,
+    ) -> Result<Choice> {
+        let mut equations: Vec<Equations> = Vec::with_capacity(self.problems.len());
+        for (kept, _) in &self.problems {
+            let next = Equations::eliminated(basis, kept, Some(energy), elimination)?;
+            elimination = Some(next.elimination());
+            equations.push(next);
+        }
         // In units of all observations: without one fold, weights and lambda are scaled down alike.
         let parts = self.problems.iter().map(|(kept, _)| kept.weight / self.weight);
         let limits = equations.iter().zip(parts).map(|(equations, part)| Limits::of(equations).over(part));
-        let limits = limits.fold(Limits::NONE, Limits::both);
+        let limits = limits.fold(Limits::NONE, Limits::both).near(near);
         search(limits, |lambda| {
             let mut sum = 0.0;
             for (equations, (kept, left_out)) in equations.iter().zip(&self.problems) {

@@ -54,10 +54,7 @@ pub fn thin_plate(basis: &Basis) -> Result<Symmetric> {
         let what = format!("splines of degree {} cannot be smoothed: degree 2 can", basis.degree());
         return Err(Error::usage(what));
     }
-    check_domain(basis)?;
-    let mesh = delaunay2::triangulate(basis.knots())?;
-    let corners = |triangle: &Triangle| triangle.vertices.map(|id| basis.knots()[id as usize]);
-    let triangles: Vec<[Point2; 3]> = mesh.triangles().iter().map(corners).collect();
+    let triangles = triangles(basis)?;
     let mut rows = Rows::new(basis.len(), 1);
     if basis.degree() == 2 {
         add_exact(basis, &triangles, &mut rows);
@@ -65,6 +62,26 @@ pub fn thin_plate(basis: &Basis) -> Result<Symmetric> {
         add_quadrature(basis, &triangles, &mut rows);
     }
     Ok(Symmetric::of_rows(&rows, |_| true))
+}
+
+/// The triangles of a Delaunay triangulation of the knots.
+fn triangles(basis: &Basis) -> Result<Vec<[Point2; 3]>> {
+    check_domain(basis)?;
+    let mesh = delaunay2::triangulate(basis.knots())?;
+    let corners = |triangle: &Triangle| triangle.vertices.map(|id| basis.knots()[id as usize]);
+    Ok(mesh.triangles().iter().map(corners).collect())
+}
+
+/// Calls `visit` with the triangles of a Delaunay triangulation of the knots, and their parts in the domain.
+///
+/// # Errors
+/// A domain without an area.
+pub(super) fn for_each_triangle(basis: &Basis, mut visit: impl FnMut(&[Point2; 3], &[Point2])) -> Result<()> {
+    let mut clipper = Clipper::default();
+    for triangle in triangles(basis)? {
+        visit(&triangle, in_domain(basis, &triangle, &mut clipper));
+    }
+    Ok(())
 }
 
 /// Refuses knots over which no splines are whole.
@@ -168,7 +185,7 @@ fn sum_by_function(hessians: &mut Vec<(u32, [f64; 3])>) {
     });
 }
 
-fn is_flat(corners: &[Point2; 3]) -> bool {
+pub(super) fn is_flat(corners: &[Point2; 3]) -> bool {
     let square = |i: usize| polygon::square_of_side(corners[i], corners[(i + 1) % 3]);
     polygon::area(corners).abs() < AREA_MIN * square(0).max(square(1)).max(square(2))
 }

@@ -15,8 +15,9 @@
 //! | `trend` | the linear part of a fit, which is solved on its own |
 //! | `energy`, `cells`, `overlaps`, `polygon` | the thin-plate energy for smoothing |
 //! | `control_energy` | the energy of control meshes |
-//! | `choice`, `likelihood`, `cross_validation`, `automatic` | the choice of the smoothing parameter |
-//! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
+//! | `membrane`, `linear_part` | the membrane energy, and energies less those of planes |
+//! | `choice`, `likelihood`, `cross_validation`, `tension`, `automatic` | the choice of the smoothing parameters |
+//! | `residuals`, `quantile_sketch`, `local_scale`, `robust` | residuals, their scales, and robust weights |
 //! | `interpolation` | interpolation at Greville sites |
 //! | `mesh`, `spline_space` | triangulated knots, and the functions over them |
 //! | `spacing`, `knot_placement` | knots on grids |
@@ -36,6 +37,9 @@ mod interpolation;
 mod knot_placement;
 mod least_energy;
 mod likelihood;
+mod linear_part;
+mod local_scale;
+mod membrane;
 mod mesh;
 mod normal_equations;
 mod observations;
@@ -51,6 +55,7 @@ mod solve;
 mod spacing;
 mod spline_space;
 mod symmetric;
+mod tension;
 mod trend;
 mod triangle_residuals;
 
@@ -63,14 +68,16 @@ pub use goal::{Goal, Round};
 pub use interpolation::{Interpolation, interpolate};
 pub use knot_placement::{KNOTS_MIN, bounds, grid_knots};
 pub use likelihood::restricted_likelihood;
+pub use membrane::membrane;
 pub use mesh::Mesh;
 pub use normal_equations::NormalEquations;
 pub use observations::{Observation, ObservationReader, Observations};
 pub use quantile_sketch::QuantileSketch;
 pub use refine::{Refined, refine};
 pub use residuals::{Residual, Summary, for_each_residual, summarise};
-pub use robust::{Loss, RobustFit, robust, robust_from};
+pub use robust::{Loss, RobustFit, RobustStart, robust, robust_from, robust_on};
 pub use solve::{Equations, Solution, Undetermined, least_squares};
 pub use spacing::spacing;
 pub use spline_space::SplineSpace;
 pub use symmetric::Symmetric;
+pub use tension::{TENSIONS, Tense, choose_tension, with_tension};

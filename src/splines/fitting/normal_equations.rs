@@ -71,6 +71,12 @@ impl NormalEquations {
         self.weight * area / (self.count as f64 * std::f64::consts::PI.powi(2)).powi(2)
     }
 
+    /// The area of the domain per observation.
+    #[must_use]
+    pub fn area_per_observation(&self, basis: &Basis) -> f64 {
+        polygon::area(&basis.domain_corners()) / self.count as f64
+    }
+
     /// Refuses equations without observations, and values whose squares exceed f64.
     pub(super) fn check(&self) -> Result<()> {
         if !self.square.is_finite() {
@@ -95,8 +101,8 @@ impl NormalEquations {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weighed {
     pub(super) weight: f64,
-    /// The residual, if the caller collects them.
-    pub(super) residual: Option<f64>,
+    /// The residual and its cell, if the caller collects them.
+    pub(super) residual: Option<(f64, u32)>,
 }
 
 /// Normal equations of several parts of the observations, from one pass.
@@ -125,7 +131,7 @@ struct Evaluated {
     weighted: Vec<[f64; 2]>,
     offsets: Vec<u32>,
     alive: Vec<(u32, f64)>,
-    residuals: Vec<f64>,
+    residuals: Vec<(f64, u32)>,
     totals: Vec<Totals>,
 }
 
@@ -169,7 +175,7 @@ impl Parts {
         count: usize,
         part_of: impl Fn(u64) -> usize + Sync,
         weigh: impl Fn(u64, &Observation, &[(u32, f64)]) -> Weighed + Sync,
-        mut see: impl FnMut(f64),
+        mut see: impl FnMut((f64, u32)),
     ) -> Result<Parts> {
         let turns = threads.get();
         let mut shards: Vec<Shard> =
@@ -246,10 +252,12 @@ impl Evaluated {
             let alive = basis.at(observation.point, &mut scratch);
             let Weighed { weight, residual } = weigh(index, observation, alive);
             evaluated.residuals.extend(residual);
-            if weight == 0.0 {
+            if observation.weight == 0.0 {
                 continue;
             }
-            totals.count += 1;
+            // Observations that other weights leave out still have entries, which are zero: so all weights
+            // have equations of one pattern.
+            totals.count += u64::from(weight > 0.0);
             totals.weight += weight;
             totals.square += weight * observation.value * observation.value;
             evaluated.parts.push(part as u32);

@@ -1,5 +1,7 @@
 //! Robust fits: iteratively reweighted least squares, so that gross errors count little or not at all.
 
+use super::cholesky::Elimination;
+use super::local_scale::{Cells, LocalScales, LocalSketch};
 use super::normal_equations::{NormalEquations, Parts, Weighed};
 use super::observations::Observations;
 use super::quantile_sketch::QuantileSketch;
@@ -8,17 +10,21 @@ use super::solve::{Equations, Solution};
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
 use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::Point2;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// Where Huber's loss becomes linear, in standard deviations; 95 % efficient for normal errors.
 const HUBER: f64 = 1.345;
-/// Where Tukey's loss becomes constant, in standard deviations; 95 % efficient, too. With either loss,
+/// Where Tukey's loss becomes constant, in local standard deviations; 95 % efficient, too. With either loss,
 /// observations beyond are *rejected*.
 const TUKEY: f64 = 4.685;
 /// Standard deviations per median of magnitudes, for normal errors.
 const DEVIATIONS: f64 = 1.482_602_218_505_602;
 /// Least scale, relative to the root of the mean square of values: about the rounding error.
 const SCALE_MIN: f64 = 1e-12;
+/// Weighted sums of squared residuals below this part of that of values may be rounding errors.
+const SQUARE_MIN: f64 = 1e-13;
 /// The rounds end when the root of the mean square change of coefficients is at most this number of scales.
 const CHANGE_MAX: f64 = 1e-2;
 /// Added to errors that weights cause: with all observations, there was none.
@@ -41,13 +47,14 @@ pub enum Loss {
 }
 
 impl Loss {
-    /// The factor of the weight of an observation whose residual is `scales` scales.
-    fn factor(self, scales: f64) -> f64 {
+    /// The factor of the weight of an observation with this magnitude of its residual.
+    fn factor(self, residual: f64, fit: &RobustFit, point: Point2) -> f64 {
         match self {
-            Loss::Huber if scales <= HUBER => 1.0,
-            Loss::Huber => HUBER / scales,
-            Loss::Tukey if scales < TUKEY => (1.0 - (scales / TUKEY).powi(2)).powi(2),
-            Loss::Tukey => 0.0,
+            Loss::Huber => (HUBER * fit.scale / residual).min(1.0),
+            Loss::Tukey => {
+                let part = (residual / fit.limit_at(point)).min(1.0);
+                (1.0 - part * part).powi(2)
+            }
         }
     }
 }
@@ -58,7 +65,7 @@ pub struct RobustFit {
     /// Coefficients of the spline.
     pub coefficients: Vec<f64>,
     /// Standard deviation of an observation of weight one, from the median of the magnitudes of all
-    /// residuals.
+    /// residuals, and from how much of the errors the spline follows.
     pub scale: f64,
     /// Passes over the observations, including the pass for the normal equations.
     pub passes: usize,
@@ -66,6 +73,18 @@ pub struct RobustFit {
     pub has_converged: bool,
     /// Whether the last round solved its equations: see [`Solution::has_converged`].
     pub is_solved: bool,
+    local: LocalScales,
+}
+
+/// A robust fit that is not finished: where other fits to the same observations start.
+#[derive(Debug)]
+pub struct RobustStart {
+    pub(super) fit: RobustFit,
+    /// The factor from the median of residuals to the scale, for the coefficients of the fit.
+    inflation: f64,
+    /// The least scale: about the rounding error of values.
+    scale_min: f64,
+    pub(super) elimination: Arc<Elimination>,
 }
 
 /// Fits with a loss; `energy` is multiplied by `lambda`.
@@ -103,15 +122,45 @@ pub fn robust_from<O: Observations + ?Sized>(
     Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_MAX }.fit(loss, plain)
 }
 
+/// [`robust()`] from where a choice of `lambda` ended: see [`choose_robustly`](super::choose_robustly). The
+/// basis, the observations and the energy are those of the choice.
+///
+/// # Errors
+/// Those of [`robust()`].
+pub fn robust_on<O: Observations + ?Sized>(
+    mut start: RobustStart,
+    basis: &Basis,
+    observations: &O,
+    loss: Loss,
+    energy: Option<&Symmetric>,
+    lambda: f64,
+    threads: NonZeroUsize,
+) -> Result<RobustFit> {
+    Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_MAX }.improve(&mut start, loss)?;
+    Ok(start.fit)
+}
+
 impl RobustFit {
-    /// Observations of weight one whose residual is greater are *rejected*.
+    /// Observations of weight one whose residual is greater are *rejected*, unless many residuals near them
+    /// are great, too.
     #[must_use]
     pub fn limit(&self) -> f64 {
         TUKEY * self.scale
     }
 
-    /// Calls `visit` with all rejected observations, in order: those whose residual, times the root of the
-    /// weight, is greater than 4.685 scales. Returns their number. One pass.
+    /// Whether an observation is rejected: its residual, times the root of the weight, is greater than 4.685
+    /// local scales.
+    #[must_use]
+    pub fn is_rejected(&self, found: &Residual) -> bool {
+        found.residual.abs() * found.weight.sqrt() > self.limit_at(found.point)
+    }
+
+    fn limit_at(&self, point: Point2) -> f64 {
+        TUKEY * self.local.at(point, self.scale)
+    }
+
+    /// Calls `visit` with all rejected observations, in order: see [`RobustFit::is_rejected`]. Returns their
+    /// number. One pass.
     ///
     /// # Errors
     /// Those of [`residuals::for_each_residual`].
@@ -124,7 +173,7 @@ impl RobustFit {
     ) -> Result<u64> {
         let mut count = 0;
         residuals::for_each_residual(basis, &self.coefficients, observations, threads, |found| {
-            if found.residual.abs() * found.weight.sqrt() > self.limit() {
+            if self.is_rejected(&found) {
                 count += 1;
                 visit(found);
             }
@@ -150,44 +199,50 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
     /// # Errors
     /// Those of [`robust()`].
     pub(super) fn fit(&self, loss: Loss, plain: &NormalEquations) -> Result<RobustFit> {
-        let scale_min = scale_min(plain);
-        let mut found = self.start(plain)?;
+        let mut start = self.start(plain)?;
         if loss == Loss::Tukey {
-            self.improve(&mut found, Loss::Tukey, scale_min)?;
+            self.improve(&mut start, Loss::Tukey)?;
         }
-        Ok(found)
+        Ok(start.fit)
     }
 
     /// The fit with Huber's loss.
     ///
     /// # Errors
     /// Those of [`robust()`].
-    pub(super) fn start(&self, plain: &NormalEquations) -> Result<RobustFit> {
-        let Solution { coefficients, has_converged: is_solved } = self.solve(plain)?;
+    pub(super) fn start(&self, plain: &NormalEquations) -> Result<RobustStart> {
+        let equations = Equations::new(self.basis, plain, self.energy)?;
+        let Solution { coefficients, has_converged: is_solved } = equations.solution(self.lambda)?;
+        let inflation = self.inflation(plain, &coefficients);
         let scale_min = scale_min(plain);
-        let scale = self.scale(&coefficients, scale_min)?;
-        let mut found = RobustFit { coefficients, scale, passes: 2, has_converged: false, is_solved };
-        self.improve(&mut found, Loss::Huber, scale_min)?;
-        Ok(found)
+        let scale = (inflation * self.median_scale(&coefficients)?).max(scale_min);
+        let local = LocalScales::none(Cells::of(self.basis, plain.count));
+        let fit = RobustFit { coefficients, scale, passes: 2, has_converged: false, is_solved, local };
+        let mut start = RobustStart { fit, inflation, scale_min, elimination: equations.elimination() };
+        self.improve(&mut start, Loss::Huber)?;
+        Ok(start)
     }
 
-    /// Iterates with one loss. Each round weighs observations by the scale that the previous round measured,
-    /// and measures the scale for the next one.
-    pub(super) fn improve(&self, fit: &mut RobustFit, loss: Loss, scale_min: f64) -> Result<()> {
-        fit.has_converged = false;
+    /// Iterates with one loss. Each round weighs observations by the scales that the previous round measured,
+    /// and measures the scales for the next one.
+    pub(super) fn improve(&self, start: &mut RobustStart, loss: Loss) -> Result<()> {
+        start.fit.has_converged = false;
         for _ in 0..self.most {
-            let (parts, scale) = self.weighted(fit, loss, scale_min, 1, |_| 0)?;
+            let Weighted { parts, scale, local } = self.weighted(start, loss, 1, |_| 0)?;
             let normal = parts.sum(|_| true);
+            drop(parts);
             let Solution { coefficients, has_converged: is_solved } =
-                self.solve(&normal).map_err(|error| error.noting(LEFT_OUT))?;
+                self.solve(&normal, start).map_err(|error| error.noting(LEFT_OUT))?;
+            start.inflation = self.inflation(&normal, &coefficients);
+            let fit = &mut start.fit;
             let squares = coefficients.iter().zip(&fit.coefficients).map(|(a, b)| (a - b) * (a - b));
             let change = (squares.sum::<f64>() / coefficients.len() as f64).sqrt();
             // While the scale still shrinks, coefficients have not converged, however slowly they change.
-            let is_still = change <= CHANGE_MAX * scale.max(scale_min) && scale >= 0.98 * fit.scale;
-            (fit.coefficients, fit.is_solved) = (coefficients, is_solved);
+            let is_still = change <= CHANGE_MAX * scale.max(start.scale_min) && scale >= 0.98 * fit.scale;
+            let is_least = fit.scale <= start.scale_min && scale <= start.scale_min;
+            (fit.coefficients, fit.is_solved, fit.local) = (coefficients, is_solved, local);
             fit.passes += 1;
-            let is_least = fit.scale <= scale_min && scale <= scale_min;
-            fit.scale = scale.max(scale_min);
+            fit.scale = scale.max(start.scale_min);
             if is_still || is_least {
                 fit.has_converged = true;
                 return Ok(());
@@ -196,35 +251,36 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
         Ok(())
     }
 
-    /// The normal equations, weighted by residuals, in several parts; and the scale of the residuals.
+    /// The normal equations, weighted by residuals, in several parts; and the scales of the residuals.
     ///
     /// If residuals were rounding errors and are greater now, no observation keeps a weight. They are then
     /// weighed again by their own scale, within which half of them are.
     pub(super) fn weighted(
         &self,
-        fit: &mut RobustFit,
+        start: &mut RobustStart,
         loss: Loss,
-        scale_min: f64,
         count: usize,
         part_of: impl Fn(u64) -> usize + Sync,
-    ) -> Result<(Parts, f64)> {
-        let (parts, scale) = self.weighted_by_scale(fit, loss, count, &part_of)?;
-        if parts.count() > 0 {
-            return Ok((parts, scale));
+    ) -> Result<Weighted> {
+        let weighted = self.weighted_by_scale(start, loss, count, &part_of)?;
+        if weighted.parts.count() > 0 {
+            return Ok(weighted);
         }
-        fit.scale = scale.max(scale_min);
-        fit.passes += 1;
-        self.weighted_by_scale(fit, loss, count, &part_of)
+        start.fit.scale = weighted.scale.max(start.scale_min);
+        start.fit.passes += 1;
+        self.weighted_by_scale(start, loss, count, &part_of)
     }
 
     fn weighted_by_scale(
         &self,
-        fit: &RobustFit,
+        start: &RobustStart,
         loss: Loss,
         count: usize,
         part_of: impl Fn(u64) -> usize + Sync,
-    ) -> Result<(Parts, f64)> {
-        let mut sketch = QuantileSketch::default();
+    ) -> Result<Weighted> {
+        let RobustStart { fit, inflation, .. } = start;
+        let cells = fit.local.cells();
+        let (mut sketch, mut local) = (QuantileSketch::default(), LocalSketch::new(cells, fit.scale));
         let parts = Parts::of(
             self.basis,
             self.observations,
@@ -234,31 +290,57 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
             |_, observation, alive| {
                 let residual = observation.value - residuals::value(&fit.coefficients, alive);
                 let residual = residual * observation.weight.sqrt();
-                let weight = observation.weight * loss.factor(residual.abs() / fit.scale);
-                Weighed { weight, residual: (observation.weight > 0.0).then_some(residual) }
+                let weight = observation.weight * loss.factor(residual.abs(), fit, observation.point);
+                let seen = (residual, cells.at(observation.point));
+                Weighed { weight, residual: (observation.weight > 0.0).then_some(seen) }
             },
-            |residual| sketch.add(residual),
+            |(residual, cell)| {
+                sketch.add(residual);
+                local.add(cell, residual);
+            },
         )?;
-        Ok((parts, scale_of(&sketch)?))
+        Ok(Weighted { parts, scale: inflation * scale_of(&sketch)?, local: local.scales(cells) })
     }
 
-    fn scale(&self, coefficients: &[f64], scale_min: f64) -> Result<f64> {
+    /// The scale that follows from the median of residuals alone.
+    fn median_scale(&self, coefficients: &[f64]) -> Result<f64> {
         let mut sketch = QuantileSketch::default();
         residuals::for_each_residual(self.basis, coefficients, self.observations, self.threads, |found| {
             if found.weight > 0.0 {
                 sketch.add(found.residual * found.weight.sqrt());
             }
         })?;
-        Ok(scale_of(&sketch)?.max(scale_min))
+        scale_of(&sketch)
     }
 
-    fn solve(&self, normal: &NormalEquations) -> Result<Solution> {
-        Equations::new(self.basis, normal, self.energy)?.solution(self.lambda)
+    /// The ratio of errors to residuals, which are smaller as far as the spline follows errors.
+    ///
+    /// Let S be the weighted sum of squared residuals. If `lambda` is that of the greatest restricted
+    /// likelihood, the variance of n errors is (S + `lambda` c'Ec) / n, whereas that of residuals is S / n.
+    fn inflation(&self, normal: &NormalEquations, coefficients: &[f64]) -> f64 {
+        let Some(energy) = self.energy.filter(|_| self.lambda > 0.0) else { return 1.0 };
+        let square = normal.residual_square(coefficients);
+        if square <= SQUARE_MIN * normal.square {
+            return 1.0;
+        }
+        (1.0 + self.lambda * energy.form(coefficients).max(0.0) / square).sqrt()
+    }
+
+    fn solve(&self, normal: &NormalEquations, start: &RobustStart) -> Result<Solution> {
+        let elimination = Some(Arc::clone(&start.elimination));
+        Equations::eliminated(self.basis, normal, self.energy, elimination)?.solution(self.lambda)
     }
 }
 
+/// Normal equations in parts, weighted by residuals, and the scales of these.
+pub(super) struct Weighted {
+    pub(super) parts: Parts,
+    scale: f64,
+    local: LocalScales,
+}
+
 /// The least scale: about the rounding error of values.
-pub(super) fn scale_min(plain: &NormalEquations) -> f64 {
+fn scale_min(plain: &NormalEquations) -> f64 {
     (SCALE_MIN * (plain.square / plain.weight).sqrt()).max(f64::MIN_POSITIVE)
 }
 
@@ -282,10 +364,13 @@ mod tests {
             Rounds { basis, observations: &observations, energy: None, lambda: 0.0, threads, most: 1 };
         // All residuals are far beyond the scale, as if they had been rounding errors one round before.
         let zero = vec![0.0; basis.len()];
-        let mut fit =
-            RobustFit { coefficients: zero, scale: 1e-12, passes: 2, has_converged: false, is_solved: true };
-        let (parts, scale) = rounds.weighted(&mut fit, Loss::Tukey, 1e-12, 1, |_| 0).expect("weights");
-        assert_eq!((parts.count(), fit.passes), (77, 3));
-        assert!((scale / (2.0 * DEVIATIONS) - 1.0).abs() < 0.01 && fit.scale == scale, "{scale}");
+        let normal = NormalEquations::of(basis, &observations, threads).expect("equations");
+        let mut start = rounds.start(&normal).expect("a fit");
+        (start.fit.coefficients, start.fit.scale, start.fit.passes) = (zero, 1e-12, 2);
+        start.fit.local = LocalScales::none(Cells::of(basis, 77));
+        let Weighted { parts, scale, .. } =
+            rounds.weighted(&mut start, Loss::Tukey, 1, |_| 0).expect("weights");
+        assert_eq!((parts.count(), start.fit.passes), (77, 3));
+        assert!((scale / (2.0 * DEVIATIONS) - 1.0).abs() < 0.01 && start.fit.scale == scale, "{scale}");
     }
 }

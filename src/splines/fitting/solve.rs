@@ -4,6 +4,7 @@ use super::cholesky::{Elimination, Factor};
 use super::control_energy::bending;
 use super::energy::check_domain;
 use super::least_energy;
+use super::linear_part::{Correction, LinearPart, corners};
 use super::normal_equations::NormalEquations;
 use super::observations::Observations;
 use super::symmetric::Symmetric;
@@ -12,6 +13,7 @@ use crate::bases::Basis;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// Coefficients that solve equations.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,11 +47,13 @@ pub struct Equations<'a> {
     basis: &'a Basis,
     normal: &'a NormalEquations,
     energy: Option<&'a Symmetric>,
-    elimination: Elimination,
+    elimination: Arc<Elimination>,
     /// The linear function that is nearest to the observations.
     trend: Trend,
     /// The right side of the equations for the difference from the trend.
     right: Vec<f64>,
+    /// The part of the energy that does not count, because linear functions have it.
+    linear: Option<LinearPart>,
 }
 
 impl<'a> Equations<'a> {
@@ -62,6 +66,17 @@ impl<'a> Equations<'a> {
         normal: &'a NormalEquations,
         energy: Option<&'a Symmetric>,
     ) -> Result<Equations<'a>> {
+        Equations::eliminated(basis, normal, energy, None)
+    }
+
+    /// Like [`Equations::new`], with the order of elimination of other equations of the same pattern: those
+    /// of the same observations with other weights.
+    pub(super) fn eliminated(
+        basis: &'a Basis,
+        normal: &'a NormalEquations,
+        energy: Option<&'a Symmetric>,
+        elimination: Option<Arc<Elimination>>,
+    ) -> Result<Equations<'a>> {
         let found = normal.matrix.len();
         if found != basis.len() || energy.is_some_and(|energy| energy.len() != found) {
             return Err(Error::usage(format!(
@@ -73,14 +88,27 @@ impl<'a> Equations<'a> {
             check_domain(basis)?;
         }
         normal.check()?;
-        let elimination = match energy {
-            Some(energy) => Elimination::of(&normal.matrix.plus(0.0, energy))?,
-            None => Elimination::of(&normal.matrix)?,
+        let elimination = match (elimination, energy) {
+            (Some(known), _) => known,
+            (None, Some(energy)) => Arc::new(Elimination::of(&normal.matrix.plus(0.0, energy))?),
+            (None, None) => Arc::new(Elimination::of(&normal.matrix)?),
         };
         let trend = trend(basis, normal);
         let done = normal.matrix.times(&trend.coefficients);
         let right = normal.right.iter().zip(done).map(|(right, done)| right - done).collect();
-        Ok(Equations { basis, normal, energy, elimination, trend, right })
+        Ok(Equations { basis, normal, energy, elimination, trend, right, linear: None })
+    }
+
+    /// The equations with the energy that splines have after the best linear function is subtracted. Only
+    /// constants may have no energy, as with [`with_tension`](super::with_tension).
+    #[must_use]
+    pub fn in_tension(self) -> Equations<'a> {
+        Equations { linear: self.energy.map(|energy| LinearPart::of(self.basis, energy)), ..self }
+    }
+
+    /// The order of elimination, for equations of the same pattern.
+    pub(super) fn elimination(&self) -> Arc<Elimination> {
+        Arc::clone(&self.elimination)
     }
 
     /// The normal equations.
@@ -117,7 +145,7 @@ impl<'a> Equations<'a> {
             self.check(factor, lambda)?;
             let found = match is_least {
                 true => self.of_least_energy(factor),
-                false => Solution { coefficients: self.coefficients(factor), has_converged: true },
+                false => Solution { coefficients: self.coefficients(factor, lambda), has_converged: true },
             };
             if found.coefficients.iter().all(|c| c.is_finite()) {
                 return Ok(found);
@@ -165,17 +193,50 @@ impl<'a> Equations<'a> {
         }
     }
 
+    /// What the linear part of the energy changes, if it has one.
+    pub(super) fn correction(&self, factor: &Factor, lambda: f64) -> Option<Correction<'_>> {
+        self.linear.as_ref().map(|part| part.correction(factor, lambda))
+    }
+
     /// The least value of the weighted squared residuals plus `lambda` times the energy. Accuracy: about
     /// 1e-15 of z'Wz.
-    pub(super) fn deviance(&self, factor: &Factor) -> f64 {
-        let rest = factor.solve(&self.right);
+    pub(super) fn deviance(&self, factor: &Factor, correction: Option<&Correction>) -> f64 {
+        let rest = self.rest(factor, correction);
         let explained: f64 = rest.iter().zip(&self.right).map(|(c, right)| c * right).sum();
         (self.normal.residual_square(&self.trend.coefficients) - explained).max(0.0)
     }
 
-    /// The coefficients from the factored equations.
-    pub(super) fn coefficients(&self, factor: &Factor) -> Vec<f64> {
-        self.with_trend(factor.solve(&self.right))
+    /// The coefficients from the equations that are factored for `lambda`.
+    pub(super) fn coefficients(&self, factor: &Factor, lambda: f64) -> Vec<f64> {
+        self.with_trend(self.rest(factor, self.correction(factor, lambda).as_ref()))
+    }
+
+    /// The coefficients of the difference from the trend.
+    fn rest(&self, factor: &Factor, correction: Option<&Correction>) -> Vec<f64> {
+        let mut rest = factor.solve(&self.right);
+        if let Some(correction) = correction {
+            correction.apply(&mut rest);
+        }
+        rest
+    }
+
+    /// The logarithm of the determinant of the energy on splines without a linear part, except for a constant
+    /// that depends only on the basis. With an energy of linear functions, that of S is left out (see
+    /// [`LinearPart`]).
+    ///
+    /// Some coefficients are held by springs, as many as there are functions without energy: the determinant
+    /// is then that of the springs, times that of the energy for fixed ends, which is a known multiple.
+    ///
+    /// # Errors
+    /// No energy; not enough memory.
+    pub(super) fn log_determinant_of_energy(&self) -> Result<f64> {
+        let energy = self.energy.ok_or_else(|| Error::usage("there is no energy"))?;
+        let (held, volume) = if self.linear.is_some() { (vec![0], 0.0) } else { corners(self.basis) };
+        let mut matrix = energy.plus(0.0, &self.normal.matrix);
+        let springs: Vec<f64> = held.iter().map(|&function| energy.at(function, function)).collect();
+        held.iter().zip(&springs).for_each(|(&function, &spring)| matrix.add_to_diagonal(function, spring));
+        let of_springs: f64 = springs.iter().map(|spring| spring.ln()).sum();
+        Ok(self.elimination.factor(&matrix)?.log_determinant() - of_springs - 2.0 * volume)
     }
 
     fn of_least_energy(&self, factor: &Factor) -> Solution {

@@ -127,6 +127,11 @@ impl Symmetric {
         sum
     }
 
+    /// Adds to an entry of the diagonal.
+    pub(super) fn add_to_diagonal(&mut self, row: usize, value: f64) {
+        self.values[self.offsets[row]] += value;
+    }
+
     /// The matrix with rows and columns multiplied by factors, and a constant added to the diagonal.
     pub(super) fn scaled(&self, factors: &[f64], to_diagonal: f64) -> Symmetric {
         let mut scaled = self.clone();

@@ -38,7 +38,7 @@ pub(super) fn trend(basis: &Basis, normal: &NormalEquations) -> Trend {
 }
 
 /// The functions 1, x and y at Greville sites, centred and scaled to their extent.
-fn linear_functions(basis: &Basis) -> [Vec<f64>; 3] {
+pub(super) fn linear_functions(basis: &Basis) -> [Vec<f64>; 3] {
     let of_axis = |axis: usize| {
         let all: Vec<f64> = (0..basis.len()).map(|function| basis.greville(function)[axis]).collect();
         let [min, max] =

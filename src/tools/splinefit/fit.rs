@@ -12,8 +12,8 @@ use super::{breaklines, given_knots, residual_lists};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::Opened;
 use spmesh_splines::fitting::{
-    self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, RobustFit, Round, Solution,
-    SplineSpace,
+    self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, Residual, RobustFit, Round,
+    Solution, SplineSpace,
 };
 
 /// The default tolerance, as a part of the range of elevations.
@@ -112,8 +112,8 @@ pub fn fit(
         }
     };
     let spline = Spline { layout, coefficients };
-    let limit = robust.as_ref().map_or(f64::INFINITY, RobustFit::limit);
-    let residuals = Statistics::of(&spline, points, limit, options.threads, done)?;
+    let is_rejected = |found: &Residual| robust.as_ref().is_some_and(|fit| fit.is_rejected(found));
+    let residuals = Statistics::of(&spline, points, is_rejected, options.threads, done)?;
     let scale = robust.as_ref().map(|fit| (fit.scale, fit.has_converged));
     let report = Report { points: points.count(), search: found, chosen, scale, residuals };
     Ok(Fitted { spline, report, robust })
@@ -215,9 +215,12 @@ fn approximate(
         let Solution { coefficients, has_converged } = problem.solve(&layout.basis)?;
         return Ok((coefficients, SmoothingChoice { is_solved: has_converged, ..problem.chosen }, None));
     };
-    let Problem { normal, energy, lambda, chosen } = problem;
-    let (basis, threads) = (&layout.basis, options.threads);
-    let robust = fitting::robust_from(&normal, basis, all, loss, energy.as_ref(), lambda, threads)?;
+    let Problem { normal, energy, lambda, chosen, start } = problem;
+    let (basis, energy, threads) = (&layout.basis, energy.as_ref(), options.threads);
+    let robust = match start {
+        Some(start) => fitting::robust_on(start, basis, all, loss, energy, lambda, threads)?,
+        None => fitting::robust_from(&normal, basis, all, loss, energy, lambda, threads)?,
+    };
     let chosen = SmoothingChoice { is_solved: robust.is_solved, ..chosen };
     Ok((robust.coefficients.clone(), chosen, Some(robust)))
 }

@@ -12,6 +12,9 @@ pub struct Options {
     /// How to smooth. If `None`, other knots than given ones are smoothed by restricted maximum likelihood.
     /// Over given knots, only the functions that points do not determine are smoothed.
     pub smoothing: Option<Smoothing>,
+    /// The tension, in units of one over the distance of points. If `None`, restricted maximum likelihood
+    /// chooses it together with the smoothing, unless the fit is robust; otherwise it is zero.
+    pub tension: Option<f64>,
     /// The loss function of a robust fit; `None` for least squares.
     pub loss: Option<Loss>,
     /// Whether the spline interpolates the triangulated points at Greville sites.
@@ -38,6 +41,7 @@ impl Default for Options {
     fn default() -> Options {
         Options {
             smoothing: None,
+            tension: None,
             loss: None,
             interpolates: false,
             tolerance: None,

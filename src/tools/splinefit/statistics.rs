@@ -5,7 +5,7 @@ use super::layout::Spline;
 use super::points::Points;
 use spmesh_core::error::Result;
 use spmesh_geometry::predicates::Point2;
-use spmesh_splines::fitting::{self, QuantileSketch};
+use spmesh_splines::fitting::{self, QuantileSketch, Residual};
 use std::num::NonZeroUsize;
 
 /// The quantiles that are reported.
@@ -42,15 +42,14 @@ impl Statistics {
         self.extent?.excess(self.range?)
     }
 
-    /// Computes the statistics of points in one pass. Points whose residual, times the root of the weight, is
-    /// greater than `limit` are rejected.
+    /// Computes the statistics of points in one pass.
     ///
     /// # Errors
     /// If points cannot be read.
     pub fn of(
         spline: &Spline,
         points: &Points,
-        limit: f64,
+        is_rejected: impl Fn(&Residual) -> bool,
         threads: NonZeroUsize,
         done: &dyn Fn(u64),
     ) -> Result<Statistics> {
@@ -72,7 +71,7 @@ impl Statistics {
             };
             if found.weight > 0.0 {
                 range = with(range);
-                if found.residual.abs() * found.weight.sqrt() <= limit {
+                if !is_rejected(&found) {
                     kept = with(kept);
                 }
             }

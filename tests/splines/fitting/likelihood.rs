@@ -2,7 +2,8 @@
 
 use super::bases::{ONE, dense, grid, pulled_apart, scattered, solve_dense};
 use spmesh_reference::sets::Random;
-use spmesh_splines::fitting::{self, Equations, NormalEquations, Observation, thin_plate};
+use spmesh_splines::bases::Basis;
+use spmesh_splines::fitting::{self, Equations, NormalEquations, Observation, Symmetric, thin_plate};
 
 fn noisy(count: usize) -> Vec<Observation> {
     let mut random = Random::new(5);
@@ -74,6 +75,16 @@ fn in_space_of_observations(
     log_determinant(covariance) + log_determinant(products) + (all.len() as f64 - 3.0) * rest.ln()
 }
 
+/// As [`in_space_of_observations`].
+fn known_score(basis: &Basis, all: &[Observation], energy: &Symmetric, lambda: f64) -> f64 {
+    let rows = dense(basis, all.iter().map(|one| one.point));
+    let count = basis.len();
+    let energy: Vec<Vec<f64>> = (0..count).map(|i| (0..count).map(|j| energy.at(i, j)).collect()).collect();
+    let linear = [|_| 1.0, |[x, _]: [f64; 2]| x, |[_, y]: [f64; 2]| y]
+        .map(|f: fn([f64; 2]) -> f64| (0..count).map(|function| f(basis.greville(function))).collect());
+    in_space_of_observations(all, &rows, &energy, &linear, lambda)
+}
+
 #[test]
 fn scores_are_likelihoods_of_observations() {
     let basis = pulled_apart(&grid(3, 0.2));
@@ -82,12 +93,7 @@ fn scores_are_likelihoods_of_observations() {
         (NormalEquations::of(&basis, &all, ONE).expect("equations"), thin_plate(&basis).expect("an energy"));
     let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
     let choice = fitting::restricted_likelihood(&equations).expect("a choice");
-    let rows = dense(&basis, all.iter().map(|one| one.point));
-    let count = basis.len();
-    let energy: Vec<Vec<f64>> = (0..count).map(|i| (0..count).map(|j| energy.at(i, j)).collect()).collect();
-    let linear = [|_| 1.0, |[x, _]: [f64; 2]| x, |[_, y]: [f64; 2]| y]
-        .map(|f: fn([f64; 2]) -> f64| (0..count).map(|function| f(basis.greville(function))).collect());
-    let known = |lambda| in_space_of_observations(&all, &rows, &energy, &linear, lambda);
+    let known = |lambda| known_score(&basis, &all, &energy, lambda);
     let (first, at_first) = (choice.trials[0], known(choice.trials[0].lambda));
     assert!(choice.trials.len() > 3, "{choice:?}");
     for trial in &choice.trials {
@@ -100,4 +106,98 @@ fn scores_are_likelihoods_of_observations() {
     let others = (-30..60).map(|tenth| equations.default_lambda() * 10f64.powf(f64::from(tenth) / 10.0));
     let least = others.map(known).fold(f64::INFINITY, f64::min);
     assert!(best < least + 0.05, "{best}, {least}: {choice:?}");
+}
+
+#[test]
+fn tensions_are_compared_by_likelihoods_of_observations() {
+    // Steps are likelier for membranes, and waves for plates.
+    let basis = pulled_apart(&grid(4, 0.2));
+    let steps = scattered(150, 8, |[x, y]| f64::from(u8::from(x > 0.4)) + f64::from(u8::from(x + y > 1.2)));
+    let waves = scattered(150, 8, |[x, y]| (3.0 * x).sin() + y * y);
+    for (all, is_tense) in [(steps, true), (waves, false)] {
+        let normal = NormalEquations::of(&basis, &all, ONE).expect("equations");
+        let bending = fitting::bending(&basis).expect("an energy");
+        let tried = [0.0, 1.0, 4.0].map(|tension| {
+            let found = fitting::choose_tension(&basis, &normal, bending.clone(), &[tension]);
+            let found = found.expect("a choice");
+            known_score(&basis, &all, &found.energy, found.choice.best.lambda)
+        });
+        for tensions in [[0.0, 1.0], [0.0, 4.0], [1.0, 4.0], [4.0, 1.0], [1.0, 0.0]] {
+            let place = |tension: f64| [0.0, 1.0, 4.0].iter().position(|&one| one == tension).unwrap();
+            let [first, second] = tensions.map(|tension| tried[place(tension)]);
+            let found = fitting::choose_tension(&basis, &normal, bending.clone(), &tensions);
+            let found = found.expect("a choice").tension;
+            assert_eq!(found, if second < first { tensions[1] } else { tensions[0] }, "{tried:?}");
+        }
+        assert_eq!(tried[1] < tried[0], is_tense, "{tried:?}");
+    }
+}
+
+#[test]
+fn scores_in_tension_are_likelihoods_of_observations() {
+    let basis = pulled_apart(&grid(3, 0.2));
+    let all = noisy(70);
+    let normal = NormalEquations::of(&basis, &all, ONE).expect("equations");
+    let bending = fitting::bending(&basis).expect("an energy");
+    let energy = fitting::with_tension(&basis, &normal, bending, 2.0).expect("an energy");
+    let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations").in_tension();
+    let choice = fitting::restricted_likelihood(&equations).expect("a choice");
+    let known = |lambda| known_score(&basis, &all, &energy, lambda);
+    let (first, at_first) = (choice.trials[0], known(choice.trials[0].lambda));
+    for trial in &choice.trials {
+        let found = (all.len() as f64 - 3.0) * (trial.score / first.score).ln();
+        let expected = known(trial.lambda) - at_first;
+        assert!((found - expected).abs() < 1e-6, "{trial:?}: {found}, {expected}");
+    }
+}
+
+#[test]
+fn splines_in_tension_are_those_of_dense_equations() {
+    // A plane in addition to the values adds itself to the spline.
+    let basis = pulled_apart(&grid(3, 0.2));
+    let mut all = noisy(70);
+    let solved = |all: &[Observation]| {
+        let normal = NormalEquations::of(&basis, all, ONE).expect("equations");
+        let bending = fitting::bending(&basis).expect("an energy");
+        let energy = fitting::with_tension(&basis, &normal, bending, 3.0).expect("an energy");
+        let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations").in_tension();
+        (equations.solve(0.5).expect("a spline"), normal, energy)
+    };
+    let (before, normal, energy) = solved(&all);
+    // The least over all planes x of the residuals and the energy of the spline less x: its unknowns are
+    // coefficients and two slopes.
+    let count = basis.len();
+    let slopes = [0, 1].map(|axis| (0..count).map(|at| basis.greville(at)[axis]).collect::<Vec<f64>>());
+    let products = slopes.each_ref().map(|slope| energy.times(slope));
+    let mut rows: Vec<Vec<f64>> = (0..count)
+        .map(|i| {
+            let own = (0..count).map(|j| normal.matrix.at(i, j) + 0.5 * energy.at(i, j));
+            own.chain(products.iter().map(|product| -0.5 * product[i])).collect()
+        })
+        .collect();
+    for (slope, product) in slopes.iter().zip(&products) {
+        let of_slopes = products.iter().map(|other| 0.5 * dot(slope, other));
+        rows.push(product.iter().map(|entry| -0.5 * entry).chain(of_slopes).collect());
+    }
+    let known = solve_dense(rows, normal.right.iter().copied().chain([0.0; 2]).collect());
+    for (found, expected) in before.iter().zip(&known) {
+        assert!((found - expected).abs() < 1e-8, "{found}, {expected}");
+    }
+    all.iter_mut().for_each(|one| one.value += 40.0 - 70.0 * one.point[0] + 20.0 * one.point[1]);
+    let (after, ..) = solved(&all);
+    for (function, (before, after)) in before.iter().zip(&after).enumerate() {
+        let [x, y] = basis.greville(function);
+        assert!((after - before - 40.0 + 70.0 * x - 20.0 * y).abs() < 1e-8, "{function}");
+    }
+}
+
+#[test]
+fn tensions_out_of_range_are_refused() {
+    let basis = pulled_apart(&grid(3, 0.2));
+    let normal = NormalEquations::of(&basis, &noisy(70), ONE).expect("equations");
+    let bending = fitting::bending(&basis).expect("an energy");
+    for tensions in [&[][..], &[-1.0], &[f64::NAN], &[f64::INFINITY]] {
+        let found = fitting::choose_tension(&basis, &normal, bending.clone(), tensions);
+        assert!(found.is_err_and(|error| error.to_string().contains("tension")), "{tensions:?}");
+    }
 }

@@ -9,6 +9,7 @@ mod failures;
 mod figure;
 mod interpolation;
 mod likelihood;
+mod membranes;
 mod normal_equations;
 mod random_knots;
 mod refinement;

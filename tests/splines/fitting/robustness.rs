@@ -1,10 +1,13 @@
 //! Fits that resist gross errors.
 
 use super::bases::{ONE, deviation, grid, pulled_apart, scattered};
+use spmesh_core::error::Result;
 use spmesh_reference::sets::Random;
 use spmesh_splines::fitting::{
-    Loss, Method, NormalEquations, Observation, bending, choose_robustly, least_squares, robust,
+    Loss, Method, NormalEquations, Observation, ObservationReader, Observations, bending, choose_robustly,
+    least_squares, robust, robust_on,
 };
+use std::cell::Cell;
 use std::num::NonZeroUsize;
 
 fn plane([x, y]: [f64; 2]) -> f64 {
@@ -133,4 +136,82 @@ fn trials_that_all_fail_are_an_error() {
     let choice = choose_robustly(&normal, &basis, &all, &energy, Method::Likelihood, ONE);
     let error = choice.expect_err("nothing is left to choose").to_string();
     assert!(error.contains("no more observations than effective coefficients"), "{error}");
+}
+
+/// About normally distributed noise.
+fn noise(random: &mut Random) -> f64 {
+    (0..12).map(|_| random.unit()).sum::<f64>() - 6.0
+}
+
+#[test]
+fn edges_are_no_gross_errors() {
+    // A ditch narrower than the cells of knots, and gross errors: the ditch is kept.
+    let basis = pulled_apart(&grid(12, 0.2));
+    let energy = bending(&basis).expect("an energy");
+    let is_ditch = |[x, _]: [f64; 2]| (x - 0.52).abs() < 0.03;
+    let mut all = scattered(6_000, 17, |x| if is_ditch(x) { -1.0 } else { 0.0 });
+    let mut random = Random::new(5);
+    for (i, one) in all.iter_mut().enumerate() {
+        one.value += 0.02 * noise(&mut random) + if i % 20 == 3 { 5.0 + 20.0 * random.unit() } else { 0.0 };
+    }
+    let normal = NormalEquations::of(&basis, &all, ONE).expect("equations");
+    let lambda = normal.default_lambda(&basis);
+    let fit = robust(&basis, &all, Loss::Tukey, Some(&energy), lambda, ONE).expect("a fit");
+    let (mut ditch, mut gross, mut other) = (0, 0, 0);
+    fit.rejected(&basis, &all, ONE, |one| match one.index % 20 {
+        3 => gross += 1,
+        _ if is_ditch(one.point) => ditch += 1,
+        _ => other += 1,
+    })
+    .expect("residuals");
+    let count = all.iter().filter(|one| is_ditch(one.point)).count();
+    println!("{ditch} of {count} in the ditch, {other} others, {gross} gross errors are rejected");
+    assert!(gross >= 295 && ditch < count / 10 && other < 60, "{ditch} of {count}, {gross}, {other}");
+}
+
+#[test]
+fn the_scale_is_that_of_errors_where_the_spline_follows_them() {
+    // Half as many functions as observations.
+    let basis = pulled_apart(&grid(20, 0.2));
+    let energy = bending(&basis).expect("an energy");
+    let mut all = scattered(2 * basis.len(), 8, |[x, y]| (9.0 * x).sin() * (11.0 * y).cos());
+    let mut random = Random::new(6);
+    all.iter_mut().for_each(|one| one.value += 0.05 * noise(&mut random));
+    let normal = NormalEquations::of(&basis, &all, ONE).expect("equations");
+    let (choice, start) =
+        choose_robustly(&normal, &basis, &all, &energy, Method::Likelihood, ONE).expect("a choice");
+    let lambda = choice.best.lambda;
+    let fit = robust_on(start, &basis, &all, Loss::Huber, Some(&energy), lambda, ONE).expect("a fit");
+    assert!((0.044..0.056).contains(&fit.scale), "{}", fit.scale);
+}
+
+/// Observations that count passes.
+struct Counted {
+    all: Vec<Observation>,
+    passes: Cell<usize>,
+}
+
+impl Observations for Counted {
+    fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
+        self.passes.set(self.passes.get() + 1);
+        self.all.read()
+    }
+}
+
+#[test]
+fn a_choice_takes_few_rounds() {
+    let basis = pulled_apart(&grid(10, 0.2));
+    let energy = bending(&basis).expect("an energy");
+    let counted = Counted { all: with_outliers(3_000, 0.3), passes: Cell::new(0) };
+    let normal = NormalEquations::of(&basis, &counted, ONE).expect("equations");
+    let (choice, start) =
+        choose_robustly(&normal, &basis, &counted, &energy, Method::Likelihood, ONE).expect("a choice");
+    let of_choice = counted.passes.replace(0);
+    assert!(of_choice <= 20, "{of_choice} passes");
+    // The fit continues from the choice.
+    let lambda = choice.best.lambda;
+    let fit = robust_on(start, &basis, &counted, Loss::Tukey, Some(&energy), lambda, ONE).expect("a fit");
+    let of_fit = counted.passes.get();
+    assert!(fit.has_converged && of_fit <= 12, "{of_fit} passes");
+    assert!(deviation(&basis, &fit.coefficients, 31, plane) < 0.1);
 }
