@@ -57,13 +57,13 @@ impl Case {
         let mesh = triangulate(&places[..self.first]).unwrap();
         let triangles: Vec<[u32; 3]> = mesh.simplices().collect();
         let mut region = Region::new(&places, &triangles);
-        for number in self.first..places.len() {
+        for (number, &place) in places.iter().enumerate().skip(self.first) {
             let holds = |triangle: &[u32; 3]| {
                 let corners = triangle.map(|v| self.points[v as usize]);
                 (0..3).all(|i| turn(corners[i], corners[(i + 1) % 3], self.points[number]) >= 0)
             };
             if let Some(triangle) = triangles.iter().position(holds) {
-                region.insert(number as u32, places[number], triangle as u32, &mut predicates);
+                region.insert(number as u32, place, triangle as u32, &mut predicates);
             }
         }
         for (segment, &ends) in (0..).zip(&self.segments) {

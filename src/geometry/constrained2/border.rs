@@ -10,9 +10,9 @@ pub(super) fn mesh_of(points: &[Point2], triangles: &[[u32; 3]]) -> Mesh {
     let unknown = |_: &[u32; 3]| [NONE; 3];
     let mut mesh = Mesh { origins: triangles.iter().map(unknown).collect(), ..Mesh::default() };
     for (number, corners) in (0..).zip(triangles) {
-        for place in 0..3 {
+        for (place, &point) in corners.iter().enumerate() {
             if mesh.origins[number as usize][place] == NONE {
-                let (vertex, point) = (mesh.vertices.len() as u32, corners[place]);
+                let vertex = mesh.vertices.len() as u32;
                 mesh.vertices.push(Vertex { place: points[point as usize], point, triangle: number });
                 mesh.points.push([point, vertex]);
                 name_fan(&mut mesh.origins, triangles, &neighbours, [number, place as u32], vertex);

@@ -60,10 +60,9 @@ impl CellBox {
     }
 
     pub(super) fn extend(&mut self, place: Point2) {
-        for axis in 0..2 {
-            self.min[axis] = self.min[axis].min(place[axis]);
-            self.max[axis] = self.max[axis].max(place[axis]);
-        }
+        let [[left, bottom], [right, top]] = [self.min, self.max];
+        self.min = [left.min(place[0]), bottom.min(place[1])];
+        self.max = [right.max(place[0]), top.max(place[1])];
     }
 }
 

@@ -172,7 +172,7 @@ impl<W: Write> Writing<W> {
     }
 
     /// Writes vertices, then triangles, and finalizes vertices, in as many patches as it takes.
-    fn write(&mut self, mut new: &[Point], triangles: &[Triangle], finalized: &mut Vec<u64>) -> Result<()> {
+    fn write(&mut self, mut new: &[Point], triangles: &[Triangle], finalized: &mut [u64]) -> Result<()> {
         while new.len() > PATCH_MAX {
             let (part, rest) = new.split_at(PATCH_MAX);
             self.write_patch(part, &[], &[])?;
@@ -233,7 +233,7 @@ impl<W: Write> Writing<W> {
                     triangles.push(Triangle { vertices: triangle.ids, segments, places: [[0.0; 2]; 3] });
                 }
                 if triangles.len() == PATCH_MAX {
-                    self.write(&[], &triangles, &mut Vec::new())?;
+                    self.write(&[], &triangles, &mut [])?;
                     triangles.clear();
                 }
             }
