@@ -30,7 +30,7 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-fn tools() -> [Command; 13] {
+fn tools() -> [Command; 14] {
     [
         spfinalize::Flags::command(),
         spdelaunay2d::Flags::command(),
