@@ -1,6 +1,7 @@
 //! Integration tests: one crate, one module per subject.
 
 mod allocation;
+mod areas;
 mod attributes;
 mod audit;
 mod canopy;

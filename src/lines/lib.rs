@@ -7,6 +7,7 @@
 mod areas;
 mod changes;
 mod grid;
+mod polygons;
 mod prepare;
 mod systems;
 
@@ -22,6 +23,7 @@ use spmesh_stream::{Coordinates, Crs, Header};
 pub use areas::{Areas, Sources};
 pub use changes::{Change, ChangeKind, Changes};
 use grid::Grid;
+pub use polygons::read_polygons;
 
 /// The stream that lines are for.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,6 +8,7 @@ mod shapefile;
 mod text;
 #[cfg(feature = "geopackage")]
 mod wkb;
+mod wkt;
 
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -62,10 +63,18 @@ pub struct Breaklines {
 /// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a
 /// coordinate is not finite, or there are more than `LINE_VERTICES_MAX` vertices.
 pub fn read_breaklines(path: &Path) -> Result<Breaklines> {
-    read(path).map_err(|error| error.of_input(name_of(path)))
+    read(path, false).map_err(|error| error.of_input(name_of(path)))
 }
 
-fn read(path: &Path) -> Result<Breaklines> {
+/// Reads the polygons of a file as [`read_breaklines`], also from WKT, of which third coordinates are ignored.
+///
+/// # Errors
+/// As there. Lines that are no rings are no error.
+pub fn read_polygons(path: &Path) -> Result<Breaklines> {
+    read(path, true).map_err(|error| error.of_input(name_of(path)))
+}
+
+fn read(path: &Path, takes_wkt: bool) -> Result<Breaklines> {
     let is_stdin = path.as_os_str() == "-";
     let input: Box<dyn Read> = if is_stdin { Box::new(open_stdin()?) } else { Box::new(open_file(path)?.0) };
     let mut input = Plain::new(input).map_err(|e| Error::io("reading", e))?;
@@ -79,6 +88,9 @@ fn read(path: &Path) -> Result<Breaklines> {
         return Err(not_in_pipe("Shapefile"));
     }
     let is_json = is_json(&head);
+    if takes_wkt && wkt::is_wkt(&head) {
+        return wkt::read(head, input);
+    }
     if !is_json && !is_shapefile {
         check_text(&head)?;
     }
