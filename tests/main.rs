@@ -39,3 +39,4 @@ mod system;
 mod tess3;
 mod vectors;
 mod view;
+mod water;

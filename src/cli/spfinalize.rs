@@ -2,6 +2,7 @@
 
 mod areas;
 mod figures;
+mod water;
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -30,8 +31,10 @@ use spmesh_io::detect::SPFINALIZE;
 use spmesh_io::source::{
     AttributeChoice, Description, DropReason, Dropped, Input, InvalidAdvice, RawType, SourceOptions,
 };
-use spmesh_lines::{Changes, Target};
+use spmesh_lines::{Changes, Levels, Target, Water};
 use spmesh_model::bounds::Point;
+use spmesh_model::network::Network;
+use water::WaterFlags;
 
 const TOOL: &str = "spfinalize";
 
@@ -63,6 +66,8 @@ Examples:
       spfinalize --keep-class 2 --lines roads.gpkg tile.laz | spdelaunay2d -o ground.spm
   The points of a district, without those inside of buildings:
       spfinalize --clip district.shp --drop-inside buildings.gpkg tiles/*.laz -o district.spm
+  Flat lakes and rivers that fall; the same file makes their shores edges of the mesh:
+      spfinalize --flatten water.gpkg tile.laz | spdelaunay2d | spconstrain --lines water.gpkg -o flat.spm
   Points for another machine, at a quarter of the bytes:
       spfinalize --compress tile.laz | ssh host spdelaunay2d -o tile.spm
   Particles as floats without a header, the files of two processes as one input:
@@ -179,6 +184,9 @@ pub struct Flags {
 
     #[command(flatten)]
     lines: LineFlags,
+
+    #[command(flatten)]
+    water: WaterFlags,
 }
 
 /// When decoded points are kept for later passes.
@@ -211,11 +219,16 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     let target = target_of(&input);
     let (areas, messages) = flags.areas.read(&target)?;
-    let (added, changes) = flags.added(&target)?;
+    let (network, water, changes) = flags.network(&target)?;
     for message in messages.iter().chain(&changes.notices) {
         notice(TOOL, &flags.common, message);
     }
     let mut watch = Watch { common: &flags.common, progress: None };
+    let (areas, levels) = flags.water.levels((&network, &water), (&input, areas), &target, &mut watch)?;
+    for message in &levels.notices {
+        watch.notice(message);
+    }
+    let added = flags.added(&network, &levels, &target);
     let selected = Selected::new(&input, &areas);
     // Without polygons, no point takes a way round.
     let points: &dyn Passes = if areas.keep_all() { &input } else { &selected };
@@ -227,7 +240,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         notice(TOOL, &flags.common, &message);
     }
     let lines = LineStats {
-        has_lines: !flags.lines.files.is_empty(),
+        has_lines: !network.vertices.is_empty(),
+        water: flags.water.counts(&water, &levels),
         points: added.len(),
         replaced: added.replaced(),
         changes: &changes,
@@ -279,20 +293,25 @@ impl Flags {
         })
     }
 
-    /// The vertices of lines that become points, and what was changed about lines.
-    fn added(&self, target: &Target) -> anyhow::Result<(AddedPoints, Changes)> {
-        if self.octree && !self.lines.files.is_empty() {
-            anyhow::bail!(Error::usage("--lines needs points of the plane: leave out --octree"));
+    /// Lines and water, and what was changed about them.
+    fn network(&self, target: &Target) -> anyhow::Result<(Network, Water, Changes)> {
+        let of_plane = [("--lines", &self.lines.files[..]), ("--flatten", self.water.files())];
+        if let Some((flag, _)) = of_plane.iter().find(|(_, files)| self.octree && !files.is_empty()) {
+            anyhow::bail!(Error::usage(format!("{flag} needs points of the plane: leave out --octree")));
         }
-        let Some((network, changes)) = self.lines.read(target)? else { return Ok(Default::default()) };
+        Ok(self.lines.read(self.water.files(), target)?.unwrap_or_default())
+    }
+
+    /// The vertices of lines and water that become points.
+    fn added(&self, network: &Network, levels: &Levels, target: &Target) -> AddedPoints {
         let is_kept = |&point: &Point| {
             self.points.bounds.is_none_or(|bounds| bounds.contains(target.coordinates.to_decimal(point)))
         };
-        let points = network.vertices.iter().filter_map(|vertex| {
+        let points = (0..).zip(&network.vertices).filter_map(|(number, vertex)| {
             let [x, y] = vertex.place;
-            Some([x, y, vertex.z?])
+            Some([x, y, levels.elevations.get(&number).copied().or(vertex.z)?])
         });
-        Ok((AddedPoints::new(points.filter(is_kept).collect()), changes))
+        AddedPoints::new(points.filter(is_kept).collect())
     }
 
     fn threads(&self) -> usize {
@@ -342,7 +361,7 @@ impl Flags {
 
     /// Files beside those of points.
     fn beside(&self) -> impl Iterator<Item = &PathBuf> {
-        self.lines.files.iter().chain(self.areas.files())
+        self.lines.files.iter().chain(self.areas.files()).chain(self.water.files())
     }
 }
 

@@ -9,13 +9,15 @@ use spmesh_lines::{ChangeKind, Changes};
 pub(super) struct Drops {
     /// By the filters of the input.
     pub(super) filters: Dropped,
-    /// Outside of polygons to keep, and inside of those to drop.
-    pub(super) areas: [u64; 2],
+    /// Outside of polygons to keep, inside of those to drop, and in water.
+    pub(super) areas: [u64; 3],
 }
 
 /// Figures about lines.
 pub(super) struct LineStats<'a> {
     pub(super) has_lines: bool,
+    /// Lakes, rivers, and levels that were found from points; `None` without water.
+    pub(super) water: Option<[u64; 3]>,
     pub(super) points: usize,
     pub(super) replaced: u64,
     pub(super) changes: &'a Changes,
@@ -27,7 +29,14 @@ impl LineStats<'_> {
         let changes =
             ChangeKind::ALL.iter().map(|&kind| (kind.name().replace('_', " "), self.changes.count(kind)));
         let changes = changes.map(|(name, count)| (format!("lines: {name}"), count));
-        let points = [("points of lines", self.points as u64), ("points replaced by lines", self.replaced)];
+        let [lakes, rivers, levels] = self.water.unwrap_or_default();
+        let points = [
+            ("points of lines", self.points as u64),
+            ("points replaced by lines", self.replaced),
+            ("lakes", lakes),
+            ("rivers", rivers),
+            ("levels found from points", levels),
+        ];
         let rows = points.map(|(name, count)| (name.to_string(), count)).into_iter().chain(changes);
         rows.filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name:<32}{count}\n")).collect()
     }
@@ -42,6 +51,9 @@ impl LineStats<'_> {
         let changes: serde_json::Map<_, _> = changes.collect();
         stats["lines"] =
             serde_json::json!({"points": self.points, "replaced": self.replaced, "changes": changes});
+        if let Some([lakes, rivers, found]) = self.water {
+            stats["water"] = serde_json::json!({"lakes": lakes, "rivers": rivers, "levels_found": found});
+        }
         stats
     }
 }
@@ -49,8 +61,8 @@ impl LineStats<'_> {
 /// Numbers of dropped points by reason, in the order in which filters are applied.
 fn drops<'a>(stats: &Stats, dropped: &'a Drops) -> impl Iterator<Item = (&'static str, u64)> + use<'a> {
     let filters = DropReason::ALL.into_iter().map(|reason| (reason.name(), dropped.filters.of(reason)));
-    let [clip, inside] = dropped.areas;
-    filters.chain([("clip", clip), ("drop_inside", inside), ("thin", stats.thinned)])
+    let [clip, inside, water] = dropped.areas;
+    filters.chain([("clip", clip), ("drop_inside", inside), ("flatten", water), ("thin", stats.thinned)])
 }
 
 pub(super) fn stats_text(stats: &Stats, dropped: &Drops) -> String {

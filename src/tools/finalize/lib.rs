@@ -10,7 +10,7 @@
 //!
 //! If points are to be thinned, a pass before these finds which ones are kept (`thin`).
 //!
-//! Polygons may say which points count (`select`).
+//! Polygons may say which points count (`select`), and the points near shores tell the levels of water (`shores`).
 //!
 //! Points may be added to those of the input, such as the vertices of lines (`added`).
 //!
@@ -34,6 +34,7 @@ mod plan;
 mod read_ahead;
 mod run;
 mod select;
+mod shores;
 mod spill;
 mod spool;
 mod stats;
@@ -46,6 +47,7 @@ pub use options::{CELL_POINTS, Leaves, Options, Order};
 pub use passes::{Observer, Pass, Passes};
 pub use run::{run, run_with};
 pub use select::{Areas, Selected};
+pub use shores::{Shores, shore_width};
 pub use spool::Spooling;
 pub use stats::Stats;
 pub use thin::{Thin, ThinBy};

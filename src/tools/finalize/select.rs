@@ -16,6 +16,7 @@ use spmesh_model::points::Point2;
 pub struct Areas {
     clip: Option<(Polygons, Option<[Point2; 2]>)>,
     drop: Option<Polygons>,
+    water: Option<Polygons>,
 }
 
 impl Areas {
@@ -26,17 +27,28 @@ impl Areas {
         Areas {
             clip: clip.map(|polygons| (Polygons::new(polygons), extent(polygons))),
             drop: (!drop.is_empty()).then(|| Polygons::new(drop)),
+            water: None,
         }
+    }
+
+    /// Drops points in water, too, and those on its shores: the edges of its polygons with their numbers.
+    #[must_use]
+    pub fn with_water(self, edges: impl Iterator<Item = (u32, [Point2; 2])>) -> Areas {
+        Areas { water: Some(Polygons::of_edges(edges)), ..self }
     }
 
     /// Whether all points are kept.
     #[must_use]
     pub fn keep_all(&self) -> bool {
-        self.clip.is_none() && self.drop.is_none()
+        self.clip.is_none() && self.drop.is_none() && self.water.is_none()
     }
 
     fn clips(&self, place: Point2) -> bool {
         self.clip.as_ref().is_some_and(|(clip, _)| clip.side(place) == Side::Outside)
+    }
+
+    fn floods(&self, place: Point2) -> bool {
+        self.water.as_ref().is_some_and(|water| water.side(place) != Side::Outside)
     }
 
     fn drops(&self, place: Point2) -> bool {
@@ -58,8 +70,7 @@ pub struct Selected<'a, P: Passes + ?Sized> {
     input: &'a P,
     areas: &'a Areas,
     description: Description,
-    clipped: AtomicU64,
-    dropped: AtomicU64,
+    counts: [AtomicU64; 3],
 }
 
 impl<'a, P: Passes + ?Sized> Selected<'a, P> {
@@ -70,13 +81,13 @@ impl<'a, P: Passes + ?Sized> Selected<'a, P> {
         if let Some((_, extent)) = &areas.clip {
             description.stated_bounds = description.stated_bounds.and_then(|stated| within(stated, *extent));
         }
-        Selected { input, areas, description, clipped: AtomicU64::new(0), dropped: AtomicU64::new(0) }
+        Selected { input, areas, description, counts: Default::default() }
     }
 
-    /// After a run: points outside of the polygons to keep, and inside of those to drop.
+    /// After a run: points outside of the polygons to keep, inside of those to drop, and in water.
     #[must_use]
-    pub fn dropped(&self) -> [u64; 2] {
-        [&self.clipped, &self.dropped].map(|count| count.load(Ordering::Relaxed))
+    pub fn dropped(&self) -> [u64; 3] {
+        self.counts.each_ref().map(|count| count.load(Ordering::Relaxed))
     }
 }
 
@@ -99,8 +110,8 @@ impl<P: Passes + ?Sized> Passes for Selected<'_, P> {
         Ok(Box::new(SelectedReader {
             reader: self.input.read()?,
             areas: self.areas,
-            counts: [&self.clipped, &self.dropped],
-            dropped: [0; 2],
+            counts: &self.counts,
+            dropped: [0; 3],
             row_len: self.description.attributes.row_len(),
             rows: Vec::new(),
         }))
@@ -120,8 +131,8 @@ struct SelectedReader<'a> {
     reader: Box<dyn PointReader + 'a>,
     areas: &'a Areas,
     /// For the counts of a whole pass.
-    counts: [&'a AtomicU64; 2],
-    dropped: [u64; 2],
+    counts: &'a [AtomicU64; 3],
+    dropped: [u64; 3],
     row_len: usize,
     rows: Vec<u8>,
 }
@@ -132,12 +143,10 @@ impl SelectedReader<'_> {
         let (row_len, mut kept) = (self.row_len, 0);
         for index in 0..batch.len() {
             let [x, y, _] = batch[index];
-            if self.areas.clips([x, y]) {
-                self.dropped[0] += 1;
-                continue;
-            }
-            if self.areas.drops([x, y]) {
-                self.dropped[1] += 1;
+            let place = [x, y];
+            let tests = [Areas::clips, Areas::drops, Areas::floods];
+            if let Some(reason) = tests.iter().position(|test| test(self.areas, place)) {
+                self.dropped[reason] += 1;
                 continue;
             }
             batch[kept] = batch[index];

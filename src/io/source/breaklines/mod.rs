@@ -1,6 +1,7 @@
 //! Lines that become edges of a mesh: text, GeoJSON, Shapefiles and GeoPackages, each recognized by its content.
 
 mod collect;
+mod dbase;
 mod geojson;
 #[cfg(feature = "geopackage")]
 mod geopackage;
@@ -38,8 +39,30 @@ pub struct Breakline {
     pub elevations: Vec<Option<f64>>,
     /// Number of the polygon in the file that it is a ring of.
     pub polygon: Option<u32>,
+    /// Those of its feature.
+    pub properties: Properties,
     /// Position in the file, for messages.
     pub position: String,
+}
+
+/// What a feature says about water, as text.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Properties {
+    /// Elevation of a lake.
+    pub level: Option<String>,
+    /// Name that a river has in common with its centre line.
+    pub river: Option<String>,
+}
+
+impl Properties {
+    /// The property of this name, in any case; `None` if it has no meaning here.
+    fn of_name(&mut self, name: &str) -> Option<&mut Option<String>> {
+        match name {
+            _ if name.eq_ignore_ascii_case("level") => Some(&mut self.level),
+            _ if name.eq_ignore_ascii_case("river") => Some(&mut self.river),
+            _ => None,
+        }
+    }
 }
 
 /// The lines of a file.

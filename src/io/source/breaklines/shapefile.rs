@@ -1,4 +1,5 @@
-//! Shapefiles: the main file (`.shp`) has the geometry, the file beside it (`.prj`) the system.
+//! Shapefiles: the main file (`.shp`) has the geometry, files beside it have the
+//! system (`.prj`) and the attributes (`.dbf`).
 //!
 //! Source: ESRI Shapefile Technical Description, 1998. Lengths in the file are not trusted: memory is taken for bytes
 //! that have arrived.
@@ -7,6 +8,7 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use super::collect::Shape;
+use super::dbase::Table;
 use super::{Breaklines, Collector};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CRS_LEN_MAX;
@@ -58,9 +60,13 @@ pub(super) fn read(mut input: impl Read, path: &Path) -> Result<Breaklines> {
     kind(i32_le(&header[32..]))?;
     let mut lines = Collector::default();
     let mut content = Vec::new();
+    let mut table = Table::beside(path)?;
     for number in 1u64.. {
         if !next_record(&mut input, &mut content).map_err(|e| e.at(format!("record {number}")))? {
             break;
+        }
+        if let Some(table) = &mut table {
+            lines.feature(table.next()?);
         }
         record(&content, &mut lines, number).map_err(|e| e.at(format!("record {number}")))?;
     }
