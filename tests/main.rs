@@ -1,6 +1,7 @@
 //! Integration tests: one crate, one module per subject.
 
 mod allocation;
+mod areas;
 mod attributes;
 mod audit;
 mod canopy;
@@ -39,3 +40,4 @@ mod system;
 mod tess3;
 mod vectors;
 mod view;
+mod water;

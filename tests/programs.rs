@@ -14,6 +14,7 @@ pub fn tool(name: &str) -> Command {
     let path = match name {
         "spfinalize" => env!("CARGO_BIN_EXE_spfinalize"),
         "spdelaunay2d" => env!("CARGO_BIN_EXE_spdelaunay2d"),
+        "spconstrain" => env!("CARGO_BIN_EXE_spconstrain"),
         "splinefit" => env!("CARGO_BIN_EXE_splinefit"),
         "spdelaunay3d" => env!("CARGO_BIN_EXE_spdelaunay3d"),
         "spdem" => env!("CARGO_BIN_EXE_spdem"),

@@ -7,7 +7,7 @@ use clap::Args;
 use super::parse_numbers;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
-use spmesh_lines::{Areas, ChangeKind, Changes, Options, Sources, Target};
+use spmesh_lines::{Areas, ChangeKind, Changes, Options, Sources, Target, Water};
 use spmesh_model::network::Network;
 
 /// Lines that are read along with points or a mesh.
@@ -49,16 +49,21 @@ impl LineFlags {
         }
     }
 
-    /// Reads the lines as a network on the grid of `target`; `None` without lines.
+    /// Reads lines and water as a network on the grid of `target`; `None` without them.
     ///
     /// # Errors
-    /// As [`spmesh_lines::read`].
-    pub(super) fn read(&self, target: &Target) -> Result<Option<(Network, Changes)>> {
-        if self.files.is_empty() {
+    /// As [`spmesh_lines::read_with_water`].
+    pub(super) fn read(
+        &self,
+        water: &[PathBuf],
+        target: &Target,
+    ) -> Result<Option<(Network, Water, Changes)>> {
+        if self.files.is_empty() && water.is_empty() {
             return Ok(None);
         }
         let options = Options { densify: self.densify, lists_changes: self.report.is_some() };
-        spmesh_lines::read(&self.files, target, &options).map(Some)
+        let sources = Sources { lines: &self.files, water, ..Sources::default() };
+        spmesh_lines::read_with_water(&sources, target, &options).map(Some)
     }
 
     /// Reads lines, and polygons to cut the mesh with.
@@ -72,7 +77,11 @@ impl LineFlags {
         target: &Target,
     ) -> Result<(Network, Areas, Changes)> {
         let options = Options { densify: self.densify, lists_changes: self.report.is_some() };
-        spmesh_lines::read_with_areas(&Sources { lines: &self.files, hull, holes }, target, &options)
+        spmesh_lines::read_with_areas(
+            &Sources { lines: &self.files, hull, holes, water: &[] },
+            target,
+            &options,
+        )
     }
 
     /// Creates the file for the report, if one is asked for.

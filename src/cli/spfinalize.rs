@@ -1,5 +1,9 @@
 //! `spfinalize`: flags.
 
+mod areas;
+mod figures;
+mod water;
+
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
@@ -11,22 +15,26 @@ use super::lines::{LineFlags, summary, write_report};
 use super::point_filters::PointFilters;
 use super::progress::Progress;
 use super::text_flags::TextFlags;
-use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory, read_list};
+use super::{Common, StatsFormat, notice, parse_numbers, parse_size, read_list};
 use crate::endings;
+use areas::AreaFlags;
+use figures::{Drops, LineStats, stats_json, stats_text};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_finalize::{
-    AddedPoints, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats,
+    AddedPoints, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Passes, Selected, Spooling,
 };
 use spmesh_io::detect::SPFINALIZE;
 use spmesh_io::source::{
     AttributeChoice, Description, DropReason, Dropped, Input, InvalidAdvice, RawType, SourceOptions,
 };
-use spmesh_lines::{ChangeKind, Changes, Target};
+use spmesh_lines::{Changes, Levels, Target, Water};
 use spmesh_model::bounds::Point;
+use spmesh_model::network::Network;
+use water::WaterFlags;
 
 const TOOL: &str = "spfinalize";
 
@@ -56,6 +64,10 @@ Examples:
       spfinalize --octree scan.xyz.gz | spdelaunay3d -o scan.spm
   Points and roads, whose vertices with elevations become points:
       spfinalize --keep-class 2 --lines roads.gpkg tile.laz | spdelaunay2d -o ground.spm
+  The points of a district, without those inside of buildings:
+      spfinalize --clip district.shp --drop-inside buildings.gpkg tiles/*.laz -o district.spm
+  Flat lakes and rivers that fall; the same file makes their shores edges of the mesh:
+      spfinalize --flatten water.gpkg tile.laz | spdelaunay2d | spconstrain --lines water.gpkg -o flat.spm
   Points for another machine, at a quarter of the bytes:
       spfinalize --compress tile.laz | ssh host spdelaunay2d -o tile.spm
   Particles as floats without a header, the files of two processes as one input:
@@ -165,10 +177,16 @@ pub struct Flags {
     points: PointFilters,
 
     #[command(flatten)]
+    areas: AreaFlags,
+
+    #[command(flatten)]
     text: TextFlags,
 
     #[command(flatten)]
     lines: LineFlags,
+
+    #[command(flatten)]
+    water: WaterFlags,
 }
 
 /// When decoded points are kept for later passes.
@@ -186,11 +204,11 @@ enum Spool {
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let options = flags.options()?;
-    flags.lines.check(false)?;
+    flags.lines.check(!flags.water.files().is_empty())?;
     // Fail before the work if the output cannot be created.
     let mut output = Output::create(&flags.output, true)?;
     let paths = flags.paths()?;
-    let inputs = paths.iter().chain(&flags.lof).chain(&flags.lines.files).map(PathBuf::as_path);
+    let inputs = paths.iter().chain(&flags.lof).chain(flags.beside()).map(PathBuf::as_path);
     let mut outputs = vec![("--output", flags.output.as_path())];
     outputs.extend(flags.lines.report.as_ref().map(|report| ("--report", report.as_path())));
     check_apart(inputs, &outputs)?;
@@ -200,12 +218,22 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     for message in input.notices() {
         notice(TOOL, &flags.common, message);
     }
-    let (added, changes) = flags.added(&input)?;
-    for message in &changes.notices {
+    let target = target_of(&input);
+    let (areas, messages) = flags.areas.read(&target)?;
+    let (network, water, changes) = flags.network(&target)?;
+    for message in messages.iter().chain(&changes.notices) {
         notice(TOOL, &flags.common, message);
     }
     let mut watch = Watch { common: &flags.common, progress: None };
-    let stats = spmesh_finalize::run_with(&input, &added, &options, &mut watch, &mut output)?;
+    let (areas, levels) = flags.water.levels((&network, &water), (&input, areas), &target, &mut watch)?;
+    for message in &levels.notices {
+        watch.notice(message);
+    }
+    let added = flags.added(&network, &levels, &target);
+    let selected = Selected::new(&input, &areas);
+    // Without polygons, no point takes a way round.
+    let points: &dyn Passes = if areas.keep_all() { &input } else { &selected };
+    let stats = spmesh_finalize::run_with(points, &added, &options, &mut watch, &mut output)?;
     drop(watch);
     output.commit()?;
     write_report(report, &changes)?;
@@ -213,13 +241,14 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         notice(TOOL, &flags.common, &message);
     }
     let lines = LineStats {
-        has_lines: !flags.lines.files.is_empty(),
+        has_lines: !network.vertices.is_empty(),
+        water: flags.water.counts(&water, &levels),
         points: added.len(),
         replaced: added.replaced(),
         changes: &changes,
     };
-    let dropped = input.dropped();
-    if let Some(message) = withheld_notice(&dropped) {
+    let dropped = Drops { filters: input.dropped(), areas: selected.dropped() };
+    if let Some(message) = withheld_notice(&dropped.filters) {
         notice(TOOL, &flags.common, &message);
     }
     if stats.points == 0 {
@@ -265,22 +294,25 @@ impl Flags {
         })
     }
 
-    /// The vertices of lines that become points, and what was changed about lines.
-    fn added(&self, input: &Input) -> anyhow::Result<(AddedPoints, Changes)> {
-        if self.octree && !self.lines.files.is_empty() {
-            anyhow::bail!(Error::usage("--lines needs points of the plane: leave out --octree"));
+    /// Lines and water, and what was changed about them.
+    fn network(&self, target: &Target) -> anyhow::Result<(Network, Water, Changes)> {
+        let of_plane = [("--lines", &self.lines.files[..]), ("--flatten", self.water.files())];
+        if let Some((flag, _)) = of_plane.iter().find(|(_, files)| self.octree && !files.is_empty()) {
+            anyhow::bail!(Error::usage(format!("{flag} needs points of the plane: leave out --octree")));
         }
-        let Description { coordinates, has_elevation, ref crs, .. } = *input.description();
-        let target = Target { coordinates, crs: crs.clone(), has_elevation };
-        let Some((network, changes)) = self.lines.read(&target)? else { return Ok(Default::default()) };
+        Ok(self.lines.read(self.water.files(), target)?.unwrap_or_default())
+    }
+
+    /// The vertices of lines and water that become points.
+    fn added(&self, network: &Network, levels: &Levels, target: &Target) -> AddedPoints {
         let is_kept = |&point: &Point| {
-            self.points.bounds.is_none_or(|bounds| bounds.contains(coordinates.to_decimal(point)))
+            self.points.bounds.is_none_or(|bounds| bounds.contains(target.coordinates.to_decimal(point)))
         };
-        let points = network.vertices.iter().filter_map(|vertex| {
+        let points = (0..).zip(&network.vertices).filter_map(|(number, vertex)| {
             let [x, y] = vertex.place;
-            Some([x, y, vertex.z?])
+            Some([x, y, levels.elevations.get(&number).copied().or(vertex.z)?])
         });
-        Ok((AddedPoints::new(points.filter(is_kept).collect()), changes))
+        AddedPoints::new(points.filter(is_kept).collect())
     }
 
     fn threads(&self) -> usize {
@@ -319,12 +351,18 @@ impl Flags {
         } else if paths.is_empty() {
             paths.push(PathBuf::from("-"));
         }
-        let lines = self.lines.files.iter().filter(|path| *path == stdin).count();
+        let beside = self.beside().filter(|path| *path == stdin).count();
         let others = paths.iter().chain(&self.lof).filter(|path| *path == stdin).count();
-        if lines > 1 || (lines == 1 && others > 0) {
-            anyhow::bail!(Error::usage("stdin (-) can be only one of points, lines and the list of files"));
+        if beside > 1 || (beside == 1 && others > 0) {
+            let message = "stdin (-) can be only one of points, lines, polygons and the list of files";
+            anyhow::bail!(Error::usage(message));
         }
         Ok(paths)
+    }
+
+    /// Files beside those of points.
+    fn beside(&self) -> impl Iterator<Item = &PathBuf> {
+        self.lines.files.iter().chain(self.areas.files()).chain(self.water.files())
     }
 }
 
@@ -352,96 +390,14 @@ impl Observer for Watch<'_> {
     }
 }
 
-/// Figures about lines.
-struct LineStats<'a> {
-    has_lines: bool,
-    points: usize,
-    replaced: u64,
-    changes: &'a Changes,
-}
-
-impl LineStats<'_> {
-    /// Rows of the report; empty without lines.
-    fn text(&self) -> String {
-        let changes =
-            ChangeKind::ALL.iter().map(|&kind| (kind.name().replace('_', " "), self.changes.count(kind)));
-        let changes = changes.map(|(name, count)| (format!("lines: {name}"), count));
-        let points = [("points of lines", self.points as u64), ("points replaced by lines", self.replaced)];
-        let rows = points.map(|(name, count)| (name.to_string(), count)).into_iter().chain(changes);
-        rows.filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name:<32}{count}\n")).collect()
-    }
-
-    /// Adds the figures to those of the run, if there are lines.
-    fn in_json(&self, mut stats: serde_json::Value) -> serde_json::Value {
-        if !self.has_lines {
-            return stats;
-        }
-        let changes =
-            ChangeKind::ALL.iter().map(|&kind| (kind.name().into(), self.changes.count(kind).into()));
-        let changes: serde_json::Map<_, _> = changes.collect();
-        stats["lines"] =
-            serde_json::json!({"points": self.points, "replaced": self.replaced, "changes": changes});
-        stats
-    }
+/// What lines and polygons are read for.
+fn target_of(input: &Input) -> Target {
+    let Description { coordinates, has_elevation, ref crs, .. } = *input.description();
+    Target { coordinates, crs: crs.clone(), has_elevation }
 }
 
 fn withheld_notice(dropped: &Dropped) -> Option<String> {
     let count = dropped.of(DropReason::Withheld);
     let points = if count == 1 { "point" } else { "points" };
     (count > 0).then(|| format!("{count} withheld {points} dropped; --keep-withheld keeps them"))
-}
-
-/// Numbers of dropped points by reason, in the order in which filters are applied.
-fn drops<'a>(stats: &Stats, dropped: &'a Dropped) -> impl Iterator<Item = (&'static str, u64)> + use<'a> {
-    let filters = DropReason::ALL.into_iter().map(|reason| (reason.name(), dropped.of(reason)));
-    filters.chain([("thin", stats.thinned)])
-}
-
-fn stats_text(stats: &Stats, dropped: &Dropped) -> String {
-    let mut rows: Vec<(String, String)> = Vec::new();
-    let mut row = |name: &str, value: String| rows.push((name.into(), value));
-    row("points", stats.points.to_string());
-    row("invalid points skipped", stats.invalid.to_string());
-    for (reason, count) in drops(stats, dropped).filter(|(_, count)| *count > 0) {
-        row(&format!("points dropped: {reason}"), count.to_string());
-    }
-    for (pass, time) in &stats.passes {
-        row(&format!("time of pass {pass}"), format!("{:.2} s", time.as_secs_f64()));
-    }
-    row("peak memory", format!("{:.1} MB", peak_memory() as f64 / 1e6));
-    row("most points buffered", stats.buffered_points_max.to_string());
-    row("most bytes buffered in memory", stats.buffered_bytes_max.to_string());
-    row("level", stats.level.to_string());
-    row("occupied cells", stats.occupied_cells.to_string());
-    row("empty cells", stats.empty_cells.to_string());
-    row("points per cell, average", format!("{:.0}", stats.cell_points_avg()));
-    row("points per cell, most", stats.cell_points_max.to_string());
-    row("points spilled", stats.spilled_points.to_string());
-    row("bytes spilled", stats.spilled_bytes.to_string());
-    row("points spooled", stats.spooled_points.to_string());
-    row("bytes spooled", stats.spooled_bytes.to_string());
-    rows.iter().map(|(name, value)| format!("{name:<32}{value}\n")).collect()
-}
-
-fn stats_json(stats: &Stats, dropped: &Dropped) -> serde_json::Value {
-    let passes: Vec<_> = stats
-        .passes
-        .iter()
-        .map(|(name, time)| serde_json::json!({"pass": name, "seconds": time.as_secs_f64()}))
-        .collect();
-    let dropped: serde_json::Map<_, _> =
-        drops(stats, dropped).map(|(reason, count)| (reason.into(), count.into())).collect();
-    serde_json::json!({
-        "points": stats.points,
-        "dropped": dropped,
-        "invalid_skipped": stats.invalid,
-        "passes": passes,
-        "peak_memory_bytes": peak_memory(),
-        "buffered": {"points_max": stats.buffered_points_max, "memory_bytes_max": stats.buffered_bytes_max},
-        "level": stats.level,
-        "cells": {"occupied": stats.occupied_cells, "empty": stats.empty_cells},
-        "points_per_cell": {"avg": stats.cell_points_avg(), "max": stats.cell_points_max},
-        "spilled": {"points": stats.spilled_points, "bytes": stats.spilled_bytes},
-        "spooled": {"points": stats.spooled_points, "bytes": stats.spooled_bytes},
-    })
 }

@@ -11,6 +11,7 @@ pub mod diagram4;
 mod location;
 pub mod noding;
 pub mod order;
+pub mod polygons;
 pub mod predicates;
 #[cfg(target_arch = "x86_64")]
 mod processor;

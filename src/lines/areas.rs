@@ -15,6 +15,8 @@ pub struct Sources<'p> {
     pub hull: &'p [PathBuf],
     /// Polygons inside of which it is removed.
     pub holes: &'p [PathBuf],
+    /// Lakes, rivers and their centre lines.
+    pub water: &'p [PathBuf],
 }
 
 /// What a file is for.
@@ -23,12 +25,14 @@ pub(crate) enum Role {
     Lines,
     Hull,
     Holes,
+    Water,
 }
 
 impl<'p> Sources<'p> {
     pub(crate) fn files(&self) -> impl Iterator<Item = (Role, &'p PathBuf)> {
         let of = |role, paths: &'p [PathBuf]| paths.iter().map(move |path| (role, path));
-        of(Role::Lines, self.lines).chain(of(Role::Hull, self.hull)).chain(of(Role::Holes, self.holes))
+        let areas = of(Role::Hull, self.hull).chain(of(Role::Holes, self.holes));
+        of(Role::Lines, self.lines).chain(areas).chain(of(Role::Water, self.water))
     }
 }
 
@@ -58,7 +62,7 @@ pub(crate) fn rings(files: &[(Role, String, Breaklines)]) -> Result<Vec<Ring>> {
     let (mut rings, mut line, mut polygons) = (Vec::new(), 0, 0);
     for (role, name, file) in files {
         for breakline in &file.lines {
-            if *role != Role::Lines {
+            if matches!(role, Role::Hull | Role::Holes) {
                 let Some(polygon) = breakline.polygon else {
                     let error = Error::malformed("found a line, expected polygons");
                     return Err(error.at(&breakline.position).of_input(name));
@@ -95,12 +99,15 @@ pub(crate) fn areas(rings: &[Ring], noded: &Noded, vertices: &[LineVertex], star
                 }
             }
         }
-        segments.sort_unstable();
-        // What the border has twice is no border.
-        let odd = segments.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1).map(|same| same[0]);
-        let polygon: Vec<u32> = odd.collect();
+        let polygon = odd(segments);
         let area = if same[0].role == Role::Hull { &mut areas.hull } else { &mut areas.holes };
         area.get_or_insert_default().push(polygon);
     }
     Ok(areas)
+}
+
+/// The segments that a border has an odd number of times: what it has twice is no border.
+pub(crate) fn odd(mut segments: Vec<u32>) -> Vec<u32> {
+    segments.sort_unstable();
+    segments.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1).map(|same| same[0]).collect()
 }

@@ -106,12 +106,19 @@ fn digits<'a>(lines: impl Iterator<Item = &'a Breakline>) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spmesh_io::source::Properties;
 
     #[test]
     fn the_digits_follow_the_greatest_coordinate() {
         let of = |most: f64| {
             let vertices = vec![[0.5, -most]];
-            let line = Breakline { vertices, elevations: vec![None], polygon: None, position: String::new() };
+            let line = Breakline {
+                vertices,
+                elevations: vec![None],
+                polygon: None,
+                properties: Properties::default(),
+                position: String::new(),
+            };
             digits([line].iter())
         };
         assert_eq!((of(1.0), of(4_100_000.0), of(0.0), of(1e20)), (12, 6, 12, -8));

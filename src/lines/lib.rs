@@ -7,8 +7,12 @@
 mod areas;
 mod changes;
 mod grid;
+mod levels;
+mod polygons;
 mod prepare;
+mod stations;
 mod systems;
+mod water;
 
 use std::path::PathBuf;
 
@@ -22,6 +26,9 @@ use spmesh_stream::{Coordinates, Crs, Header};
 pub use areas::{Areas, Sources};
 pub use changes::{Change, ChangeKind, Changes};
 use grid::Grid;
+pub use levels::Levels;
+pub use polygons::read_polygons;
+pub use water::{Water, WaterPolygon};
 
 /// The stream that lines are for.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +70,7 @@ pub struct Options {
 /// beyond the grid of the stream; malformed, if there are too many vertices or crossings.
 pub fn read(paths: &[PathBuf], target: &Target, options: &Options) -> Result<(Network, Changes)> {
     let sources = Sources { lines: paths, ..Sources::default() };
-    read_with_areas(&sources, target, options).map(|(network, _, changes)| (network, changes))
+    read_all(&sources, target, options).map(|(network, _, _, changes)| (network, changes))
 }
 
 /// Reads lines as [`read`], and the polygons of areas, whose rings are lines, too.
@@ -75,6 +82,27 @@ pub fn read_with_areas(
     target: &Target,
     options: &Options,
 ) -> Result<(Network, Areas, Changes)> {
+    read_all(sources, target, options).map(|(network, areas, _, changes)| (network, areas, changes))
+}
+
+/// Reads lines as [`read`], and lakes and rivers, whose shores and centre lines are lines, too.
+///
+/// # Errors
+/// As there; malformed, if a feature is neither a polygon nor the centre line of a river; usage, if there is water and
+/// points have no elevation.
+pub fn read_with_water(
+    sources: &Sources,
+    target: &Target,
+    options: &Options,
+) -> Result<(Network, Water, Changes)> {
+    read_all(sources, target, options).map(|(network, _, water, changes)| (network, water, changes))
+}
+
+fn read_all(
+    sources: &Sources,
+    target: &Target,
+    options: &Options,
+) -> Result<(Network, Areas, Water, Changes)> {
     if options.densify.is_some_and(|longest| !(longest > 0.0 && longest.is_finite())) {
         return Err(Error::usage("the longest part of a line must be a positive number"));
     }
@@ -91,6 +119,7 @@ pub fn read_with_areas(
     }
     let grid = Grid::of(target, files.iter().flat_map(|(_, _, file)| &file.lines));
     let rings = areas::rings(&files)?;
+    let features = water::features(&files, target)?;
     let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
     let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
     let noding = NodingOptions {
@@ -100,7 +129,8 @@ pub fn read_with_areas(
     let mut note = |change, line, place| changes.note(ChangeKind::of(change), line, || grid.world(place));
     let noded = node_lines(&vertices, &starts, &noding, &mut note)?;
     let areas = areas::areas(&rings, &noded, &vertices, &starts)?;
-    Ok((network(noded, &grid), areas, changes))
+    let water = water::water(&features, &noded, &vertices, &starts)?;
+    Ok((network(noded, &grid), areas, water, changes))
 }
 
 /// The vertices of all lines on the grid, and the number of the first one of each line.

@@ -116,10 +116,17 @@ fn divide(vertices: &[Vertex], longest: f64, number: u32, changes: &mut Changes)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spmesh_io::source::Properties;
 
     fn prepared(vertices: &[(Point2, Option<f64>)], densify: Option<f64>) -> (Vec<Vertex>, Changes) {
         let (vertices, elevations) = vertices.iter().copied().unzip();
-        let line = Breakline { vertices, elevations, polygon: None, position: String::new() };
+        let line = Breakline {
+            vertices,
+            elevations,
+            polygon: None,
+            properties: Properties::default(),
+            position: String::new(),
+        };
         let mut changes = Changes::new(false);
         (prepare(line, 0, densify, &mut changes).unwrap(), changes)
     }
@@ -164,6 +171,7 @@ mod tests {
                     vertices: vec![[0.0, 0.0], [1.0, 0.0]],
                     elevations: vec![None; 2],
                     polygon: None,
+                    properties: Properties::default(),
                     position: String::new()
                 },
                 0,

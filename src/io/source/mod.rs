@@ -79,7 +79,7 @@ mod vtk;
 mod wkt;
 mod words;
 
-pub use breaklines::{Breakline, Breaklines, read_breaklines};
+pub use breaklines::{Breakline, Breaklines, Properties, read_breaklines, read_polygons};
 pub use checked::Checked;
 pub use events::EventSource;
 pub use filters::{DropReason, Dropped, Filters, Interval};

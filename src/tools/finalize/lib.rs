@@ -10,6 +10,8 @@
 //!
 //! If points are to be thinned, a pass before these finds which ones are kept (`thin`).
 //!
+//! Polygons may say which points count (`select`), and the points near shores tell the levels of water (`shores`).
+//!
 //! Points may be added to those of the input, such as the vertices of lines (`added`).
 //!
 //! The result does not depend on how many points wait in memory or on disk. Counters have 64 bits.
@@ -31,6 +33,8 @@ mod passes;
 mod plan;
 mod read_ahead;
 mod run;
+mod select;
+mod shores;
 mod spill;
 mod spool;
 mod stats;
@@ -42,6 +46,8 @@ pub use budget::Budget;
 pub use options::{CELL_POINTS, Leaves, Options, Order};
 pub use passes::{Observer, Pass, Passes};
 pub use run::{run, run_with};
+pub use select::{Areas, Selected};
+pub use shores::{Shores, shore_width};
 pub use spool::Spooling;
 pub use stats::Stats;
 pub use thin::{Thin, ThinBy};

@@ -46,6 +46,10 @@ impl Passes for Input {
 /// The passes over the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pass {
+    /// Finding the mean distance between points.
+    Spacing,
+    /// Collecting the points near shores.
+    Shores,
     /// Finding the points that thinning keeps.
     Thin,
     /// Finding the bounding box.
@@ -63,6 +67,8 @@ impl Pass {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Pass::Spacing => "spacing",
+            Pass::Shores => "shores",
             Pass::Thin => "thin",
             Pass::Bounds => "bounds",
             Pass::Count => "count",

@@ -1,6 +1,6 @@
 //! Lines as they are read, with their limits.
 
-use super::{Breakline, Breaklines};
+use super::{Breakline, Breaklines, Properties};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::LINE_VERTICES_MAX;
 use spmesh_stream::Crs;
@@ -21,9 +21,16 @@ pub(super) struct Collector {
     lines: Vec<Breakline>,
     polygons: u32,
     vertices: usize,
+    /// Those of the feature whose lines are entered.
+    properties: Properties,
 }
 
 impl Collector {
+    /// Starts a feature.
+    pub(super) fn feature(&mut self, properties: Properties) {
+        self.properties = properties;
+    }
+
     /// Starts a polygon.
     pub(super) fn polygon(&mut self) {
         self.polygons += 1;
@@ -62,6 +69,7 @@ impl Collector {
             vertices: vertices.iter().map(|&[x, y, _]| [x, y]).collect(),
             elevations: vertices.iter().map(|&[_, _, z]| Some(z).filter(|z| z.is_finite())).collect(),
             polygon: (shape == Shape::Ring).then(|| self.polygons - 1),
+            properties: self.properties.clone(),
             position: position(),
         });
     }

@@ -11,7 +11,7 @@ use std::io::Read;
 use serde_core::de::{DeserializeSeed, Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
 use super::collect::Shape;
-use super::{Breaklines, Collector};
+use super::{Breaklines, Collector, Properties};
 use crate::detect::BYTE_ORDER_MARK;
 use coordinates::{Coordinates, Whole};
 use spmesh_core::error::{Error, Result};
@@ -94,6 +94,22 @@ struct Found {
     /// The geometry of a feature, or those of a collection.
     parts: Option<Vec<Found>>,
     has_features: bool,
+    properties: Properties,
+}
+
+/// The properties of a feature that have a meaning here. Strings and numbers with the same text are equal.
+fn properties(value: &serde_json::Value) -> Properties {
+    let mut found = Properties::default();
+    for (name, value) in value.as_object().into_iter().flatten() {
+        if let Some(property) = found.of_name(name) {
+            *property = match value {
+                serde_json::Value::Null => None,
+                serde_json::Value::String(text) => Some(text.clone()),
+                other => Some(other.to_string()),
+            };
+        }
+    }
+    found
 }
 
 impl Found {
@@ -107,6 +123,9 @@ impl Found {
             "FeatureCollection" if self.has_features => return Ok(()),
             "FeatureCollection" => return Err("a collection has no features".into()),
             "Feature" | "GeometryCollection" => {
+                if kind == "Feature" {
+                    file.lines.feature(self.properties);
+                }
                 let mut parts = self.parts.unwrap_or_default().into_iter();
                 return parts.try_for_each(|part| part.finish(file));
             }
@@ -172,6 +191,7 @@ impl<'de> Visitor<'de> for Object<'_> {
                     let parts = Objects { file: &mut *self.file, are_features: false };
                     found.parts = Some(members.next_value_seed(parts)?);
                 }
+                "properties" => found.properties = properties(&members.next_value()?),
                 "features" if self.is_root => {
                     members.next_value_seed(Objects { file: &mut *self.file, are_features: true })?;
                     found.has_features = true;

@@ -10,7 +10,7 @@ use std::path::Path;
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, OpenFlags};
 
-use super::{Breaklines, Collector, wkb};
+use super::{Breaklines, Collector, Properties, wkb};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CRS_LEN_MAX;
 use spmesh_crs::{System, differences, requested};
@@ -144,12 +144,16 @@ fn check_same(first: &Crs, other: &Table, own: &Crs, table: &Table) -> Result<()
 
 fn features(database: &Connection, table: &Table, lines: &mut Collector) -> Result<()> {
     let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-    let query = format!("SELECT {} FROM {}", quoted(&table.column), quoted(&table.name));
+    let query = format!("SELECT {}, * FROM {}", quoted(&table.column), quoted(&table.name));
     let mut statement = database.prepare(&query).map_err(malformed)?;
+    let names = statement.column_names().into_iter().map(str::to_string).enumerate().skip(1);
+    let columns: Vec<(usize, String)> =
+        names.filter(|(_, name)| Properties::default().of_name(name).is_some()).collect();
     let mut rows = statement.query([]).map_err(malformed)?;
     for number in 1u64.. {
         let position = || format!("table {:?}, row {number}", table.name);
         let Some(row) = rows.next().map_err(|e| malformed(e).at(position()))? else { break };
+        lines.feature(properties(row, &columns).map_err(|e| malformed(e).at(position()))?);
         match row.get_ref(0).map_err(|e| malformed(e).at(position()))? {
             ValueRef::Null => {}
             ValueRef::Blob(bytes) => wkb::enter(bytes, lines, &position).map_err(|e| e.at(position()))?,
@@ -160,4 +164,20 @@ fn features(database: &Connection, table: &Table, lines: &mut Collector) -> Resu
         }
     }
     Ok(())
+}
+
+fn properties(row: &rusqlite::Row, columns: &[(usize, String)]) -> rusqlite::Result<Properties> {
+    let mut found = Properties::default();
+    for (column, name) in columns {
+        let text = match row.get_ref(*column)? {
+            ValueRef::Integer(value) => Some(value.to_string()),
+            ValueRef::Real(value) => Some(value.to_string()),
+            ValueRef::Text(bytes) => Some(String::from_utf8_lossy(bytes).into_owned()),
+            ValueRef::Null | ValueRef::Blob(_) => None,
+        };
+        if let Some(property) = found.of_name(name) {
+            *property = text;
+        }
+    }
+    Ok(found)
 }

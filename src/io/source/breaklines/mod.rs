@@ -2,6 +2,7 @@
 //! content.
 
 mod collect;
+mod dbase;
 mod geojson;
 #[cfg(feature = "geopackage")]
 mod geopackage;
@@ -9,6 +10,7 @@ mod shapefile;
 mod text;
 #[cfg(feature = "geopackage")]
 mod wkb;
+mod wkt;
 
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -38,8 +40,30 @@ pub struct Breakline {
     pub elevations: Vec<Option<f64>>,
     /// Number of the polygon in the file that it is a ring of.
     pub polygon: Option<u32>,
+    /// Those of its feature.
+    pub properties: Properties,
     /// Position in the file, for messages.
     pub position: String,
+}
+
+/// What a feature says about water, as text.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Properties {
+    /// Elevation of a lake.
+    pub level: Option<String>,
+    /// Name that a river has in common with its centre line.
+    pub river: Option<String>,
+}
+
+impl Properties {
+    /// The property of this name, in any case; `None` if it has no meaning here.
+    fn of_name(&mut self, name: &str) -> Option<&mut Option<String>> {
+        match name {
+            _ if name.eq_ignore_ascii_case("level") => Some(&mut self.level),
+            _ if name.eq_ignore_ascii_case("river") => Some(&mut self.river),
+            _ => None,
+        }
+    }
 }
 
 /// The lines of a file.
@@ -64,10 +88,18 @@ pub struct Breaklines {
 /// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a
 /// coordinate is not finite, or there are more than `LINE_VERTICES_MAX` vertices.
 pub fn read_breaklines(path: &Path) -> Result<Breaklines> {
-    read(path).map_err(|error| error.of_input(name_of(path)))
+    read(path, false).map_err(|error| error.of_input(name_of(path)))
 }
 
-fn read(path: &Path) -> Result<Breaklines> {
+/// Reads the polygons of a file as [`read_breaklines`], also from WKT, of which third coordinates are ignored.
+///
+/// # Errors
+/// As there. Lines that are no rings are no error.
+pub fn read_polygons(path: &Path) -> Result<Breaklines> {
+    read(path, true).map_err(|error| error.of_input(name_of(path)))
+}
+
+fn read(path: &Path, takes_wkt: bool) -> Result<Breaklines> {
     let is_stdin = path.as_os_str() == "-";
     let input: Box<dyn Read> = if is_stdin { Box::new(open_stdin()?) } else { Box::new(open_file(path)?.0) };
     let mut input = Plain::new(input).map_err(|e| Error::io("reading", e))?;
@@ -81,6 +113,9 @@ fn read(path: &Path) -> Result<Breaklines> {
         return Err(not_in_pipe("Shapefile"));
     }
     let is_json = is_json(&head);
+    if takes_wkt && wkt::is_wkt(&head) {
+        return wkt::read(head, input);
+    }
     if !is_json && !is_shapefile {
         check_text(&head)?;
     }

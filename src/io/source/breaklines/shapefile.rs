@@ -1,4 +1,5 @@
-//! Shapefiles: the main file (`.shp`) has the geometry, the file beside it (`.prj`) the system.
+//! Shapefiles: the main file (`.shp`) has the geometry, files beside it have the
+//! system (`.prj`) and the attributes (`.dbf`).
 //!
 //! Source: ESRI Shapefile Technical Description, 1998. Lengths in the file are not trusted: memory is taken
 //! for bytes that have arrived.
@@ -7,6 +8,7 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use super::collect::Shape;
+use super::dbase::Table;
 use super::{Breaklines, Collector};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CRS_LEN_MAX;
@@ -61,6 +63,7 @@ pub(super) fn read(mut input: impl Read, path: &Path) -> Result<Breaklines> {
     // The header states the length of the file in words of two bytes, itself included.
     let stated = 2 * i64::from(i32::from_be_bytes([header[24], header[25], header[26], header[27]]));
     let mut found = HEADER_LEN as i64;
+    let mut table = Table::beside(path)?;
     for number in 1u64.. {
         if !next_record(&mut input, &mut content).map_err(|e| e.at(format!("record {number}")))? {
             // A file that was cut off behind a record.
@@ -70,6 +73,9 @@ pub(super) fn read(mut input: impl Read, path: &Path) -> Result<Breaklines> {
             break;
         }
         found += 8 + content.len() as i64;
+        if let Some(table) = &mut table {
+            lines.feature(table.next()?);
+        }
         record(&content, &mut lines, number).map_err(|e| e.at(format!("record {number}")))?;
     }
     lines.finish(system(path)?)

@@ -1,0 +1,117 @@
+//! Square cells over polygons: which have an edge, and what is known of the others.
+
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use super::Side;
+use super::rows::Edge;
+use spmesh_model::points::Point2;
+
+/// Cells per edge, about, and their least and greatest number.
+const CELLS_PER_EDGE: f64 = 64.0;
+const CELLS: [f64; 2] = [65_536.0, 16_777_216.0];
+
+/// Places are off by far less than this after they are put on the grid. Unit: cells.
+const TOLERANCE: f64 = 1e-6;
+
+/// A cell that an edge meets. Other values are those of [`Side`], and 0 where nothing is known yet.
+const EDGE: u8 = 255;
+
+/// What is known of a cell.
+pub(super) enum Known {
+    Not,
+    Edge,
+    Side(Side),
+}
+
+/// Square cells over the box of all edges.
+#[derive(Debug)]
+pub(super) struct Cells {
+    min: Point2,
+    max: Point2,
+    /// Cells per two units.
+    scale: f64,
+    size: [usize; 2],
+    /// What is learned depends on the cell alone, so threads may learn it in any order.
+    states: Vec<AtomicU8>,
+}
+
+impl Cells {
+    pub(super) fn new(edges: &[Edge]) -> Cells {
+        let (mut min, mut max) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for place in edges.iter().flat_map(|edge| edge.ends) {
+            for axis in 0..2 {
+                min[axis] = min[axis].min(place[axis]);
+                max[axis] = max[axis].max(place[axis]);
+            }
+        }
+        let wanted = (CELLS_PER_EDGE * edges.len() as f64).clamp(CELLS[0], CELLS[1]);
+        // Halves, because a difference may exceed the range of f64.
+        let [width, height] = [0, 1].map(|axis| 0.5 * max[axis] - 0.5 * min[axis]);
+        // A long thin box has few cells across, and at most as many along as it may have in all.
+        let side = (width.sqrt() * height.sqrt() / wanted.sqrt()).max(width.max(height) / wanted);
+        let scale = 1.0 / side;
+        // Without an extent in f64, there is one cell, which has edges.
+        let is_wide = side > 0.0 && scale.is_finite() && (1.0 / scale).is_finite();
+        let scale = if is_wide { scale } else { 0.0 };
+        let size = [width, height].map(|length| if is_wide { (length * scale) as usize + 1 } else { 1 });
+        let states = (0..size[0] * size[1]).map(|_| AtomicU8::new(0)).collect();
+        let mut cells = Cells { min, max, scale, size, states };
+        edges.iter().for_each(|edge| cells.mark(edge.ends));
+        cells
+    }
+
+    /// A place in units of cells.
+    fn local(&self, place: Point2) -> Point2 {
+        [0, 1].map(|axis| (0.5 * place[axis] - 0.5 * self.min[axis]) * self.scale)
+    }
+
+    /// The number of the cell of a place; `None` outside of the box of all edges.
+    #[inline]
+    pub(super) fn find(&self, place: Point2) -> Option<usize> {
+        let is_in = (0..2).all(|axis| self.min[axis] <= place[axis] && place[axis] <= self.max[axis]);
+        if !is_in {
+            return None;
+        }
+        let [x, y] = self.local(place);
+        let [column, row] = [(x as usize).min(self.size[0] - 1), (y as usize).min(self.size[1] - 1)];
+        Some(row * self.size[0] + column)
+    }
+
+    #[inline]
+    pub(super) fn known(&self, cell: usize) -> Known {
+        match self.states[cell].load(Ordering::Relaxed) {
+            0 => Known::Not,
+            EDGE => Known::Edge,
+            state if state == Side::Inside as u8 => Known::Side(Side::Inside),
+            _ => Known::Side(Side::Outside),
+        }
+    }
+
+    /// Notes where a cell without an edge lies.
+    pub(super) fn learn(&self, cell: usize, side: Side) {
+        self.states[cell].store(side as u8, Ordering::Relaxed);
+    }
+
+    /// Marks all cells that an edge meets, and perhaps others beside it; row by row.
+    fn mark(&mut self, ends: [Point2; 2]) {
+        let [lower, upper] = ends.map(|end| self.local(end));
+        let cell = |value: f64, axis: usize| (value as usize).min(self.size[axis] - 1);
+        let [left, right] = [lower[0].min(upper[0]), lower[0].max(upper[0])];
+        let [first_row, last_row] = [cell(lower[1] - TOLERANCE, 1), cell(upper[1] + TOLERANCE, 1)];
+        let height = upper[1] - lower[1];
+        let x_at = |y: f64| {
+            let part = ((y - lower[1]) / height).clamp(0.0, 1.0);
+            lower[0] + part * (upper[0] - lower[0])
+        };
+        for row in first_row..=last_row {
+            let [mut low, mut high] = [left, right];
+            if height > 0.0 {
+                let xs = [row as f64 - TOLERANCE, (row + 1) as f64 + TOLERANCE].map(x_at);
+                [low, high] = [xs[0].min(xs[1]), xs[0].max(xs[1])];
+            }
+            for column in cell(low - TOLERANCE, 0)..=cell(high + TOLERANCE, 0) {
+                *self.states[row * self.size[0] + column].get_mut() = EDGE;
+            }
+        }
+    }
+}
