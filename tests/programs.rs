@@ -18,7 +18,6 @@ pub fn tool(name: &str) -> Command {
         "splinefit" => env!("CARGO_BIN_EXE_splinefit"),
         "spdelaunay3d" => env!("CARGO_BIN_EXE_spdelaunay3d"),
         "spdem" => env!("CARGO_BIN_EXE_spdem"),
-        "spconstrain" => env!("CARGO_BIN_EXE_spconstrain"),
         "spcanopy" => env!("CARGO_BIN_EXE_spcanopy"),
         "spheight" => env!("CARGO_BIN_EXE_spheight"),
         "spview" => env!("CARGO_BIN_EXE_spview"),
