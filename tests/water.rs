@@ -347,3 +347,24 @@ fn tables_that_were_cut_off_are_errors() {
         assert_outcome("spfinalize", &arguments, b"", 3, "the table of attributes is cut off");
     }
 }
+
+#[test]
+fn points_on_shores_are_dropped_too() {
+    let folder = Folder::new();
+    let square = "[[[5,5],[15,5],[15,15],[5,15],[5,5]]]";
+    let lake = format!(
+        r#"{{"type":"Feature","properties":{{"level":3}},"geometry":{{"type":"Polygon","coordinates":{square}}}}}"#
+    );
+    let file = folder.write("lake.geojson", lake);
+    let points: String = (0..441).map(|number| format!("{} {} 7\n", number % 21, number / 21)).collect();
+    let output = run("spfinalize", &["--flatten", &file, "--stats=json", "-"], points.as_bytes());
+    let (code, messages) = outcome(&output);
+    assert_eq!(code, Some(0), "{messages}");
+    assert!(messages.contains("\"flatten\":121,") && messages.contains("\"points\":324,"), "{messages}");
+    let mesh = run("spdelaunay2d", &[], &output.stdout).stdout;
+    let constrained = run("spconstrain", &["--lines", &file], &mesh).stdout;
+    let is_in = |vertex: &&[i64; 3]| vertex[..2].iter().all(|value| (5..=15).contains(value));
+    let found = vertices(&constrained);
+    let inside: Vec<i64> = found.iter().filter(is_in).map(|vertex| vertex[2]).collect();
+    assert_eq!(inside, [3; 4]);
+}

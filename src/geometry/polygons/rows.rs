@@ -20,29 +20,32 @@ pub(super) struct Edge {
 /// The edges of polygons by rows.
 #[derive(Debug)]
 pub(super) struct Rows {
-    /// Those of one polygon in a row.
+    /// Those of one polygon come one after the other.
     pub(super) edges: Vec<Edge>,
-    /// The least and the greatest x of each polygon.
-    widths: Vec<[f64; 2]>,
     bottom: f64,
     /// Rows per unit of y.
     scale: f64,
-    /// For each row the place of its first entry, and one more.
+    /// For each row the place of its first group, and one more.
     starts: Vec<usize>,
+    /// One for each polygon in a row, in increasing order, and one more.
+    groups: Vec<Group>,
     /// Numbers of edges, increasing in each row.
     entries: Vec<u32>,
 }
 
+/// The edges of a polygon in a row.
+#[derive(Debug, Clone, Copy)]
+struct Group {
+    /// The least and the greatest x of the edges.
+    width: [f64; 2],
+    /// The place of the first one in `entries`.
+    start: usize,
+}
+
 impl Rows {
     pub(super) fn new(sides: impl Iterator<Item = (u32, [Point2; 2])>) -> Rows {
-        let (mut edges, mut widths) = (Vec::new(), Vec::new());
-        for (polygon, [from, to]) in sides {
-            edges.push(Edge { ends: if from[1] <= to[1] { [from, to] } else { [to, from] }, polygon });
-            let most = widths.len().max(polygon as usize + 1);
-            widths.resize(most, [f64::INFINITY, f64::NEG_INFINITY]);
-            let width = &mut widths[polygon as usize];
-            *width = [width[0].min(from[0].min(to[0])), width[1].max(from[0].max(to[0]))];
-        }
+        let upward = |[from, to]: [Point2; 2]| if from[1] <= to[1] { [from, to] } else { [to, from] };
+        let edges: Vec<Edge> = sides.map(|(polygon, ends)| Edge { ends: upward(ends), polygon }).collect();
         assert!(u32::try_from(edges.len()).is_ok(), "more than 2^32 edges");
         let bottom = edges.iter().fold(f64::INFINITY, |y, edge| y.min(edge.ends[0][1]));
         let top = edges.iter().fold(f64::NEG_INFINITY, |y, edge| y.max(edge.ends[1][1]));
@@ -54,7 +57,8 @@ impl Rows {
         let rows = (ROWS_PER_EDGE * count).min(ENTRIES_PER_EDGE * count / parts.max(1.0)) as usize + 1;
         let scale = rows as f64 / height * 0.5;
         let scale = if scale.is_finite() { scale } else { 0.0 };
-        let mut found = Rows { edges, widths, bottom, scale, starts: vec![0; rows + 1], entries: Vec::new() };
+        let (starts, groups, entries) = (vec![0; rows + 1], Vec::new(), Vec::new());
+        let mut found = Rows { edges, bottom, scale, starts, groups, entries };
         found.fill();
         found
     }
@@ -76,12 +80,34 @@ impl Rows {
             range(self, edge).for_each(|row| next[row + 1] += 1);
         }
         (1..next.len()).for_each(|row| next[row] += next[row - 1]);
-        self.starts.copy_from_slice(&next);
+        let firsts = next.clone();
         self.entries = vec![0; next[self.rows()]];
         for (number, edge) in (0..).zip(&self.edges) {
             for row in range(self, edge) {
                 self.entries[next[row]] = number;
                 next[row] += 1;
+            }
+        }
+        for row in 0..self.rows() {
+            self.starts[row] = self.groups.len();
+            self.group(firsts[row]..firsts[row + 1]);
+        }
+        let last = self.rows();
+        self.starts[last] = self.groups.len();
+        self.groups.push(Group { width: [0.0; 2], start: self.entries.len() });
+    }
+
+    /// Makes the groups of a row.
+    fn group(&mut self, entries: std::ops::Range<usize>) {
+        let mut before = None;
+        for place in entries {
+            let edge = self.edges[self.entries[place] as usize];
+            if before.replace(edge.polygon) != Some(edge.polygon) {
+                self.groups.push(Group { width: [f64::INFINITY, f64::NEG_INFINITY], start: place });
+            }
+            let [a, b] = edge.ends.map(|end| end[0]);
+            if let Some(Group { width, .. }) = self.groups.last_mut() {
+                *width = [width[0].min(a).min(b), width[1].max(a).max(b)];
             }
         }
     }
@@ -99,30 +125,32 @@ impl Rows {
             return;
         }
         let row = self.row(place[1]);
-        let entries = &self.entries[self.starts[row]..self.starts[row + 1]];
-        let edges = entries.iter().map(|&entry| &self.edges[entry as usize]);
-        let mut open: Option<(u32, Side)> = None;
-        let mut predicates = FiniteFloatPredicates::default();
-        for edge in edges {
-            let [low, high] = self.widths[edge.polygon as usize];
+        for group in self.starts[row]..self.starts[row + 1] {
+            let Group { width: [low, high], start } = self.groups[group];
+            // Beyond these edges, a ray to the right meets none of them, or each crossing has its counterpart.
             if place[0] < low || place[0] > high {
                 continue;
             }
-            let (polygon, side) = match open {
-                Some(known) if known.0 == edge.polygon => known,
-                before => {
-                    before.iter().filter(|known| known.1 != Side::Outside).for_each(|&(a, b)| found(a, b));
-                    (edge.polygon, Side::Outside)
-                }
-            };
-            let side = match (side, meeting(edge.ends, place, &mut predicates)) {
-                (Side::Border, _) | (_, Meeting::On) => Side::Border,
-                (Side::Outside, Meeting::Crossed) | (Side::Inside, Meeting::Not) => Side::Inside,
-                (Side::Inside, Meeting::Crossed) | (Side::Outside, Meeting::Not) => Side::Outside,
-            };
-            open = Some((polygon, side));
+            let edges = &self.entries[start..self.groups[group + 1].start];
+            let side = self.side_of(edges, place);
+            if side != Side::Outside {
+                found(self.edges[edges[0] as usize].polygon, side);
+            }
         }
-        open.iter().filter(|known| known.1 != Side::Outside).for_each(|&(a, b)| found(a, b));
+    }
+
+    /// Where a place lies for a polygon with these edges in its row.
+    fn side_of(&self, edges: &[u32], place: Point2) -> Side {
+        let mut predicates = FiniteFloatPredicates::default();
+        let mut is_inside = false;
+        for &edge in edges {
+            match meeting(self.edges[edge as usize].ends, place, &mut predicates) {
+                Meeting::On => return Side::Border,
+                Meeting::Crossed => is_inside = !is_inside,
+                Meeting::Not => {}
+            }
+        }
+        if is_inside { Side::Inside } else { Side::Outside }
     }
 }
 
