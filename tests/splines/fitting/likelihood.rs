@@ -75,13 +75,32 @@ fn in_space_of_observations(
     log_determinant(covariance) + log_determinant(products) + (all.len() as f64 - 3.0) * rest.ln()
 }
 
+/// An energy less the part that linear functions have: E - EX S^-1 X'E, where the columns of X are the slopes and
+/// S = X'EX. Linear functions have none then.
+fn without_linear_part(energy: &mut [Vec<f64>], slopes: [&Vec<f64>; 2]) {
+    let products = slopes.map(|x| energy.iter().map(|row| dot(row, x)).collect::<Vec<f64>>());
+    let [a, b, d] = [[0, 0], [0, 1], [1, 1]].map(|[i, j]| dot(slopes[i], &products[j]));
+    let determinant = a * d - b * b;
+    if a < 1e-9 {
+        return;
+    }
+    for (i, row) in energy.iter_mut().enumerate() {
+        for (j, entry) in row.iter_mut().enumerate() {
+            let [[p, q], [r, s]] = [i, j].map(|at| [products[0][at], products[1][at]]);
+            *entry -= (d * p * r - b * (p * s + q * r) + a * q * s) / determinant;
+        }
+    }
+}
+
 /// As [`in_space_of_observations`].
 fn known_score(basis: &Basis, all: &[Observation], energy: &Symmetric, lambda: f64) -> f64 {
     let rows = dense(basis, all.iter().map(|one| one.point));
     let count = basis.len();
-    let energy: Vec<Vec<f64>> = (0..count).map(|i| (0..count).map(|j| energy.at(i, j)).collect()).collect();
-    let linear = [|_| 1.0, |[x, _]: [f64; 2]| x, |[_, y]: [f64; 2]| y]
+    let mut energy: Vec<Vec<f64>> =
+        (0..count).map(|i| (0..count).map(|j| energy.at(i, j)).collect()).collect();
+    let linear: [Vec<f64>; 3] = [|_| 1.0, |[x, _]: [f64; 2]| x, |[_, y]: [f64; 2]| y]
         .map(|f: fn([f64; 2]) -> f64| (0..count).map(|function| f(basis.greville(function))).collect());
+    without_linear_part(&mut energy, [&linear[1], &linear[2]]);
     in_space_of_observations(all, &rows, &energy, &linear, lambda)
 }
 
