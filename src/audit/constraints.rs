@@ -154,28 +154,18 @@ impl Constraints {
             }
             let chain = chains.get(&number).map_or(&[][..], |chain| chain);
             if is_open && outline.is_some_and(|outline| !self.leaves(number, chain, outline, ledger)) {
-                let message =
-                    format!("segment {number} is open, but a part of it in the convex hull is no edge");
+                let message = format!("segment {number} is open, but does not leave the convex hull");
                 return Err(self.of_segment(number, message));
             }
         }
         Ok(())
     }
 
-    /// Whether all of a segment that is in the convex hull is one chain of edges, with these ends.
+    /// Whether a segment may be open: an end is outside of the convex hull, and its edges, from the first vertex
+    /// on it to the last, are one chain. (The hull is convex, so edges join all vertices on a segment.)
     fn leaves(&self, number: u32, chain: &[Xy], outline: &Outline, ledger: &mut Ledger) -> bool {
-        let [a, b] = self.segments[number as usize];
-        match *chain {
-            [] => outline.is_apart([a, b], ledger),
-            [p, q] => {
-                let is_forward = lexicographic(a, b) == lexicographic(p, q);
-                let [p, q] = if is_forward { [p, q] } else { [q, p] };
-                [[p, a], [q, b]]
-                    .iter()
-                    .all(|&[last, end]| last == end || outline.is_left_at(last, end, ledger))
-            }
-            _ => false,
-        }
+        let ends = self.segments[number as usize];
+        matches!(chain, [] | [_, _]) && ends.into_iter().any(|end| outline.excludes(end, ledger))
     }
 
     fn wrong_chain(&self, number: u32, is_open: bool, gap: Option<&Corner>) -> Violation {

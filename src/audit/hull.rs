@@ -19,44 +19,11 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    /// Whether the segment from a corner to another point is outside, but for the corner.
-    pub(super) fn is_left_at(&self, corner: Xy, end: Xy, ledger: &mut Ledger) -> bool {
-        self.sides().any(|(chain, outside)| {
-            let at = chain.partition_point(|&other| lexicographic(other, corner) == Ordering::Less);
-            let around = at.saturating_sub(1)..(at + 2).min(chain.len());
-            chain.get(at) == Some(&corner)
-                && chain[around].windows(2).any(|pair| turn(pair[0], pair[1], end, ledger) == outside)
-        })
-    }
-
-    /// Whether a segment has no point in common with the inside, nor a part of an edge. Cost: the polygon.
-    pub(super) fn is_apart(&self, [a, b]: [Xy; 2], ledger: &mut Ledger) -> bool {
-        let is_beyond = |pair: &[Xy], outside: Ordering, ledger: &mut Ledger| {
-            let turns = [a, b].map(|end| turn(pair[0], pair[1], end, ledger));
-            turns.contains(&outside) && !turns.contains(&outside.reverse())
-        };
-        // Corners on the line of the segment, and on which sides the others are.
-        let mut on: Vec<Xy> = Vec::new();
-        let mut turns = Vec::new();
-        for (chain, outside) in self.sides() {
-            if chain.windows(2).any(|pair| is_beyond(pair, outside, ledger)) {
-                return true;
-            }
-            for &corner in chain {
-                let side = turn(a, b, corner, ledger);
-                turns.push(side);
-                on.extend((side == Ordering::Equal).then_some(corner));
-            }
-        }
-        on.sort_by(|&p, &q| lexicographic(p, q));
-        let ends = if lexicographic(a, b) == Ordering::Less { [a, b] } else { [b, a] };
-        let has_part_of_edge = on.first().zip(on.last()).is_some_and(|(&first, &last)| {
-            let start = if lexicographic(first, ends[0]).is_ge() { first } else { ends[0] };
-            let end = if lexicographic(last, ends[1]).is_le() { last } else { ends[1] };
-            lexicographic(start, end) == Ordering::Less
-        });
-        let is_on_one_side = !turns.contains(&Ordering::Less) || !turns.contains(&Ordering::Greater);
-        is_on_one_side && !has_part_of_edge
+    /// Whether a point is outside. Cost: the polygon.
+    pub(super) fn excludes(&self, point: Xy, ledger: &mut Ledger) -> bool {
+        let is_beyond =
+            |pair: &[Xy], outside, ledger: &mut Ledger| turn(pair[0], pair[1], point, ledger) == outside;
+        self.sides().any(|(chain, outside)| chain.windows(2).any(|pair| is_beyond(pair, outside, ledger)))
     }
 
     /// Both chains, from left to right, and the side of their edges that is outside.

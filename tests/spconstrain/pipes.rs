@@ -139,3 +139,17 @@ fn the_surface_along_a_hard_line_is_the_line() {
         assert!((rows[39 - row][column] - expected).abs() < 1e-4, "{step}: {}", rows[39 - row][column]);
     }
 }
+
+#[test]
+fn segments_that_leave_the_mesh_are_named() {
+    let folder = Folder::new();
+    folder.file("points.txt", "0 0 0\n100 0 0\n0 100 0\n100 100 5\n40 60 1\n");
+    folder.file("lines.txt", "soft -50 50 150 50\nline 40 60 3 300 61 4\nline -10 -10 3 -20 -20 4\n");
+    let points = output("spfinalize", &[&folder.path("points.txt")], &[]);
+    let mesh = triangulated(&points);
+    let run = crate::programs::run("spconstrain", &["--lines", &folder.path("lines.txt")], &mesh);
+    let (code, message) = crate::programs::outcome(&run);
+    assert_eq!(code, Some(0), "{message}");
+    assert!(message.contains("3 of 3 segments leave the mesh"), "{message}");
+    audit(&run.stdout);
+}
