@@ -111,8 +111,8 @@ fn finalized(arguments: &[&str], input: &[u8]) -> (Vec<u8>, [u64; 2]) {
     (output.stdout, [count("clip"), count("drop_inside")])
 }
 
-/// Compares the points that are kept with those of the search. `bytes` is the input, `world` a coordinate in the
-/// file of polygons, `stored_of` one in the stream.
+/// Compares the points that are kept with those of the search. `bytes` is the input, `world` a coordinate in
+/// the file of polygons, `stored_of` one in the stream.
 fn compare(
     seed: u64,
     extent: u64,

@@ -2,9 +2,9 @@
 //! themselves or each other.
 //!
 //! A line goes over the plane in the lexicographic order of points. It meets the edges of the border that are
-//! under way from bottom to top. If these never meet but at common corners, and run to the right and to the left
-//! in turns, beginning with one to the right, the border goes once around every point to the left of an edge,
-//! and not at all around the others.
+//! under way from bottom to top. If these never meet but at common corners, and run to the right and to the
+//! left in turns, beginning with one to the right, the border goes once around every point to the left of an
+//! edge, and not at all around the others.
 
 use std::cmp::Ordering;
 
@@ -23,8 +23,8 @@ struct Edge {
     is_below_mesh: bool,
 }
 
-/// Proves that a border is one that cutting leaves. `edges` have their triangles on the left; `kill` is the kill
-/// length or 0.
+/// Proves that a border is one that cutting leaves. `edges` have their triangles on the left; `kill` is the
+/// kill length or 0.
 ///
 /// Memory: the border. Cost: n log n for n edges, unless very many are under way at once.
 pub(super) fn check(
@@ -177,8 +177,8 @@ fn check_reasons(
     Err(name_corners(Violation::new(Check::Border, message), &[*a, *b]))
 }
 
-/// Pairs of neighbours on the lower side of the convex hull of sorted points; on the upper side, if they are in
-/// decreasing order.
+/// Pairs of neighbours on the lower side of the convex hull of sorted points; on the upper side, if they are
+/// in decreasing order.
 fn side_of_hull(points: impl Iterator<Item = Xy>, ledger: &mut Ledger) -> Vec<[Xy; 2]> {
     let mut chain: Vec<Xy> = Vec::new();
     for point in points {

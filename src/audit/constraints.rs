@@ -121,9 +121,9 @@ impl Constraints {
         Err(name_corners(Violation::new(Check::Constraints, message), &[corner]))
     }
 
-    /// Proves that the edges on each segment cover it, unless it is open. The edges on a segment do not overlap,
-    /// so what they cover is known from where their chains end. Where the mesh covers the convex hull, which is
-    /// `outline`, all of an open segment in it must be covered.
+    /// Proves that the edges on each segment cover it, unless it is open. The edges on a segment do not
+    /// overlap, so what they cover is known from where their chains end. Where the mesh covers the convex
+    /// hull, which is `outline`, an open segment must leave it.
     pub(super) fn check_chains(
         &self,
         outline: Option<&Outline>,
@@ -161,8 +161,9 @@ impl Constraints {
         Ok(())
     }
 
-    /// Whether a segment may be open: an end is outside of the convex hull, and its edges, from the first vertex
-    /// on it to the last, are one chain. (The hull is convex, so edges join all vertices on a segment.)
+    /// Whether a segment may be open: an end is outside of the convex hull, and its edges, from the first
+    /// vertex on it to the last, are one chain. (The hull is convex, so edges join all vertices on a
+    /// segment.)
     fn leaves(&self, number: u32, chain: &[Xy], outline: &Outline, ledger: &mut Ledger) -> bool {
         let ends = self.segments[number as usize];
         matches!(chain, [] | [_, _]) && ends.into_iter().any(|end| outline.excludes(end, ledger))

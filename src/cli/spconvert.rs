@@ -95,7 +95,8 @@ pub struct Flags {
     #[arg(long, value_parser = clap::value_parser!(u8).range(2..=3))]
     dims: Option<u8>,
 
-    /// Folder for temporary files: writing PLY, VTU, Medit and LandXML needs them, and reading points through a pipe
+    /// Folder for temporary files: writing PLY, VTU, Medit and LandXML needs them, and reading points through
+    /// a pipe
     #[arg(long, value_name = "DIR")]
     temp_dir: Option<PathBuf>,
 

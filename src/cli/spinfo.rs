@@ -63,9 +63,10 @@ pub struct Flags {
 
     /// Prove the claims of the stream with exact arithmetic; exit 4 at the first violation, 3 if the stream
     /// is malformed. Triangle and tetrahedral meshes are proved as they pass, holding only the live vertices
-    /// and the boundary of the mesh so far; of a constrained mesh also its segments, which must be chains of edges. Cells and simplices of four dimensions and configurations are
-    /// held whole. In four dimensions both standards are the same: a Delaunay diagram has no ties to resolve,
-    /// and its simplices may resolve ties in any way
+    /// and the boundary of the mesh so far; of a constrained mesh also its segments, which must be chains of
+    /// edges. Cells and simplices of four dimensions and configurations are held whole. In four dimensions
+    /// both standards are the same: a Delaunay diagram has no ties to resolve, and its simplices may resolve
+    /// ties in any way
     #[arg(
         long,
         value_enum,

@@ -36,8 +36,8 @@ impl<'p> Sources<'p> {
     }
 }
 
-/// The polygons of areas, each as the numbers of the segments of its border. Inside of a polygon are the places from
-/// which a ray crosses its border an odd number of times.
+/// The polygons of areas, each as the numbers of the segments of its border. Inside of a polygon are the
+/// places from which a ray crosses its border an odd number of times.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Areas {
     /// Of `--hull`; `None` if it was not given.

@@ -66,8 +66,8 @@ impl Grid {
         Ok(LineVertex { place, z: z.map(|_| stored[2]) })
     }
 
-    /// Stored coordinates of a place of the grid: the numbers nearest to its decimals. So a vertex is at the place of
-    /// a point that has the same decimals.
+    /// Stored coordinates of a place of the grid: the numbers nearest to its decimals. So a vertex is at the
+    /// place of a point that has the same decimals.
     pub(crate) fn stored(&self, place: [i64; 2]) -> Point2 {
         place.map(|value| scaled(value as f64, -self.digits))
     }

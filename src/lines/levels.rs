@@ -14,7 +14,8 @@ use spmesh_stream::Coordinates;
 /// The levels of water.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Levels {
-    /// Stored elevations of vertices of the network that are on shores or on centre lines inside of their river.
+    /// Stored elevations of vertices of the network that are on shores or on centre lines inside of their
+    /// river.
     pub elevations: BTreeMap<u32, f64>,
     /// Levels that were found from points.
     pub found: u64,
@@ -23,14 +24,16 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Finds the levels. `shores` are the points near the shore of each polygon that needs them, and `percentile` of
-    /// their elevations counts: the least one such that this part of all, in percent, is not above it.
+    /// Finds the levels. `shores` are the points near the shore of each polygon that needs them, and
+    /// `percentile` of their elevations counts: the least one such that this part of all, in percent, is not
+    /// above it.
     ///
-    /// Lakes come before rivers: a vertex of a river at the shore of a lake or inside of it takes the level of the
-    /// lake. Of several rivers, the lowest counts.
+    /// Lakes come before rivers: a vertex of a river at the shore of a lake or inside of it takes the level
+    /// of the lake. Of several rivers, the lowest counts.
     ///
     /// # Errors
-    /// Malformed, with the position, if a polygon needs points and has none, or lakes of different levels meet.
+    /// Malformed, with the position, if a polygon needs points and has none, or lakes of different levels
+    /// meet.
     pub fn find(
         network: &Network,
         water: &Water,

@@ -88,8 +88,8 @@ pub fn read_with_areas(
 /// Reads lines as [`read`], and lakes and rivers, whose shores and centre lines are lines, too.
 ///
 /// # Errors
-/// As there; malformed, if a feature is neither a polygon nor the centre line of a river; usage, if there is water and
-/// points have no elevation.
+/// As there; malformed, if a feature is neither a polygon nor the centre line of a river; usage, if there is
+/// water and points have no elevation.
 pub fn read_with_water(
     sources: &Sources,
     target: &Target,

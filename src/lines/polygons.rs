@@ -11,12 +11,12 @@ use spmesh_stream::Coordinates;
 
 /// Reads the polygons of files, in the stored coordinates of `target`; and messages for the user.
 ///
-/// Vertices are rounded to the grid of the stream, as those of lines are, also beyond its range. Coordinates of f64
-/// are not rounded.
+/// Vertices are rounded to the grid of the stream, as those of lines are, also beyond its range. Coordinates
+/// of f64 are not rounded.
 ///
 /// # Errors
-/// Those of reading; usage, if the system of a file differs from that of the stream; malformed, if a line is no ring,
-/// or a ring is not closed.
+/// Those of reading; usage, if the system of a file differs from that of the stream; malformed, if a line is
+/// no ring, or a ring is not closed.
 pub fn read_polygons(paths: &[PathBuf], target: &Target) -> Result<(Vec<Rings>, Vec<String>)> {
     let (mut polygons, mut notices) = (Vec::new(), Vec::new());
     for path in paths {

@@ -73,9 +73,9 @@ impl Stations {
         if station.along >= 1.0 { b } else { (a + (b - a) * station.along).clamp(b.min(a), a.max(b)) }
     }
 
-    /// Takes elevations at vertices, where they are known: interpolates the others linearly along the line, keeps
-    /// the nearest known one before the first and behind the last, and lowers each to those upstream. Returns how
-    /// many were lowered; `None` if none is known.
+    /// Takes elevations at vertices, where they are known: interpolates the others linearly along the line,
+    /// keeps the nearest known one before the first and behind the last, and lowers each to those upstream.
+    /// Returns how many were lowered; `None` if none is known.
     pub(crate) fn settle(&mut self, known: &[Option<f64>]) -> Option<u64> {
         let first = known.iter().position(Option::is_some)?;
         let mut levels = vec![known[first]?; known.len()];

@@ -109,8 +109,8 @@ pub(crate) struct Feature {
 /// The features of water among the lines of files.
 ///
 /// # Errors
-/// Malformed, if a feature is neither a polygon nor a centre line, or its level makes no sense; usage, if points have
-/// no elevation.
+/// Malformed, if a feature is neither a polygon nor a centre line, or its level makes no sense; usage, if
+/// points have no elevation.
 pub(crate) fn features(files: &[(Role, String, Breaklines)], target: &Target) -> Result<Vec<Feature>> {
     let (mut features, mut line, mut polygons) = (Vec::new(), 0, 0);
     for (role, name, file) in files {

@@ -2,8 +2,8 @@
 
 use crate::points::Point2;
 
-/// Lines after noding: all vertices are different, and segments have nothing in common but their ends. A vertex
-/// may lie on no segment (a line of one place).
+/// Lines after noding: all vertices are different, and segments have nothing in common but their ends. A
+/// vertex may lie on no segment (a line of one place).
 ///
 /// The same set of lines gives the same network, whatever their order and directions, up to the numbers of
 /// lines.

@@ -4,8 +4,8 @@ use foldhash::HashSet;
 
 use super::event::Patch;
 
-/// Tells which edges on segments are new, so that consumers take each of them once, although two triangles may
-/// state it.
+/// Tells which edges on segments are new, so that consumers take each of them once, although two triangles
+/// may state it.
 ///
 /// Memory: the edges on segments whose second triangle has not come: those of the front and of the border.
 #[derive(Debug, Default)]

@@ -1,5 +1,5 @@
-//! Constrained triangle meshes: segments, the sides of triangles that lie on them, and the segments that leave
-//! the mesh.
+//! Constrained triangle meshes: segments, the sides of triangles that lie on them, and the segments that
+//! leave the mesh.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 

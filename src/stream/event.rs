@@ -41,8 +41,8 @@ pub enum Event {
     Coefficients(Vec<f64>),
     /// Segments of a constrained mesh, numbered from 0 over all their blocks.
     Segments(Vec<Segment>),
-    /// Numbers of segments that are not wholly chains of edges, since they leave the mesh: increasing over all
-    /// their blocks. No patch follows.
+    /// Numbers of segments that are not wholly chains of edges, since they leave the mesh: increasing over
+    /// all their blocks. No patch follows.
     OpenSegments(Vec<u32>),
     /// The end: nothing follows.
     End(Totals),
@@ -62,9 +62,9 @@ pub struct Patch {
     pub simplices: Vec<u32>,
     /// Local indices, increasing, of vertices that no later patch uses.
     pub finalized: Vec<u32>,
-    /// Sides of triangles that lie on segments of a constrained mesh, increasing: the number of the triangle in
-    /// the patch, its corner (0, 1 or 2) opposite to the side, and the number of the segment. Both triangles at
-    /// an edge state it. Empty in all other meshes.
+    /// Sides of triangles that lie on segments of a constrained mesh, increasing: the number of the triangle
+    /// in the patch, its corner (0, 1 or 2) opposite to the side, and the number of the segment. Both
+    /// triangles at an edge state it. Empty in all other meshes.
     pub sides: Vec<[u32; 3]>,
 }
 

@@ -63,8 +63,8 @@ pub struct Header {
     /// What points carry beside their coordinates. A program that makes a stream from another either passes
     /// attributes on or states none.
     pub attributes: Attributes,
-    /// How a triangle mesh is constrained; `None` if it is not. A program that makes a mesh from another either
-    /// passes segments and sides on or states none.
+    /// How a triangle mesh is constrained; `None` if it is not. A program that makes a mesh from another
+    /// either passes segments and sides on or states none.
     pub constrained: Option<Constrained>,
     /// Program and version that wrote the stream.
     pub producer: String,

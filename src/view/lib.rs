@@ -12,8 +12,8 @@
 //! pans and zooms.
 //!
 //! Memory: triangles or points, as long as they are drawn one by one; for more of them, the pixels of the
-//! picture and the live vertices. Residual points, configurations and the edges on lines of a constrained mesh are
-//! held whole.
+//! picture and the live vertices. Residual points, configurations and the edges on lines of a constrained
+//! mesh are held whole.
 
 mod canvas;
 mod cells;

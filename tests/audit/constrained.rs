@@ -1,4 +1,5 @@
-//! The audit passes constrained meshes that were made by brute force, and refuses every fault that is planted.
+//! The audit passes constrained meshes that were made by brute force, and refuses every fault that is
+//! planted.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -118,8 +118,8 @@ fn next_flip(
 }
 
 impl ConstrainedMesh {
-    /// The mesh of points and segments that have nothing in common but ends, and whose ends are points or leave
-    /// the hull in line with two points.
+    /// The mesh of points and segments that have nothing in common but ends, and whose ends are points or
+    /// leave the hull in line with two points.
     pub fn new(points: Vec<Place>, segments: Vec<[Place; 2]>) -> ConstrainedMesh {
         let chains = segments.iter().flat_map(|&segment| chain(&points, segment));
         let constraints = chains.map(|[a, b]| [a.min(b), a.max(b)]).collect();

@@ -66,7 +66,8 @@ impl Scene {
         self
     }
 
-    /// The segments, and the points that the mesh does not have; those that `is_hard` accepts have elevations.
+    /// The segments, and the points that the mesh does not have; those that `is_hard` accepts have
+    /// elevations.
     pub fn network(&self, is_hard: impl Fn(u32) -> bool) -> Network {
         let in_segments = self.segments.iter().flatten().copied();
         let mut used: Vec<u32> = in_segments.chain(self.first as u32..self.points.len() as u32).collect();

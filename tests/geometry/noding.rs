@@ -72,7 +72,7 @@ fn small_sets_are_noded_as_defined() {
 }
 
 #[test]
-#[ignore = "long"]
+#[ignore = "long: run with -- --ignored"]
 fn many_small_sets_are_noded_as_defined() {
     check_small_sets(1, 200_000);
 }

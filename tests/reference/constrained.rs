@@ -136,7 +136,8 @@ impl Scene {
     }
 }
 
-/// Where the ray in a direction from the origin crosses the inside of an edge: numerator and positive denominator.
+/// Where the ray in a direction from the origin crosses the inside of an edge: numerator and positive
+/// denominator.
 fn distance(direction: Vector, [p, q]: [Vector; 2]) -> Option<(i128, i128)> {
     if cross(direction, p).signum() * cross(direction, q).signum() != -1 {
         return None;

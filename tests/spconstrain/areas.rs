@@ -5,7 +5,8 @@ use crate::programs::Folder;
 use spmesh_core::random::Random;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Scattered points, and polygons: one with a corner outside of the points, two that overlap, one with a hole.
+/// Scattered points, and polygons: one with a corner outside of the points, two that overlap, one with a
+/// hole.
 fn scene(folder: &Folder, seed: u64) -> Vec<u8> {
     let mut random = Random::new(seed);
     let points: String = (0..1500)

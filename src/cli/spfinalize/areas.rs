@@ -12,13 +12,13 @@ use spmesh_lines::{Target, read_polygons};
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Polygons")]
 pub(super) struct AreaFlags {
-    /// Keep only points inside of these polygons or on their border: GeoJSON, Shapefile, GeoPackage or WKT. May be
-    /// given several times: one of the polygons must have the point
+    /// Keep only points inside of these polygons or on their border: GeoJSON, Shapefile, GeoPackage or WKT.
+    /// May be given several times: one of the polygons must have the point
     #[arg(long, value_name = "FILE")]
     clip: Vec<PathBuf>,
 
-    /// Drop points inside of these polygons; those on a border stay, unless another polygon has them inside. May be
-    /// given several times
+    /// Drop points inside of these polygons; those on a border stay, unless another polygon has them inside.
+    /// May be given several times
     #[arg(long, value_name = "FILE")]
     drop_inside: Vec<PathBuf>,
 }

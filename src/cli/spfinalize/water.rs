@@ -15,11 +15,11 @@ use spmesh_stream::Coordinates;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Water")]
 pub(super) struct WaterFlags {
-    /// Make the lakes and rivers of this file flat: points in them and on their shores are dropped, and vertices of
-    /// shores become points at the level of the water. Polygons are lakes; their level is that of their vertices, or
-    /// the property level, or else that of points near the shore. Polygons with the property river are rivers; a line
-    /// with the same one is their centre line, and leads downstream. GeoJSON, Shapefile or GeoPackage. May be given
-    /// several times
+    /// Make the lakes and rivers of this file flat: points in them and on their shores are dropped, and
+    /// vertices of shores become points at the level of the water. Polygons are lakes; their level is that of
+    /// their vertices, or the property level, or else that of points near the shore. Polygons with the
+    /// property river are rivers; a line with the same one is their centre line, and leads downstream.
+    /// GeoJSON, Shapefile or GeoPackage. May be given several times
     #[arg(long, value_name = "FILE")]
     flatten: Vec<PathBuf>,
 
@@ -27,8 +27,8 @@ pub(super) struct WaterFlags {
     #[arg(long, value_name = "P", default_value_t = 10.0, value_parser = parse_percentile, requires = "flatten")]
     shore_percentile: f64,
 
-    /// Points are near a shore up to this distance, in world units [default: 4 times the mean distance between
-    /// points, which takes one more pass]
+    /// Points are near a shore up to this distance, in world units [default: 4 times the mean distance
+    /// between points, which takes one more pass]
     #[arg(long, value_name = "W", value_parser = parse_width, requires = "flatten")]
     shore_width: Option<f64>,
 }
@@ -51,8 +51,8 @@ impl WaterFlags {
         &self.flatten
     }
 
-    /// Finds the levels, from points of `input` that `areas` select if none are stated; the points in water are then
-    /// dropped, too.
+    /// Finds the levels, from points of `input` that `areas` select if none are stated; the points in water
+    /// are then dropped, too.
     ///
     /// # Errors
     /// Those of the input; as [`Levels::find`].

@@ -55,7 +55,8 @@ fn name_fan(
     vertex: u32,
 ) {
     let point = triangles[start as usize][place as usize];
-    // Counterclockwise, the next triangle is across the side opposite to the next vertex; clockwise, the other.
+    // Counterclockwise, the next triangle is across the side opposite to the next vertex; clockwise, the
+    // other.
     for turn in [1, 2] {
         let mut triangle = start;
         loop {

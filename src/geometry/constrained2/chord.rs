@@ -7,8 +7,8 @@ use crate::predicates::{Point2, Predicates2, Sign, lexicographic};
 use foldhash::HashMap;
 use spmesh_core::error::{Error, Result};
 
-/// Makes the part of a segment an edge that goes from a vertex on it towards its end `to`, up to the next vertex.
-/// Returns whether the part leaves the region before it reaches one.
+/// Makes the part of a segment an edge that goes from a vertex on it towards its end `to`, up to the next
+/// vertex. Returns whether the part leaves the region before it reaches one.
 ///
 /// # Errors
 /// Runtime, if the part crosses another segment.
@@ -105,8 +105,8 @@ fn outer_sides(mesh: &Mesh, numbers: &[u32]) -> HashMap<[u32; 2], Outer> {
     outer
 }
 
-/// Divides a polygon into triangles. It runs counterclockwise along `chain`, and back along a straight line. A
-/// vertex comes several times where the polygon touches itself.
+/// Divides a polygon into triangles. It runs counterclockwise along `chain`, and back along a straight line.
+/// A vertex comes several times where the polygon touches itself.
 ///
 /// The triangle at the line has the vertex whose circle through both ends contains no other. This leaves a
 /// polygon of the same kind on each of its sides.

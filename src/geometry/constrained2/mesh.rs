@@ -81,8 +81,8 @@ impl Mesh {
         Some(Side { triangle: neighbour, place })
     }
 
-    /// Writes triangle `number` and makes its neighbours and vertices refer to it. Each neighbour comes as the
-    /// side that this side is for it.
+    /// Writes triangle `number` and makes its neighbours and vertices refer to it. Each neighbour comes as
+    /// the side that this side is for it.
     pub(super) fn set(
         &mut self,
         number: u32,

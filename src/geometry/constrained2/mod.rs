@@ -1,10 +1,10 @@
 //! Constrained Delaunay triangulation of a region: segments become edges, and every other edge is locally
 //! Delaunay with canonical ties.
 //!
-//! A [`Region`] starts as some triangles of a Delaunay triangulation. Its border stays. Vertices and segments are
-//! inserted; what comes out is the constrained Delaunay triangulation of the region, which is unique: ties on
-//! circles are broken by the perturbation of [`Predicates2::incircle_perturbed`]. So the order of insertion does
-//! not matter.
+//! A [`Region`] starts as some triangles of a Delaunay triangulation. Its border stays. Vertices and segments
+//! are inserted; what comes out is the constrained Delaunay triangulation of the region, which is unique:
+//! ties on circles are broken by the perturbation of [`Predicates2::incircle_perturbed`]. So the order of
+//! insertion does not matter.
 //!
 //! Source: Chew, "Constrained Delaunay triangulations", 1989; Anglada, "An improved incremental algorithm for
 //! constructing restricted Delaunay triangulations", 1997, for the insertion of a segment.
@@ -62,9 +62,9 @@ impl Region {
         vertex::insert(&mut self.mesh, from, point, place, predicates);
     }
 
-    /// Makes the parts of a segment edges that go from some of the points `on`, which all lie on it, towards its
-    /// second end. A part goes up to the next point on the segment. Parts that leave the region before are
-    /// left out; returns whether there is one.
+    /// Makes the parts of a segment edges that go from some of the points `on`, which all lie on it, towards
+    /// its second end. A part goes up to the next point on the segment. Parts that leave the region before
+    /// are left out; returns whether there is one.
     ///
     /// Cost: O(k log k) expected for a part that crosses k triangles.
     ///

@@ -138,8 +138,8 @@ fn split_edge(mesh: &mut Mesh, side: Side, vertex: u32) {
     }
 }
 
-/// Divides the triangle of a side by a vertex on the side. Returns both halves of the side, whose neighbours are
-/// to be set.
+/// Divides the triangle of a side by a vertex on the side. Returns both halves of the side, whose neighbours
+/// are to be set.
 fn split_at(mesh: &mut Mesh, side: Side, vertex: u32) -> [Side; 2] {
     let triangle = *mesh.triangle(side.triangle);
     let [apex, from, to] = [0, 1, 2].map(|turn| triangle.vertices[(side.place + turn) % 3]);

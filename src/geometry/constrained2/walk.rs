@@ -11,8 +11,8 @@ pub(super) enum End {
     Vertex(u32),
     /// Inside of this triangle: the target is there.
     Inside(u32),
-    /// On the line of this side, which is crossed last or, if none is crossed, opposite to the start: the target
-    /// is on it.
+    /// On the line of this side, which is crossed last or, if none is crossed, opposite to the start: the
+    /// target is on it.
     On(Side),
     /// At the border, which the line leaves through this side; or at the start, if the region is not there.
     Border(Option<Side>),
@@ -31,8 +31,8 @@ enum Start {
     Nothing,
 }
 
-/// Walks from vertex `from` straight towards `to`, which is another place, up to the first vertex on the line or
-/// to the target.
+/// Walks from vertex `from` straight towards `to`, which is another place, up to the first vertex on the line
+/// or to the target.
 pub(super) fn walk(mesh: &Mesh, from: u32, to: Point2, predicates: &mut impl Predicates2) -> (Walk, End) {
     let origin = mesh.place(from);
     let mut walk = Walk::default();
@@ -63,7 +63,8 @@ pub(super) fn walk(mesh: &Mesh, from: u32, to: Point2, predicates: &mut impl Pre
     }
 }
 
-/// The end of a walk that enters a triangle through `entry` and meets its apex, unless the target comes before.
+/// The end of a walk that enters a triangle through `entry` and meets its apex, unless the target comes
+/// before.
 fn end_at(mesh: &Mesh, entry: Side, apex: u32, to: Point2, predicates: &mut impl Predicates2) -> End {
     let vertices = mesh.triangle(entry.triangle).vertices;
     let [left, right] = [vertices[(entry.place + 1) % 3], vertices[(entry.place + 2) % 3]];

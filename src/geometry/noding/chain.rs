@@ -31,11 +31,13 @@ impl<'n> Chains<'n> {
         Chains { noded, starts, segments }
     }
 
-    /// Calls `found` with the numbers of the segments to which the part of a line from `a` to `b` was bent, in
-    /// their order. Returns whether they form a chain, which they do for parts of the lines that were noded.
+    /// Calls `found` with the numbers of the segments to which the part of a line from `a` to `b` was bent,
+    /// in their order. Returns whether they form a chain, which they do for parts of the lines that were
+    /// noded.
     ///
-    /// A segment passes through the hot pixels that it meets, in the order of their centres: neither coordinate
-    /// turns back. So the next vertex is the first one, in this order, of the neighbours whose pixels it meets.
+    /// A segment passes through the hot pixels that it meets, in the order of their centres: neither
+    /// coordinate turns back. So the next vertex is the first one, in this order, of the neighbours whose
+    /// pixels it meets.
     pub fn of_part(&self, a: Place, b: Place, mut found: impl FnMut(u32)) -> bool {
         let vertices = &self.noded.vertices;
         let number = |place: Place| vertices.binary_search_by(|vertex| vertex.place.cmp(&place)).ok();

@@ -60,8 +60,8 @@ impl Cells {
         cells
     }
 
-    /// Decides the cells without an edge. Those of a row beside each other lie on one side, and so does one of them
-    /// and the cell below it. So few need a test.
+    /// Decides the cells without an edge. Those of a row beside each other lie on one side, and so does one
+    /// of them and the cell below it. So few need a test.
     fn fill(&mut self, side: impl Fn(Point2) -> Side) {
         let columns = self.size[0];
         for row in 0..self.size[1] {

@@ -56,8 +56,8 @@ impl Polygons {
         Polygons::of_edges((0..).zip(polygons).flat_map(of_polygon))
     }
 
-    /// The union of polygons by their edges: the number of the polygon and the ends of each. The edges of a polygon
-    /// come one after the other.
+    /// The union of polygons by their edges: the number of the polygon and the ends of each. The edges of a
+    /// polygon come one after the other.
     ///
     /// # Panics
     /// As [`Polygons::new`].

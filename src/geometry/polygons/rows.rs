@@ -67,7 +67,8 @@ impl Rows {
         self.starts.len() - 1
     }
 
-    /// The row of a place. It never decreases with y, so an edge that meets the height of a place is in its row.
+    /// The row of a place. It never decreases with y, so an edge that meets the height of a place is in its
+    /// row.
     fn row(&self, y: f64) -> usize {
         // Halves, because a difference may exceed the range of f64.
         ((0.5 * y - 0.5 * self.bottom) * 2.0 * self.scale).min(self.rows() as f64 - 1.0) as usize
@@ -127,7 +128,8 @@ impl Rows {
         let row = self.row(place[1]);
         for group in self.starts[row]..self.starts[row + 1] {
             let Group { width: [low, high], start } = self.groups[group];
-            // Beyond these edges, a ray to the right meets none of them, or each crossing has its counterpart.
+            // Beyond these edges, a ray to the right meets none of them, or each crossing has its
+            // counterpart.
             if place[0] < low || place[0] > high {
                 continue;
             }

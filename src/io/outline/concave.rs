@@ -114,7 +114,8 @@ impl ConcaveOutline {
         self.take_edges(self.limit.long_edges(places), triangle)
     }
 
-    /// As [`ConcaveOutline::take`], with the edges that chains may cross; edge i leads from corner i to the next.
+    /// As [`ConcaveOutline::take`], with the edges that chains may cross; edge i leads from corner i to the
+    /// next.
     ///
     /// # Errors
     /// As there.
@@ -147,7 +148,8 @@ impl ConcaveOutline {
         self.vertices.as_ref().is_some_and(|vertices| vertices.contains(&vertex))
     }
 
-    /// The vertices of waiting triangles, in increasing order. Empty without [`ConcaveOutline::with_vertices`].
+    /// The vertices of waiting triangles, in increasing order. Empty without
+    /// [`ConcaveOutline::with_vertices`].
     pub fn take_vertices(&mut self) -> Vec<u64> {
         let mut vertices: Vec<u64> = self.vertices.take().into_iter().flatten().collect();
         vertices.sort_unstable();

@@ -10,8 +10,8 @@ use spmesh_model::decimal::Decimal;
 use spmesh_stream::{Event, Header, Kind};
 
 /// Writes each edge on a line as a `LineString` with the property `line`, the number of the line in its file.
-/// If the stream states an EPSG code, the collection has the member `crs` of the 2008 specification, as contour
-/// lines have.
+/// If the stream states an EPSG code, the collection has the member `crs` of the 2008 specification, as
+/// contour lines have.
 pub struct GeoJsonSink<W> {
     output: W,
     mesh: Surveyed,

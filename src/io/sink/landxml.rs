@@ -14,12 +14,12 @@ use spmesh_model::bounds::Point;
 use spmesh_model::decimal::Decimal;
 use spmesh_stream::{Crs, Event, Header, Kind};
 
-/// Writes a triangle mesh as a surface: points and faces, and a breakline for each edge on a line, which has the
-/// number of the line as its name.
+/// Writes a triangle mesh as a surface: points and faces, and a breakline for each edge on a line, which has
+/// the number of the line as its name.
 ///
-/// All points come before all faces, so faces and breaklines wait in unnamed temporary files. Memory: the width
-/// of the stream, and 4 bytes per segment. The schema wants a date: it is always that of the Unix epoch, so that
-/// equal meshes become equal files.
+/// All points come before all faces, so faces and breaklines wait in unnamed temporary files. Memory: the
+/// width of the stream, and 4 bytes per segment. The schema wants a date: it is always that of the Unix
+/// epoch, so that equal meshes become equal files.
 pub struct LandXmlSink<W> {
     output: W,
     mesh: Surveyed,

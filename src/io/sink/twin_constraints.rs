@@ -20,8 +20,8 @@ pub(super) fn segments(
     Ok(())
 }
 
-/// Writes the lines of the sides of a patch, behind the lines of its triangles; `first` triangles were written
-/// before these.
+/// Writes the lines of the sides of a patch, behind the lines of its triangles; `first` triangles were
+/// written before these.
 pub(super) fn sides(output: &mut impl Write, first: u64, sides: &[[u32; 3]]) -> Result<()> {
     for [triangle, place, segment] in sides.iter().map(|side| side.map(u64::from)) {
         let (triangle, place, segment) = (first + triangle + 1, place + 1, segment + 1);

@@ -9,8 +9,8 @@ use spmesh_core::error::Result;
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 
 impl<W: Write> StreamWriter<W> {
-    /// Appends segments to a constrained mesh. They are numbered from 0 in the order in which they are written;
-    /// the sides of later patches may name them.
+    /// Appends segments to a constrained mesh. They are numbered from 0 in the order in which they are
+    /// written; the sides of later patches may name them.
     ///
     /// # Errors
     /// Malformed, if a coordinate does not fit the encoding of the header, a segment has equal ends, or there
@@ -28,8 +28,8 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends numbers of segments that leave the mesh, so that edges do not cover them: increasing, also over
-    /// several calls. No patch or segment follows.
+    /// Appends numbers of segments that leave the mesh, so that edges do not cover them: increasing, also
+    /// over several calls. No patch or segment follows.
     ///
     /// # Errors
     /// Malformed, if a number is not that of a segment, or not above the one before; I/O, if writing fails.

@@ -89,8 +89,8 @@ impl Area {
         self.known[cell] == INSIDE
     }
 
-    /// Whether the middle of a triangle is inside of a polygon. Three times it is the sum of the corners, which is
-    /// exact for integers.
+    /// Whether the middle of a triangle is inside of a polygon. Three times it is the sum of the corners,
+    /// which is exact for integers.
     fn has(&mut self, corners: [Point2; 3]) -> bool {
         let middle = [0, 1].map(|axis| corners[0][axis] + corners[1][axis] + corners[2][axis]);
         let row = self.row(middle[1]);

@@ -24,8 +24,8 @@ pub(super) enum Item {
 
 /// Cells over the box of a network, with the segments and vertices in each.
 ///
-/// Memory: about 4 bytes a cell, and 4 for each segment and vertex in a cell. There are about as many cells as
-/// segments and vertices.
+/// Memory: about 4 bytes a cell, and 4 for each segment and vertex in a cell. There are about as many cells
+/// as segments and vertices.
 #[derive(Debug)]
 pub(super) struct Cells {
     origin: Point2,
@@ -215,8 +215,8 @@ impl Cells {
         range(&CellBox { min, max }, self.fine_size())
     }
 
-    /// Calls `found` with the items of all cells that meet a box and that `meets` accepts, some of them several
-    /// times. `meets` takes a box and may accept too much.
+    /// Calls `found` with the items of all cells that meet a box and that `meets` accepts, some of them
+    /// several times. `meets` takes a box and may accept too much.
     pub(super) fn for_each_in(
         &self,
         bounds: &CellBox,

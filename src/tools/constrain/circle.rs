@@ -16,8 +16,8 @@ pub(super) struct Circle {
 }
 
 impl Circle {
-    /// The circle through the corners of a triangle, in stored coordinates and in units of cells; `scale` is the
-    /// number of cells per unit.
+    /// The circle through the corners of a triangle, in stored coordinates and in units of cells; `scale` is
+    /// the number of cells per unit.
     pub(super) fn of(stored: [Point2; 3], corners: [Point2; 3], scale: f64) -> Circle {
         let [a, b, c] = stored;
         let [u, v] = [b, c].map(|p| [(p[0] - a[0]) * scale, (p[1] - a[1]) * scale]);
@@ -66,10 +66,10 @@ impl Circle {
 
     /// The same for circles whose centre is too far to be computed.
     ///
-    /// The power of a point is the square of its distance from the centre less that of the radius. Along an axis
-    /// it is a square and a linear function, so inside of a box with the sides w and h it is less than at the
-    /// corners by at most (w² + h²) / 4. Times twice the area of the triangle, it is the determinant of the
-    /// in-circle test.
+    /// The power of a point is the square of its distance from the centre less that of the radius. Along an
+    /// axis it is a square and a linear function, so inside of a box with the sides w and h it is less than
+    /// at the corners by at most (w² + h²) / 4. Times twice the area of the triangle, it is the determinant
+    /// of the in-circle test.
     fn may_meet_flat(&self, bounds: &CellBox) -> bool {
         let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
         let dip = self.twice_area.abs() * (width * width + height * height) / 4.0;

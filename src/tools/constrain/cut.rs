@@ -15,8 +15,8 @@ use std::path::PathBuf;
 /// How the border is cut.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CutOptions {
-    /// Remove triangles at edges of the border that are longer and on no segment, until there is none. In world
-    /// units.
+    /// Remove triangles at edges of the border that are longer and on no segment, until there is none. In
+    /// world units.
     pub kill: Option<f64>,
     /// For triangles that `kill` may remove, which wait until the end. Units: bytes.
     pub memory: u64,
@@ -34,7 +34,8 @@ pub(super) struct Cut {
     is_cut: bool,
     /// Triangles that were removed.
     pub(super) removed: u64,
-    /// Edges on segments of which one triangle is decided, by the segment and the lesser end: whether it stays.
+    /// Edges on segments of which one triangle is decided, by the segment and the lesser end: whether it
+    /// stays.
     edges: HashMap<(u32, [u64; 2]), bool>,
     /// Segments with an edge of which no triangle stays.
     pub(super) open: Vec<u32>,
@@ -68,7 +69,8 @@ impl Cut {
         }
     }
 
-    /// Whether triangles may be removed, and the greatest length of edges at the border, in stored units, or 0.
+    /// Whether triangles may be removed, and the greatest length of edges at the border, in stored units, or
+    /// 0.
     pub(super) fn claim(&self) -> (bool, f64) {
         (self.is_cut, self.limit.stored_length())
     }
@@ -112,8 +114,8 @@ impl Cut {
         self.is_cut
     }
 
-    /// Keeps a triangle until the end if it may be removed, and returns whether it did. Vertices have their ids in
-    /// the output; `on` are the segments of the sides opposite to them.
+    /// Keeps a triangle until the end if it may be removed, and returns whether it did. Vertices have their
+    /// ids in the output; `on` are the segments of the sides opposite to them.
     ///
     /// # Errors
     /// As [`ConcaveOutline::take_edges`].

@@ -1,8 +1,9 @@
 //! Triangles that wait until all that they are triangulated anew with have come.
 //!
-//! Two neighbours belong together if a segment crosses their common edge, or if the circles of both contain new
-//! vertices. Any other edge stays: no segment crosses it, and the circle of one of its triangles is empty of all
-//! vertices. A component of such triangles is *whole* when no edge of it can get a neighbour that belongs to it.
+//! Two neighbours belong together if a segment crosses their common edge, or if the circles of both contain
+//! new vertices. Any other edge stays: no segment crosses it, and the circle of one of its triangles is empty
+//! of all vertices. A component of such triangles is *whole* when no edge of it can get a neighbour that
+//! belongs to it.
 //!
 //! * Whether a segment crosses an edge follows from one of its triangles. The other one must come, unless the edge
 //!   is on the border of the mesh.
@@ -132,8 +133,8 @@ impl Holding {
         self.triangles_max = self.triangles_max.max(self.triangles.len());
     }
 
-    /// Joins a new triangle with its neighbour at an edge if they belong together. Lets the edge wait if it has
-    /// no neighbour yet and may get one.
+    /// Joins a new triangle with its neighbour at an edge if they belong together. Lets the edge wait if it
+    /// has no neighbour yet and may get one.
     fn meet(&mut self, number: u32, edge: [u32; 2], is_crossed: bool) {
         let Some(other) = self.open.remove(&edge) else {
             if is_crossed || !self.triangles.get(number).vertices.is_empty() {

@@ -1,8 +1,9 @@
 //! Breaklines in a triangle mesh that streams: segments become edges, and the rest stays Delaunay.
 //!
-//! A triangle of the Delaunay triangulation that no segment divides, and whose circle contains no new vertex, is a
-//! triangle of the constrained Delaunay triangulation, because its circle is empty of all vertices. Such triangles
-//! pass at once. The others wait (`held`) until all that they are triangulated anew with have come (`strip`).
+//! A triangle of the Delaunay triangulation that no segment divides, and whose circle contains no new vertex,
+//! is a triangle of the constrained Delaunay triangulation, because its circle is empty of all vertices. Such
+//! triangles pass at once. The others wait (`held`) until all that they are triangulated anew with have come
+//! (`strip`).
 //!
 //! `near` says what of the lines a triangle meets, with the help of `cells`; `writing` makes patches.
 
@@ -68,8 +69,8 @@ pub struct Stats {
     pub held_max: u64,
 }
 
-/// Makes the segments of `network` edges of a triangle mesh, and writes the mesh to `output`. Calls `progress`
-/// with the number of vertices done.
+/// Makes the segments of `network` edges of a triangle mesh, and writes the mesh to `output`. Calls
+/// `progress` with the number of vertices done.
 ///
 /// Vertices of the network that the mesh does not have are added to it, if they are inside of its triangles.
 /// Those without an elevation get that of the surface there. Vertices that the mesh has take the elevation of
@@ -78,8 +79,8 @@ pub struct Stats {
 /// Memory: the network and its cells, about 60 bytes for a segment; live vertices; and triangles that wait.
 ///
 /// # Errors
-/// Usage, if the input is no triangle mesh or is constrained already; malformed, if it breaks a rule or segments
-/// cross; I/O.
+/// Usage, if the input is no triangle mesh or is constrained already; malformed, if it breaks a rule or
+/// segments cross; I/O.
 pub fn constrain<R: Read, W: Write>(
     reader: &mut StreamReader<R>,
     network: &Network,
@@ -198,8 +199,8 @@ impl<W: Write> Filter<'_, W> {
         }
     }
 
-    /// Takes the triangles that lines change out of a patch, and those that are cut off. Notes the sides of the
-    /// others that are on segments.
+    /// Takes the triangles that lines change out of a patch, and those that are cut off. Notes the sides of
+    /// the others that are on segments.
     fn divide(&mut self, patch: &mut Patch) -> Result<()> {
         let locals = self.live.enter(patch, |_, point| point)?;
         self.lines.enter(locals.iter().map(|(_, [x, y, _])| [*x, *y]));

@@ -137,8 +137,8 @@ impl<'n> Lines<'n> {
     }
 
     /// Whether the circle of a triangle of the present patch stays where all vertices were found: whether its
-    /// diameter is less than the margin. The square of the diameter is the product of the squares of the sides
-    /// over that of twice the area.
+    /// diameter is less than the margin. The square of the diameter is the product of the squares of the
+    /// sides over that of twice the area.
     #[inline]
     fn is_small(&self, [a, b, c]: [Point2; 3]) -> bool {
         let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);

@@ -26,8 +26,8 @@ pub(super) struct Strip {
 
 /// The constrained triangulation of `triangles`.
 ///
-/// Vertices with elevations come first, and the segments between them. The others take their elevation from this
-/// surface.
+/// Vertices with elevations come first, and the segments between them. The others take their elevation from
+/// this surface.
 ///
 /// # Errors
 /// Malformed, if segments cross.

@@ -29,7 +29,8 @@ struct Triangle {
     places: [Point2; 3],
 }
 
-/// Writes the mesh. Vertices keep their order, so ids grow by the number of vertices that were added before them.
+/// Writes the mesh. Vertices keep their order, so ids grow by the number of vertices that were added before
+/// them.
 pub(super) struct Writing<W: Write> {
     writer: StreamWriter<W>,
     /// For each group of vertices that were added: the first id of the input after them, and how many were
@@ -73,8 +74,8 @@ impl<W: Write> Writing<W> {
         after.checked_sub(1).map_or(id, |last| id + self.shifts[last][1])
     }
 
-    /// Whether a triangle of the input stays in its patch: it is not cut off, and cannot be later. `ids` are those
-    /// of the input, `on` the segments of its sides.
+    /// Whether a triangle of the input stays in its patch: it is not cut off, and cannot be later. `ids` are
+    /// those of the input, `on` the segments of its sides.
     ///
     /// # Errors
     /// If triangles that wait need too much memory.
@@ -216,8 +217,8 @@ impl<W: Write> Writing<W> {
         self.writer.patch_with_rows(&patch, &self.row.repeat(new.len()))
     }
 
-    /// Writes the triangles that waited and were not cut off, and ends the stream. `open` are the segments that are
-    /// not wholly edges. Returns the counts with those that are known now.
+    /// Writes the triangles that waited and were not cut off, and ends the stream. `open` are the segments
+    /// that are not wholly edges. Returns the counts with those that are known now.
     pub(super) fn end(
         mut self,
         mut open: Vec<u32>,

@@ -10,7 +10,8 @@
 //!
 //! If points are to be thinned, a pass before these finds which ones are kept (`thin`).
 //!
-//! Polygons may say which points count (`select`), and the points near shores tell the levels of water (`shores`).
+//! Polygons may say which points count (`select`), and the points near shores tell the levels of water
+//! (`shores`).
 //!
 //! Points may be added to those of the input, such as the vertices of lines (`added`).
 //!

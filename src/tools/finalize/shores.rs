@@ -18,8 +18,8 @@ const CELLS_ALONG: f64 = 1e6;
 /// Mean distances between points that the width of shores is by default.
 const WIDTH_DISTANCES: f64 = 4.0;
 
-/// The width of shores where none is given: four times the mean distance between points, which is the root of the area
-/// of their box for each point. `None` without points. In stored units.
+/// The width of shores where none is given: four times the mean distance between points, which is the root of
+/// the area of their box for each point. `None` without points. In stored units.
 ///
 /// # Errors
 /// Those of the input.
@@ -42,7 +42,8 @@ pub fn shore_width<P: Passes + ?Sized>(input: &P, observer: &mut dyn Observer) -
     }))
 }
 
-/// Shores, and the points that count for them: those at most a width away, and neither in water nor on a shore.
+/// Shores, and the points that count for them: those at most a width away, and neither in water nor on a
+/// shore.
 #[derive(Debug)]
 pub struct Shores {
     edges: Vec<(u32, [Point2; 2])>,
@@ -56,8 +57,8 @@ pub struct Shores {
 }
 
 impl Shores {
-    /// The shores of polygons whose edges are given with their numbers; points are collected for those that `needed`
-    /// says. `width` is in stored units.
+    /// The shores of polygons whose edges are given with their numbers; points are collected for those that
+    /// `needed` says. `width` is in stored units.
     #[must_use]
     pub fn new(edges: Vec<(u32, [Point2; 2])>, needed: &[bool], width: f64) -> Shores {
         let water = Polygons::of_edges(edges.iter().copied());

@@ -75,8 +75,8 @@ fn in_space_of_observations(
     log_determinant(covariance) + log_determinant(products) + (all.len() as f64 - 3.0) * rest.ln()
 }
 
-/// An energy less the part that linear functions have: E - EX S^-1 X'E, where the columns of X are the slopes and
-/// S = X'EX. Linear functions have none then.
+/// An energy less the part that linear functions have: E - EX S^-1 X'E, where the columns of X are the slopes
+/// and S = X'EX. Linear functions have none then.
 fn without_linear_part(energy: &mut [Vec<f64>], slopes: [&Vec<f64>; 2]) {
     let products = slopes.map(|x| energy.iter().map(|row| dot(row, x)).collect::<Vec<f64>>());
     let [a, b, d] = [[0, 0], [0, 1], [1, 1]].map(|[i, j]| dot(slopes[i], &products[j]));

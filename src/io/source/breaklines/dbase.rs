@@ -1,7 +1,7 @@
 //! The table beside a Shapefile (`.dbf`), of which few columns have a meaning here.
 //!
-//! Source: dBASE III, as the ESRI Shapefile Technical Description, 1998, uses it: records of text of fixed length, in
-//! the order of the shapes.
+//! Source: dBASE III, as the ESRI Shapefile Technical Description, 1998, uses it: records of text of fixed
+//! length, in the order of the shapes.
 
 use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read};

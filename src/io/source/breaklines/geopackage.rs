@@ -57,8 +57,8 @@ pub(super) fn read(path: &Path) -> Result<Breaklines> {
 
 /// Checks that the file has all of its pages: SQLite reads what it needs of a file that was cut off.
 ///
-/// The header has the size of pages at byte 16 (1 stands for 65536) and their number at byte 28, which counts if bytes
-/// 24 and 92 state the same change.
+/// The header has the size of pages at byte 16 (1 stands for 65536) and their number at byte 28, which counts
+/// if bytes 24 and 92 state the same change.
 fn check_whole(path: &Path) -> Result<()> {
     let reading = |e| Error::io("reading", e);
     let mut file = File::open(path).map_err(|e| Error::io("opening", e))?;

@@ -91,7 +91,8 @@ pub fn read_breaklines(path: &Path) -> Result<Breaklines> {
     read(path, false).map_err(|error| error.of_input(name_of(path)))
 }
 
-/// Reads the polygons of a file as [`read_breaklines`], also from WKT, of which third coordinates are ignored.
+/// Reads the polygons of a file as [`read_breaklines`], also from WKT, of which third coordinates are
+/// ignored.
 ///
 /// # Errors
 /// As there. Lines that are no rings are no error.
