@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use foldhash::HashSet;
 
-use super::passes::Passes;
+use super::passes::{Passes, next_kept};
 use spmesh_core::error::Result;
 use spmesh_io::source::{Description, PointReader};
 use spmesh_model::bounds::{Bounds, Point};
@@ -117,47 +117,29 @@ struct WithAddedReader<'a> {
     rows: Vec<u8>,
 }
 
-impl WithAddedReader<'_> {
-    /// Leaves out the points of a batch at places of added points.
-    fn replace(&mut self, batch: &mut Vec<Point>) {
-        let (row_len, mut kept) = (self.row.len(), 0);
-        for index in 0..batch.len() {
-            if self.added.places.contains(&place(&batch[index])) {
-                self.replaced += 1;
-                continue;
-            }
-            batch[kept] = batch[index];
-            kept += 1;
-            self.rows.extend_from_slice(&self.reader.rows()[index * row_len..(index + 1) * row_len]);
-        }
-        batch.truncate(kept);
-    }
-}
-
 impl PointReader for WithAddedReader<'_> {
     fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
-        self.rows.clear();
         let rest = &self.added.points[self.next..];
         if !rest.is_empty() {
             let points = &rest[..rest.len().min(BATCH)];
             batch.clear();
             batch.extend_from_slice(points);
             self.next += points.len();
+            self.rows.clear();
             points.iter().for_each(|_| self.rows.extend_from_slice(self.row));
             return Ok(());
         }
-        loop {
-            self.reader.next_batch(batch)?;
-            if batch.is_empty() {
-                self.added.replaced.store(self.replaced, Ordering::Relaxed);
-                return Ok(());
-            }
-            self.rows.clear();
-            self.replace(batch);
-            if !batch.is_empty() {
-                return Ok(());
-            }
+        let WithAddedReader { reader, added, row, replaced, rows, .. } = self;
+        // Points of the input at places of added points are left out.
+        next_kept(&mut **reader, batch, row.len(), rows, |point| {
+            let is_free = !added.places.contains(&place(point));
+            *replaced += u64::from(!is_free);
+            is_free
+        })?;
+        if batch.is_empty() {
+            added.replaced.store(*replaced, Ordering::Relaxed);
         }
+        Ok(())
     }
 
     fn rows(&self) -> &[u8] {

@@ -2,6 +2,7 @@
 
 use spmesh_core::error::Result;
 use spmesh_io::source::{Description, Input, PointReader};
+use spmesh_model::bounds::Point;
 
 /// An input that can be read from its start as often as needed, the same every time.
 pub trait Passes {
@@ -40,6 +41,39 @@ impl Passes for Input {
 
     fn name(&self) -> Option<String> {
         Some(Input::name(self))
+    }
+}
+
+/// Reads the next batch of which `keeps` accepts points, and leaves out all others; empty at the end. Sets `rows` to
+/// the rows of these points, of `row_len` bytes.
+///
+/// # Errors
+/// Those of the reader.
+pub(super) fn next_kept(
+    reader: &mut dyn PointReader,
+    batch: &mut Vec<Point>,
+    row_len: usize,
+    rows: &mut Vec<u8>,
+    mut keeps: impl FnMut(&Point) -> bool,
+) -> Result<()> {
+    rows.clear();
+    loop {
+        reader.next_batch(batch)?;
+        if batch.is_empty() {
+            return Ok(());
+        }
+        let mut kept = 0;
+        for index in 0..batch.len() {
+            if keeps(&batch[index]) {
+                batch[kept] = batch[index];
+                kept += 1;
+                rows.extend_from_slice(&reader.rows()[index * row_len..(index + 1) * row_len]);
+            }
+        }
+        batch.truncate(kept);
+        if kept > 0 {
+            return Ok(());
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::passes::Passes;
+use super::passes::{Passes, next_kept};
 use spmesh_core::error::Result;
 use spmesh_geometry::polygons::{Polygons, Rings, Side};
 use spmesh_io::source::{Description, PointReader};
@@ -137,42 +137,19 @@ struct SelectedReader<'a> {
     rows: Vec<u8>,
 }
 
-impl SelectedReader<'_> {
-    /// Leaves out the points of a batch that do not count.
-    fn select(&mut self, batch: &mut Vec<Point>) {
-        let (row_len, mut kept) = (self.row_len, 0);
-        for index in 0..batch.len() {
-            let [x, y, _] = batch[index];
-            let place = [x, y];
-            let tests = [Areas::clips, Areas::drops, Areas::floods];
-            if let Some(reason) = tests.iter().position(|test| test(self.areas, place)) {
-                self.dropped[reason] += 1;
-                continue;
-            }
-            batch[kept] = batch[index];
-            kept += 1;
-            self.rows.extend_from_slice(&self.reader.rows()[index * row_len..(index + 1) * row_len]);
-        }
-        batch.truncate(kept);
-    }
-}
-
 impl PointReader for SelectedReader<'_> {
     fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
-        loop {
-            self.reader.next_batch(batch)?;
-            self.rows.clear();
-            if batch.is_empty() {
-                for (count, dropped) in self.counts.iter().zip(self.dropped) {
-                    count.store(dropped, Ordering::Relaxed);
-                }
-                return Ok(());
-            }
-            self.select(batch);
-            if !batch.is_empty() {
-                return Ok(());
-            }
+        let SelectedReader { reader, areas, counts, dropped, row_len, rows } = self;
+        next_kept(&mut **reader, batch, *row_len, rows, |&[x, y, _]| {
+            let tests = [Areas::clips, Areas::drops, Areas::floods];
+            let reason = tests.iter().position(|test| test(areas, [x, y]));
+            reason.into_iter().for_each(|reason| dropped[reason] += 1);
+            reason.is_none()
+        })?;
+        if batch.is_empty() {
+            counts.iter().zip(dropped).for_each(|(count, dropped)| count.store(*dropped, Ordering::Relaxed));
         }
+        Ok(())
     }
 
     fn rows(&self) -> &[u8] {

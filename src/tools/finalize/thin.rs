@@ -11,7 +11,7 @@ use std::str::FromStr;
 use super::batch::PointBatch;
 use super::budget::Budget;
 use super::changed::input_changed;
-use super::passes::Passes;
+use super::passes::{Passes, next_kept};
 use super::read_ahead::read_ahead;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_io::source::{Description, PointReader};
@@ -275,39 +275,18 @@ struct ThinnedReader<'a> {
     rows: Vec<u8>,
 }
 
-impl ThinnedReader<'_> {
-    /// Whether the next point of the input is kept.
-    fn takes_next(&mut self) -> bool {
-        let is_kept = self.winners.numbers.get(self.next) == Some(&self.read);
-        self.read += 1;
-        self.next += usize::from(is_kept);
-        is_kept
-    }
-}
-
 impl PointReader for ThinnedReader<'_> {
     fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
-        self.rows.clear();
-        loop {
-            self.reader.next_batch(batch)?;
-            if batch.is_empty() {
-                let is_same = self.read == self.winners.points && self.next == self.winners.numbers.len();
-                return if is_same { Ok(()) } else { Err(input_changed()) };
-            }
-            let mut kept = 0;
-            for index in 0..batch.len() {
-                if self.takes_next() {
-                    batch[kept] = batch[index];
-                    kept += 1;
-                    let row = index * self.row_len..(index + 1) * self.row_len;
-                    self.rows.extend_from_slice(&self.reader.rows()[row]);
-                }
-            }
-            batch.truncate(kept);
-            if kept > 0 {
-                return Ok(());
-            }
-        }
+        let ThinnedReader { reader, winners, next, read, row_len, rows } = self;
+        next_kept(&mut **reader, batch, *row_len, rows, |_| {
+            let is_kept = winners.numbers.get(*next) == Some(&*read);
+            *read += 1;
+            *next += usize::from(is_kept);
+            is_kept
+        })?;
+        let is_end = batch.is_empty();
+        let is_same = *read == winners.points && *next == winners.numbers.len();
+        if is_end && !is_same { Err(input_changed()) } else { Ok(()) }
     }
 
     fn rows(&self) -> &[u8] {
