@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use super::numbered::{Bent, Numbered, numbered};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::noding::{Chains, LineVertex, Noded};
 use spmesh_io::source::Breaklines;
 
 /// Files of lines and polygons.
@@ -59,45 +59,29 @@ pub(crate) struct Ring {
 /// # Errors
 /// Malformed, if a file of an area has a line that is no ring.
 pub(crate) fn rings(files: &[(Role, String, Breaklines)]) -> Result<Vec<Ring>> {
-    let (mut rings, mut line, mut polygons) = (Vec::new(), 0, 0);
-    for (role, name, file) in files {
-        for breakline in &file.lines {
-            if matches!(role, Role::Hull | Role::Holes) {
-                let Some(polygon) = breakline.polygon else {
-                    let error = Error::malformed("found a line, expected polygons");
-                    return Err(error.at(&breakline.position).of_input(name));
-                };
-                rings.push(Ring { role: *role, line, polygon: polygons + polygon });
-            }
-            line += 1;
+    let of_areas = numbered(files).filter(|line| matches!(line.role, Role::Hull | Role::Holes));
+    let ring = |Numbered { role, file, number, polygon, line }: Numbered| match polygon {
+        Some(polygon) => Ok(Ring { role, line: number, polygon }),
+        None => {
+            let error = Error::malformed("found a line, expected polygons");
+            Err(error.at(&line.position).of_input(file))
         }
-        polygons += 1 + file.lines.iter().filter_map(|line| line.polygon).max().unwrap_or(0);
-    }
-    Ok(rings)
+    };
+    of_areas.map(ring).collect()
 }
 
-/// The areas after noding; `starts` are the numbers of the first vertices of lines.
+/// The areas after noding.
 ///
 /// # Errors
 /// Malformed, if a ring is no chain of segments, which noding excludes.
-pub(crate) fn areas(rings: &[Ring], noded: &Noded, vertices: &[LineVertex], starts: &[u32]) -> Result<Areas> {
+pub(crate) fn areas(rings: &[Ring], bent: &Bent) -> Result<Areas> {
     let mut areas = Areas::default();
-    if rings.is_empty() {
-        return Ok(areas);
-    }
-    let chains = Chains::new(noded);
     for same in rings.chunk_by(|a, b| a.polygon == b.polygon) {
         let mut segments = Vec::new();
-        for ring in same {
-            let first = starts[ring.line as usize] as usize;
-            let end = starts.get(ring.line as usize + 1).map_or(vertices.len(), |&end| end as usize);
-            for part in vertices[first..end].windows(2) {
-                if !chains.of_part(part[0].place, part[1].place, |segment| segments.push(segment)) {
-                    let ([x, y], line) = (part[0].place, ring.line);
-                    let message = format!("the ring of line {line} was lost behind {x}, {y} of the grid");
-                    return Err(Error::malformed(message));
-                }
-            }
+        for &Ring { line, .. } in same {
+            segments.extend(bent.segments(line).map_err(|[x, y]| {
+                Error::malformed(format!("the ring of line {line} was lost behind {x}, {y} of the grid"))
+            })?);
         }
         let polygon = odd(segments);
         let area = if same[0].role == Role::Hull { &mut areas.hull } else { &mut areas.holes };

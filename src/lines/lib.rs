@@ -8,6 +8,7 @@ mod areas;
 mod changes;
 mod grid;
 mod levels;
+mod numbered;
 mod polygons;
 mod prepare;
 mod stations;
@@ -27,6 +28,7 @@ pub use areas::{Areas, Sources};
 pub use changes::{Change, ChangeKind, Changes};
 use grid::Grid;
 pub use levels::Levels;
+use numbered::Bent;
 pub use polygons::read_polygons;
 pub use water::{Water, WaterPolygon};
 
@@ -128,8 +130,12 @@ fn read_all(
     };
     let mut note = |change, line, place| changes.note(ChangeKind::of(change), line, || grid.world(place));
     let noded = node_lines(&vertices, &starts, &noding, &mut note)?;
-    let areas = areas::areas(&rings, &noded, &vertices, &starts)?;
-    let water = water::water(&features, &noded, &vertices, &starts)?;
+    let (mut areas, mut water) = (Areas::default(), Water::default());
+    if !rings.is_empty() || !features.is_empty() {
+        let bent = Bent::new(&noded, &vertices, &starts);
+        areas = areas::areas(&rings, &bent)?;
+        water = water::water(&features, &bent)?;
+    }
     Ok((network(noded, &grid), areas, water, changes))
 }
 

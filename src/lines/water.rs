@@ -5,8 +5,8 @@
 
 use super::Target;
 use super::areas::{Role, odd};
+use super::numbered::{Bent, Numbered, numbered};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::noding::{Chains, LineVertex, Noded};
 use spmesh_io::source::{Breakline, Breaklines};
 use spmesh_model::network::Network;
 use spmesh_model::points::Point2;
@@ -112,39 +112,24 @@ pub(crate) struct Feature {
 /// Malformed, if a feature is neither a polygon nor a centre line, or its level makes no sense; usage, if
 /// points have no elevation.
 pub(crate) fn features(files: &[(Role, String, Breaklines)], target: &Target) -> Result<Vec<Feature>> {
-    let (mut features, mut line, mut polygons) = (Vec::new(), 0, 0);
-    for (role, name, file) in files {
-        if *role == Role::Water && !target.has_elevation {
-            return Err(Error::usage("points have no elevation: --flatten needs x, y and z"));
-        }
-        for breakline in &file.lines {
-            if *role == Role::Water {
-                let position = Place { file: name.clone(), position: breakline.position.clone() };
-                let level = level(breakline, target).map_err(|message| position.fault(message))?;
-                let river = breakline.properties.river.clone();
-                if breakline.polygon.is_none() && river.is_none() {
-                    return Err(
-                        position.fault("found a line, expected polygons, or lines with the property river")
-                    );
-                }
-                let (first, last) = (breakline.vertices.first(), breakline.vertices.last());
-                if breakline.polygon.is_some() && first != last {
-                    return Err(position.fault("a ring is not closed: repeat its first position at the end"));
-                }
-                features.push(Feature {
-                    line,
-                    polygon: breakline.polygon.map(|polygon| polygons + polygon),
-                    level,
-                    is_hard: breakline.elevations.iter().any(Option::is_some),
-                    river,
-                    position,
-                });
-            }
-            line += 1;
-        }
-        polygons += 1 + file.lines.iter().filter_map(|line| line.polygon).max().unwrap_or(0);
+    if files.iter().any(|(role, ..)| *role == Role::Water) && !target.has_elevation {
+        return Err(Error::usage("points have no elevation: --flatten needs x, y and z"));
     }
-    Ok(features)
+    numbered(files).filter(|line| line.role == Role::Water).map(|line| feature(&line, target)).collect()
+}
+
+fn feature(&Numbered { file, number, polygon, line, .. }: &Numbered, target: &Target) -> Result<Feature> {
+    let position = Place { file: file.to_string(), position: line.position.clone() };
+    let level = level(line, target).map_err(|message| position.fault(message))?;
+    let river = line.properties.river.clone();
+    if polygon.is_none() && river.is_none() {
+        return Err(position.fault("found a line, expected polygons, or lines with the property river"));
+    }
+    if polygon.is_some() && line.vertices.first() != line.vertices.last() {
+        return Err(position.fault("a ring is not closed: repeat its first position at the end"));
+    }
+    let is_hard = line.elevations.iter().any(Option::is_some);
+    Ok(Feature { line: number, polygon, level, river, is_hard, position })
 }
 
 /// The stored level that a ring of a lake states.
@@ -180,22 +165,12 @@ fn level(line: &Breakline, target: &Target) -> std::result::Result<Option<f64>, 
     Ok(Some(stored))
 }
 
-/// Water after noding; `starts` are the numbers of the first vertices of lines.
+/// Water after noding.
 ///
 /// # Errors
 /// Malformed, if a river has no centre line or several, or a centre line no river.
-pub(crate) fn water(
-    features: &[Feature],
-    noded: &Noded,
-    vertices: &[LineVertex],
-    starts: &[u32],
-) -> Result<Water> {
-    let mut water = Water::default();
-    if features.is_empty() {
-        return Ok(water);
-    }
-    let chains = Chains::new(noded);
-    let mut names: Vec<&str> = Vec::new();
+pub(crate) fn water(features: &[Feature], bent: &Bent) -> Result<Water> {
+    let (mut names, mut water) = (Vec::new(), Water::default());
     for feature in features.iter().filter(|feature| feature.polygon.is_none()) {
         let name = feature.river.as_deref().unwrap_or_default();
         if names.contains(&name) {
@@ -203,72 +178,62 @@ pub(crate) fn water(
             return Err(feature.position.fault(message));
         }
         names.push(name);
-        let segments = segments(feature, &chains, vertices, starts)?;
-        let Some(first) =
-            noded.vertices.binary_search_by_key(&start(feature, vertices, starts), |v| v.place).ok()
-        else {
-            return Err(feature.position.fault("the centre line was lost"));
-        };
-        let mut path = vec![first as u32];
-        for segment in segments {
-            let [a, b] = noded.segments[segment as usize].ends;
-            path.push(if path[path.len() - 1] == a { b } else { a });
-        }
-        if path.len() < 2 {
-            return Err(feature
-                .position
-                .fault("a centre line is at one place of the grid, expected two at least"));
-        }
-        let (is_hard, position) = (feature.is_hard, feature.position.clone());
-        water.centres.push(Centre { vertices: path, is_hard, position });
+        water.centres.push(centre(feature, bent)?);
     }
     let rings: Vec<&Feature> = features.iter().filter(|feature| feature.polygon.is_some()).collect();
-    let mut is_used = vec![false; names.len()];
     for same in rings.chunk_by(|a, b| a.polygon == b.polygon) {
-        let mut border = Vec::new();
-        for ring in same {
-            border.extend(segments(ring, &chains, vertices, starts)?);
-        }
-        let position = same[0].position.clone();
-        let centre = match &same[0].river {
-            None => None,
-            Some(river) => Some(names.iter().position(|name| name == river).ok_or_else(|| {
-                position.fault(format!(
-                    "the river {river:?} has no centre line: add a line with the property river {river:?}"
-                ))
-            })?),
-        };
-        if let Some(centre) = centre {
-            is_used[centre] = true;
-        }
-        let level = same[0].level;
-        if let Some(other) = same.iter().find(|ring| ring.level != level) {
-            return Err(other
-                .position
-                .fault("the shores of islands have another elevation than that of the lake"));
-        }
-        water.polygons.push(WaterPolygon { segments: odd(border), level, centre, position });
+        water.polygons.push(polygon(same, &names, bent)?);
     }
-    if let Some(unused) = is_used.iter().position(|is_used| !is_used) {
+    let is_used = |centre: &usize| water.polygons.iter().any(|polygon| polygon.centre == Some(*centre));
+    if let Some(unused) = (0..names.len()).find(|centre| !is_used(centre)) {
         let message = format!("the river {:?} has no polygon", names[unused]);
         return Err(water.centres[unused].position.fault(message));
     }
     Ok(water)
 }
 
-fn start(feature: &Feature, vertices: &[LineVertex], starts: &[u32]) -> [i64; 2] {
-    vertices[starts[feature.line as usize] as usize].place
+/// The centre line of a river.
+fn centre(feature: &Feature, bent: &Bent) -> Result<Centre> {
+    let segments = segments(feature, bent)?;
+    let start = bent.vertices(feature.line)[0].place;
+    let Ok(first) = bent.noded.vertices.binary_search_by_key(&start, |vertex| vertex.place) else {
+        return Err(feature.position.fault("the centre line was lost"));
+    };
+    let mut vertices = vec![first as u32];
+    for segment in segments {
+        let [a, b] = bent.noded.segments[segment as usize].ends;
+        vertices.push(if vertices[vertices.len() - 1] == a { b } else { a });
+    }
+    if vertices.len() < 2 {
+        let message = "a centre line is at one place of the grid, expected two at least";
+        return Err(feature.position.fault(message));
+    }
+    Ok(Centre { vertices, is_hard: feature.is_hard, position: feature.position.clone() })
+}
+
+/// The polygon of some rings; `names` are those of rivers, in the order of their centre lines.
+fn polygon(rings: &[&Feature], names: &[&str], bent: &Bent) -> Result<WaterPolygon> {
+    let mut border = Vec::new();
+    for ring in rings {
+        border.extend(segments(ring, bent)?);
+    }
+    let Feature { level, river, position, .. } = rings[0];
+    let centre_of = |river: &String| {
+        names.iter().position(|name| name == river).ok_or_else(|| {
+            position.fault(format!(
+                "the river {river:?} has no centre line: add a line with the property river {river:?}"
+            ))
+        })
+    };
+    let centre = river.as_ref().map(centre_of).transpose()?;
+    if let Some(other) = rings.iter().find(|ring| ring.level != *level) {
+        let message = "the shores of islands have another elevation than that of the lake";
+        return Err(other.position.fault(message));
+    }
+    Ok(WaterPolygon { segments: odd(border), level: *level, centre, position: position.clone() })
 }
 
 /// The segments of a line, in its order.
-fn segments(feature: &Feature, chains: &Chains, vertices: &[LineVertex], starts: &[u32]) -> Result<Vec<u32>> {
-    let line = feature.line as usize;
-    let end = starts.get(line + 1).map_or(vertices.len(), |&end| end as usize);
-    let mut segments = Vec::new();
-    for part in vertices[starts[line] as usize..end].windows(2) {
-        if !chains.of_part(part[0].place, part[1].place, |segment| segments.push(segment)) {
-            return Err(feature.position.fault("the line was lost"));
-        }
-    }
-    Ok(segments)
+fn segments(feature: &Feature, bent: &Bent) -> Result<Vec<u32>> {
+    bent.segments(feature.line).map_err(|_| feature.position.fault("the line was lost"))
 }
