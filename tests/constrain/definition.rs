@@ -3,6 +3,7 @@
 use super::scene::{Constrained, LINE, Scene, elevation, run};
 use spmesh_reference::as_set;
 use spmesh_reference::constrained::Scene as Reference;
+use spmesh_reference::segments::{in_square, without_copies};
 use spmesh_reference::sets::{Random, distinct, uniform};
 
 /// Compares a mesh with the definition.
@@ -36,15 +37,7 @@ fn segments_with_new_vertices() {
         let mut random = Random::new(seed + 10_000);
         // The corners of a square come first, so that no later point is outside.
         let side = [2, 4, 6, 20, 1000][seed as usize % 5];
-        let mut points = vec![[0, 0], [side, 0], [side, side], [0, side]];
-        let count = random.integer(1, 9) as usize;
-        points.extend(uniform(&mut random, count, side));
-        let mut unique = Vec::new();
-        points.into_iter().for_each(|p| {
-            if !unique.contains(&p) {
-                unique.push(p)
-            }
-        });
+        let unique = in_square(&mut random, side);
         let first = 4 + random.integer(0, unique.len() as i64 - 4) as usize;
         let scene = Scene::random(&mut random, unique, 4).with_first(first);
         let network = scene.network(|point| point % 3 == 0 && seed % 2 == 0);
@@ -70,15 +63,7 @@ fn every_order_of_triangles_gives_the_same_mesh() {
         let mut points = distinct(&mut random, grid);
         let first = points.len();
         points.extend((0..60).map(|_| [4 * random.integer(0, 38) + 1, 4 * random.integer(0, 23) + 2]));
-        points = {
-            let mut unique = Vec::new();
-            points.into_iter().for_each(|p| {
-                if !unique.contains(&p) {
-                    unique.push(p)
-                }
-            });
-            unique
-        };
+        let points = without_copies(points);
         let scene = Scene::random(&mut random, points, 80).with_first(first);
         let network = scene.network(|point| point % 2 == 0);
         let sorted = |found: Constrained| {

@@ -4,6 +4,7 @@ use spmesh_constrain::{Options, Stats, constrain};
 use spmesh_geometry::delaunay2::triangulate;
 use spmesh_lines::Areas;
 use spmesh_model::network::{Network, NetworkSegment, NetworkVertex};
+use spmesh_reference::segments::{is_on, random_segments};
 use spmesh_reference::sets::{Random, as_floats};
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, StreamWriter};
 use std::collections::BTreeMap;
@@ -13,24 +14,6 @@ pub struct Scene {
     pub points: Vec<[i64; 2]>,
     pub segments: Vec<[u32; 2]>,
     pub first: usize,
-}
-
-fn turn(p: [i64; 2], q: [i64; 2], r: [i64; 2]) -> i64 {
-    ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])).signum()
-}
-
-/// Whether a point lies on a segment.
-fn is_on([p, q]: [[i64; 2]; 2], x: [i64; 2]) -> bool {
-    let dot = (p[0] - x[0]) * (q[0] - x[0]) + (p[1] - x[1]) * (q[1] - x[1]);
-    turn(p, q, x) == 0 && dot <= 0
-}
-
-/// Whether two segments have more in common than ends of both.
-fn collide(s: [[i64; 2]; 2], t: [[i64; 2]; 2]) -> bool {
-    let crosses = turn(s[0], s[1], t[0]) * turn(s[0], s[1], t[1]) < 0
-        && turn(t[0], t[1], s[0]) * turn(t[0], t[1], s[1]) < 0;
-    let touches = |s: [[i64; 2]; 2], t: [[i64; 2]; 2]| s.iter().any(|&x| is_on(t, x) && !t.contains(&x));
-    crosses || touches(s, t) || touches(t, s) || (s.contains(&t[0]) && s.contains(&t[1]))
 }
 
 /// The surface without lines.
@@ -43,15 +26,7 @@ pub const LINE: f64 = 1000.0;
 
 impl Scene {
     pub fn random(random: &mut Random, points: Vec<[i64; 2]>, most: usize) -> Scene {
-        let mut segments: Vec<[u32; 2]> = Vec::new();
-        let at = |ends: [u32; 2]| ends.map(|end| points[end as usize]);
-        for _ in 0..4 * most {
-            let ends = [0; 2].map(|_| random.integer(0, points.len() as i64 - 1) as u32);
-            let collides = segments.iter().any(|&other| collide(at(other), at(ends)));
-            if segments.len() < most && ends[0] != ends[1] && !collides {
-                segments.push(ends);
-            }
-        }
+        let segments = random_segments(random, &points, most, false);
         Scene { first: points.len(), points, segments }
     }
 

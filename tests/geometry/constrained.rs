@@ -5,6 +5,7 @@ use spmesh_geometry::delaunay2::triangulate;
 use spmesh_geometry::predicates::FiniteFloatPredicates;
 use spmesh_reference::as_set;
 use spmesh_reference::constrained::Scene;
+use spmesh_reference::segments::{in_square, is_in, is_on, random_segments};
 use spmesh_reference::sets::{Random, as_floats, distinct, uniform};
 
 /// Points, segments between them that do not cross, and how many of the points are in the mesh at first.
@@ -14,39 +15,10 @@ struct Case {
     first: usize,
 }
 
-fn turn(p: [i64; 2], q: [i64; 2], r: [i64; 2]) -> i64 {
-    ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])).signum()
-}
-
-/// Whether a point lies on a segment.
-fn is_on([p, q]: [[i64; 2]; 2], x: [i64; 2]) -> bool {
-    let dot = (p[0] - x[0]) * (q[0] - x[0]) + (p[1] - x[1]) * (q[1] - x[1]);
-    turn(p, q, x) == 0 && dot <= 0
-}
-
-/// Whether two segments have more in common than points that are an end of one of them.
-fn collide(s: [[i64; 2]; 2], t: [[i64; 2]; 2]) -> bool {
-    let crosses = turn(s[0], s[1], t[0]) * turn(s[0], s[1], t[1]) < 0
-        && turn(t[0], t[1], s[0]) * turn(t[0], t[1], s[1]) < 0;
-    let ends = [s[0], s[1], t[0], t[1]];
-    let mut shared: Vec<[i64; 2]> = ends.into_iter().filter(|&x| is_on(s, x) && is_on(t, x)).collect();
-    shared.sort_unstable();
-    shared.dedup();
-    crosses || shared.len() > 1
-}
-
 impl Case {
     /// Up to `most` segments between random points, of which no two collide or touch but at points.
     fn random(random: &mut Random, points: Vec<[i64; 2]>, most: usize) -> Case {
-        let mut segments: Vec<[u32; 2]> = Vec::new();
-        let at = |ends: [u32; 2]| ends.map(|end| points[end as usize]);
-        for _ in 0..4 * most {
-            let ends = [0; 2].map(|_| random.integer(0, points.len() as i64 - 1) as u32);
-            let collides = segments.iter().any(|&other| collide(at(other), at(ends)));
-            if segments.len() < most && ends[0] != ends[1] && !collides {
-                segments.push(ends);
-            }
-        }
+        let segments = random_segments(random, &points, most, true);
         Case { first: points.len(), points, segments }
     }
 
@@ -58,10 +30,8 @@ impl Case {
         let triangles: Vec<[u32; 3]> = mesh.simplices().collect();
         let mut region = Region::new(&places, &triangles);
         for (number, &place) in places.iter().enumerate().skip(self.first) {
-            let holds = |triangle: &[u32; 3]| {
-                let corners = triangle.map(|v| self.points[v as usize]);
-                (0..3).all(|i| turn(corners[i], corners[(i + 1) % 3], self.points[number]) >= 0)
-            };
+            let holds =
+                |triangle: &[u32; 3]| is_in(triangle.map(|v| self.points[v as usize]), self.points[number]);
             if let Some(triangle) = triangles.iter().position(holds) {
                 region.insert(number as u32, place, triangle as u32, &mut predicates);
             }
@@ -109,16 +79,8 @@ fn inserted_points_follow_the_definition() {
         let mut random = Random::new(seed + 10_000);
         // The corners of a square come first, so that no later point is outside.
         let side = [2, 4, 6, 20, 1000][seed as usize % 5];
-        let mut points = vec![[0, 0], [side, 0], [side, side], [0, side]];
-        let count = random.integer(1, 9) as usize;
-        points.extend(uniform(&mut random, count, side));
-        let mut unique = Vec::new();
-        points.into_iter().for_each(|p| {
-            if !unique.contains(&p) {
-                unique.push(p)
-            }
-        });
-        let mut case = Case::random(&mut random, unique, 4);
+        let points = in_square(&mut random, side);
+        let mut case = Case::random(&mut random, points, 4);
         case.first = 4 + random.integer(0, case.points.len() as i64 - 4) as usize;
         case.check();
     }
