@@ -2,6 +2,7 @@
 
 use super::Side;
 use super::rows::Edge;
+use crate::cell_walk::for_each_cell;
 use spmesh_model::points::Point2;
 
 /// Cells per edge, about, and their least and greatest number.
@@ -10,9 +11,6 @@ const CELLS: [f64; 2] = [65_536.0, 16_777_216.0];
 
 /// Least side of a cell, as part of the greatest coordinate.
 const CELL_MIN: f64 = 1.0 / (1u64 << 46) as f64;
-
-/// Places are off by far less than this after they are put on the grid. Unit: cells.
-const TOLERANCE: f64 = 1e-6;
 
 /// A cell that an edge meets. Other values are those of [`Side`], and 0 where nothing is known yet.
 const EDGE: u8 = 255;
@@ -55,7 +53,11 @@ impl Cells {
         let size = [width, height].map(|length| if is_wide { (length * scale) as usize + 1 } else { 1 });
         let states = vec![UNKNOWN; size[0] * size[1]];
         let mut cells = Cells { min, max, scale, size, states };
-        edges.iter().for_each(|edge| cells.mark(edge.ends));
+        for edge in edges {
+            let ends = edge.ends.map(|end| cells.local(end));
+            let columns = cells.size[0];
+            for_each_cell(ends, cells.size, |[column, row]| cells.states[row * columns + column] = EDGE);
+        }
         cells.fill(side);
         cells
     }
@@ -113,29 +115,6 @@ impl Cells {
             EDGE => None,
             INSIDE => Some(Side::Inside),
             _ => Some(Side::Outside),
-        }
-    }
-
-    /// Marks all cells that an edge meets, and perhaps others beside it; row by row.
-    fn mark(&mut self, ends: [Point2; 2]) {
-        let [lower, upper] = ends.map(|end| self.local(end));
-        let cell = |value: f64, axis: usize| (value as usize).min(self.size[axis] - 1);
-        let [left, right] = [lower[0].min(upper[0]), lower[0].max(upper[0])];
-        let [first_row, last_row] = [cell(lower[1] - TOLERANCE, 1), cell(upper[1] + TOLERANCE, 1)];
-        let height = upper[1] - lower[1];
-        let x_at = |y: f64| {
-            let part = ((y - lower[1]) / height).clamp(0.0, 1.0);
-            lower[0] + part * (upper[0] - lower[0])
-        };
-        for row in first_row..=last_row {
-            let [mut low, mut high] = [left, right];
-            if height > 0.0 {
-                let xs = [row as f64 - TOLERANCE, (row + 1) as f64 + TOLERANCE].map(x_at);
-                [low, high] = [xs[0].min(xs[1]), xs[0].max(xs[1])];
-            }
-            for column in cell(low - TOLERANCE, 0)..=cell(high + TOLERANCE, 0) {
-                self.states[row * self.size[0] + column] = EDGE;
-            }
         }
     }
 }

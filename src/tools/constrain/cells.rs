@@ -2,6 +2,7 @@
 
 use super::bits::Bits;
 use super::pyramid::Pyramid;
+use spmesh_geometry::cell_walk::{TOLERANCE, for_each_cell};
 use spmesh_model::network::Network;
 use spmesh_model::points::Point2;
 
@@ -11,9 +12,6 @@ const CELLS: [f64; 2] = [4096.0, 4_194_304.0];
 
 /// Fine cells along the side of a cell: they say quickly that nothing is near.
 const FINE: usize = 4;
-
-/// Places are off by far less than this after they are put on the grid. Unit: cells.
-const TOLERANCE: f64 = 1e-6;
 
 /// What lies in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,7 +126,7 @@ impl Cells {
         let size = self.fine_size();
         for segment in &network.segments {
             let ends = network.places(segment).map(|end| self.local(end).map(|x| x * FINE as f64));
-            along(ends, size, |cell| fine.set(cell));
+            for_each_cell(ends, size, |cell| fine.set(cell));
         }
         self.fine_segments = fine;
         for vertex in &network.vertices {
@@ -177,7 +175,7 @@ impl Cells {
         let size = [self.columns, self.rows];
         for (number, segment) in (0..).zip(&network.segments) {
             let ends = network.places(segment).map(|end| self.local(end));
-            along(ends, size, |[column, row]| found(row * self.columns + column, number));
+            for_each_cell(ends, size, |[column, row]| found(row * self.columns + column, number));
         }
         for (number, vertex) in (self.segments..).zip(&network.vertices) {
             found(self.cell(vertex.place), number);
@@ -188,19 +186,6 @@ impl Cells {
     #[inline]
     pub(super) fn is_free(&self, bounds: &CellBox) -> bool {
         self.fine_range(bounds).is_none_or(|range| !self.fine_segments.any(range))
-    }
-
-    /// The number of cells.
-    pub(super) fn count(&self) -> usize {
-        self.columns * self.rows
-    }
-
-    /// A cell that a box meets, if neither the box nor the cell has a segment.
-    pub(super) fn free_cell(&self, bounds: &CellBox) -> Option<usize> {
-        let [[column, _], [row, _]] = range(bounds, [self.columns, self.rows])?;
-        let fine = [column, row].map(|first| [first * FINE, first * FINE + FINE - 1]);
-        let is_free = self.is_free(bounds) && !self.fine_segments.any(fine);
-        is_free.then_some(row * self.columns + column)
     }
 
     /// Whether all vertices in a box were found.
@@ -248,24 +233,4 @@ fn range(bounds: &CellBox, size: [usize; 2]) -> Option<[[usize; 2]; 2]> {
         ranges[axis] = [low as usize, high as usize].map(|cell| cell.min(size[axis] - 1));
     }
     Some(ranges)
-}
-
-/// Calls `found` with all cells that a segment meets, and perhaps others beside it; row by row.
-fn along(ends: [Point2; 2], size: [usize; 2], mut found: impl FnMut([usize; 2])) {
-    let Some([columns, rows]) = range(&CellBox::of(&ends), size) else { return };
-    let [lower, upper] = if ends[0][1] <= ends[1][1] { ends } else { [ends[1], ends[0]] };
-    let height = upper[1] - lower[1];
-    let x_at = |y: f64| {
-        let part = ((y - lower[1]) / height).clamp(0.0, 1.0);
-        lower[0] + part * (upper[0] - lower[0])
-    };
-    for row in rows[0]..=rows[1] {
-        let [mut first, mut last] = columns;
-        if height > 0.0 {
-            let xs = [row as f64 - TOLERANCE, (row + 1) as f64 + TOLERANCE].map(x_at);
-            let [low, high] = [xs[0].min(xs[1]) - TOLERANCE, xs[0].max(xs[1]) + TOLERANCE];
-            [first, last] = [first.max(low as usize), last.min(high as usize)];
-        }
-        (first..=last).for_each(|column| found([column, row]));
-    }
 }

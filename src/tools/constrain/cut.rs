@@ -1,8 +1,8 @@
 //! What is cut from the border of the mesh: all outside of a hull, holes, and triangles with long edges.
 
-use super::area::Area;
 use foldhash::HashMap;
 use spmesh_core::error::Result;
+use spmesh_geometry::polygons::{Polygons, Side};
 use spmesh_geometry::predicates::lexicographic;
 use spmesh_io::outline::{ConcaveOutline, EdgeLimit, Inside, Waiting};
 use spmesh_lines::Areas;
@@ -27,8 +27,8 @@ pub struct CutOptions {
 /// Decides which triangles stay.
 #[derive(Debug)]
 pub(super) struct Cut {
-    hull: Option<Area>,
-    holes: Option<Area>,
+    hull: Option<Polygons>,
+    holes: Option<Polygons>,
     limit: EdgeLimit,
     outline: Option<ConcaveOutline>,
     is_cut: bool,
@@ -51,7 +51,7 @@ impl Cut {
         coordinates: &Coordinates,
         options: &CutOptions,
     ) -> Cut {
-        let area = |polygons: &Option<Vec<Vec<u32>>>| polygons.as_ref().map(|it| Area::new(network, it));
+        let area = |polygons: &Option<Vec<Vec<u32>>>| polygons.as_ref().map(|it| tripled(network, it));
         let outline = options.kill.map(|length| {
             ConcaveOutline::new(length, coordinates, options.memory, options.temp_dir.as_deref())
                 .with_vertices()
@@ -81,8 +81,10 @@ impl Cut {
         if self.hull.is_none() && self.holes.is_none() {
             return true;
         }
-        let is_kept = self.hull.as_mut().is_none_or(|hull| hull.contains(corners))
-            && !self.holes.as_mut().is_some_and(|holes| holes.contains(corners));
+        // Three times the middle of the triangle, which is exact for integers and on no border.
+        let middle = [0, 1].map(|axis| corners[0][axis] + corners[1][axis] + corners[2][axis]);
+        let contains = |area: &Polygons| area.side(middle) == Side::Inside;
+        let is_kept = self.hull.as_ref().is_none_or(contains) && !self.holes.as_ref().is_some_and(contains);
         if !is_kept {
             self.removed += 1;
             self.note(corners, on, false);
@@ -175,6 +177,17 @@ impl Cut {
         open.extend(self.edges.drain().filter(|(_, is_kept)| !is_kept).map(|((segment, _), _)| segment));
         open
     }
+}
+
+/// The union of polygons whose borders are segments of a network, three times as large.
+fn tripled(network: &Network, polygons: &[Vec<u32>]) -> Polygons {
+    let numbered = (0..).zip(polygons);
+    Polygons::of_edges(numbered.flat_map(|(polygon, segments)| {
+        segments.iter().map(move |&segment| {
+            let ends = network.places(&network.segments[segment as usize]);
+            (polygon, ends.map(|end| end.map(|x| 3.0 * x)))
+        })
+    }))
 }
 
 /// Corners and segments in the place of the corners of a triangle that waits.

@@ -7,7 +7,6 @@
 //!
 //! `near` says what of the lines a triangle meets, with the help of `cells`; `writing` makes patches.
 
-mod area;
 mod bits;
 mod cells;
 mod circle;
