@@ -17,7 +17,7 @@ fn wrong_uses_are_said() {
     for (arguments, input, code, part) in [
         (&[][..], &mesh[..], 2, "nothing to do"),
         (&["--lines", &lines], &constrained, 2, "has lines already"),
-        (&["--lines", &lines], &points, 2, "expected a triangle mesh"),
+        (&["--lines", &lines], &points, 2, "these are points: triangulate them with spdelaunay2d"),
         (&["--lines", &missing], &mesh, 1, "No such file"),
         (&["--lines", &bad], &mesh, 3, "line 1"),
         (&["--hull", &polygon], &mesh, 3, "expected polygons"),

@@ -28,7 +28,7 @@ use spmesh_lines::Areas;
 use spmesh_model::bounds::Point;
 use spmesh_model::network::Network;
 use spmesh_stream::{
-    Constrained, Coordinates, Event, Header, Kind, LiveVertices, Patch, StreamReader, StreamWriter,
+    Constrained, Coordinates, Event, Header, LiveVertices, Patch, StreamReader, StreamWriter, check_surface,
 };
 use writing::Writing;
 
@@ -119,12 +119,7 @@ pub fn constrain<R: Read, W: Write>(
 }
 
 fn check(header: &Header) -> Result<()> {
-    if header.kind != Kind::TriangleMesh {
-        let name = header.kind.name();
-        return Err(Error::usage(format!(
-            "a stream of {name}, expected a triangle mesh, as spdelaunay2d writes it"
-        )));
-    }
+    check_surface(header, false)?;
     if header.constrained.is_some() {
         let message = "the mesh has lines already: give all lines at once, to the mesh without lines";
         return Err(Error::usage(message));
