@@ -30,9 +30,10 @@ const NOTES: &str = "\
 Without --knots, the program searches for knots. It starts with a coarse grid over the box of the points. \
 Each round adds knots where residuals exceed --tol [default: 0.25 % of the range of most elevations], up to \
 --max-knots [default: one for 4 points, at most 20,000]. Without both flags, the search ends at 5,000 knots; \
-if residuals still exceed the tolerance, the knots are those of a grid with about two for each point (at \
-most 300,000), which predicts terrain best. With --step, knots form a grid with cells of this side. Points \
-as knots are for splines of degree 2 over their convex hull: the border is pulled apart.
+if residuals still exceed the tolerance, the knots are those of a grid with about four for each point (at \
+most 600,000), which predicts terrain best. The smoothing is chosen over a quarter of them; robust fits have \
+half of them. With --step, knots form a grid with cells of this side. Points as knots are for splines of \
+degree 2 over their convex hull: the border is pulled apart.
 
 Without --lambda, given knots get the coefficients of least squares. Coefficients that the points leave \
 undetermined are those of least energy. For other knots, lambda and the tension are chosen by restricted \

@@ -9,7 +9,8 @@
 //! functions with a part in v, the one that is eliminated last has a small pivot: about v'(M + ridge)v
 //! divided by the square of its part of v. That part may be small itself, so a small pivot only makes a
 //! function a candidate. The solution v for a unit vector at the candidate is nearly an undetermined
-//! direction, and its curvature v'Mv / v'v decides.
+//! direction, and its curvature v'Mv / v'Dv decides. The diagonal D has what observations add to that of the
+//! matrix, not all of it: the energy of some functions may be so great that everything is small against it.
 
 use super::factor_blocks::Blocks;
 use super::symmetric::Symmetric;
@@ -23,7 +24,7 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 
 /// Added to a diagonal of ones: a few hundred times the rounding error of a pivot.
 pub(super) const RIDGE: f64 = 1e-13;
-/// Directions v with a lesser v'Mv / v'v are undetermined.
+/// Directions v with a lesser v'Mv / v'Dv are undetermined.
 pub(super) const CURVATURE_MIN: f64 = 1e-12;
 /// Steps of refinement. For pivots that are not weak, each step multiplies the error by the relative error
 /// that the ridge causes.
@@ -117,8 +118,9 @@ impl Factor<'_> {
     }
 
     /// The functions that are not determined, given those eliminated before, in order of their numbers. Each
-    /// comes with the curvature v'Mv / v'v in its undetermined direction.
-    pub(super) fn weak(&self) -> Vec<(usize, f64)> {
+    /// comes with the curvature v'Mv / v'Dv in its undetermined direction. D is `sizes`, or the diagonal of
+    /// the matrix where that is less.
+    pub(super) fn weak(&self, sizes: &[f64]) -> Vec<(usize, f64)> {
         let symbolic = &self.elimination.symbolic;
         let original = symbolic.perm().map(|order| order.arrays().0);
         // A unit vector has a part of at least 1 / sqrt(number of functions) in some function.
@@ -126,7 +128,7 @@ impl Factor<'_> {
         let candidates = self.pivots().into_iter().enumerate().filter(|&(_, pivot)| pivot < pivot_min);
         let functions = candidates.map(|(place, _)| original.map_or(place, |order| order[place]));
         let mut weak: Vec<(usize, f64)> = functions
-            .map(|function| (function, self.curvature(function)))
+            .map(|function| (function, self.curvature(function, sizes)))
             .filter(|&(_, curvature)| curvature < CURVATURE_MIN)
             .collect();
         weak.sort_unstable_by_key(|&(function, _)| function);
@@ -154,15 +156,16 @@ impl Factor<'_> {
         of_pivots - 2.0 * self.scale.iter().map(|scale| scale.ln()).sum::<f64>()
     }
 
-    /// v'Mv / v'v, where v is the solution for the unit vector of a function.
-    fn curvature(&self, function: usize) -> f64 {
+    /// v'Mv / v'Dv, where v is the solution for the unit vector of a function.
+    fn curvature(&self, function: usize, sizes: &[f64]) -> f64 {
         let mut unit = vec![0.0; self.scale.len()];
         if self.matrix.at(function, function) == 0.0 {
             return 0.0;
         }
         unit[function] = 1.0;
         let direction = self.solve_once(&unit);
-        let square: f64 = direction.iter().zip(&self.scale).map(|(x, scale)| (x / scale).powi(2)).sum();
+        let sizes = sizes.iter().zip(&self.scale).map(|(size, scale)| size.min(scale.powi(-2)));
+        let square: f64 = direction.iter().zip(sizes).map(|(x, size)| x * x * size).sum();
         self.matrix.form(&direction).max(0.0) / square
     }
 
@@ -222,7 +225,8 @@ mod tests {
             let found = factor.solve(&matrix.times(&expected));
             let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(error < 1e-13, "{count} {reach}: {error}");
-            assert!(factor.weak().is_empty());
+            let diagonal: Vec<f64> = matrix.diagonal().collect();
+            assert!(factor.weak(&diagonal).is_empty());
             assert_eq!(factor.pivots().len(), count);
         }
     }
@@ -241,7 +245,8 @@ mod tests {
                 }
             }
             let elimination = Elimination::of(&matrix).unwrap();
-            let weak = elimination.factor(&matrix).unwrap().weak();
+            let diagonal: Vec<f64> = matrix.diagonal().collect();
+            let weak = elimination.factor(&matrix).unwrap().weak(&diagonal);
             assert_eq!(weak.len(), 1);
             assert_eq!(weak[0].0, last);
         }

@@ -32,8 +32,8 @@ pub struct Undetermined {
     pub function: usize,
     /// Its Greville site.
     pub site: Point2,
-    /// The change of the equations along the undetermined direction, relative to their diagonal: about 1e-13,
-    /// or zero without any observation.
+    /// The change of the equations along the undetermined direction, relative to what observations add to
+    /// their diagonal: about 1e-13, or zero without any observation.
     pub curvature: f64,
 }
 
@@ -260,7 +260,14 @@ impl<'a> Equations<'a> {
             let site = self.basis.greville(function);
             Undetermined { function, site, curvature }
         };
-        factor.weak().into_iter().map(named).collect()
+        factor.weak(&self.sizes()).into_iter().map(named).collect()
+    }
+
+    /// What observations add to the diagonal; for functions without any, the mean of the others.
+    fn sizes(&self) -> Vec<f64> {
+        let observed = || self.normal.matrix.diagonal().filter(|&own| own > 0.0);
+        let mean = observed().sum::<f64>() / observed().count().max(1) as f64;
+        self.normal.matrix.diagonal().map(|own| if own > 0.0 { own } else { mean }).collect()
     }
 
     /// Refuses observations that determine no linear function, however smooth the spline is.

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::frame::Frame;
 use super::layout::{Layout, Spline};
-use super::options::Options;
+use super::options::{Options, Smoothing};
 use super::points::{Points, PointsInFrame};
 use super::smoothing_choice::{Problem, SmoothingChoice, choose_smoothing};
 use super::statistics::Statistics;
@@ -26,10 +26,22 @@ pub(super) const KNOTS_MAX: usize = 20_000;
 const POINTS_PER_KNOT: u64 = 4;
 /// If a search without limits of the user would need more knots, a grid predicts better and takes less time.
 const KNOTS_MAX_FIRST: usize = 5_000;
-/// The step of this grid, in distances of points: terrain needs about as many functions as points...
-const GRID_STEP: f64 = 0.7;
-/// ...but it has no more knots than this.
-const GRID_KNOTS_MAX: f64 = 300_000.0;
+/// This grid: terrain needs several functions for each point.
+const FINE: GridSize = GridSize { step: 0.5, knots_max: 600_000.0 };
+/// The grid over which the smoothing is chosen, which takes many solutions. What these knots cannot follow
+/// counts as noise, and a little more smoothing predicts a little better.
+const CHOICE: GridSize = GridSize { step: 1.0, knots_max: 150_000.0 };
+/// The grid of robust fits, which take many solutions, too.
+const ROBUST: GridSize = GridSize { step: 0.7, knots_max: 300_000.0 };
+
+/// The size of a grid of knots.
+#[derive(Debug, Clone, Copy)]
+struct GridSize {
+    /// Sides of its cells, in distances of points...
+    step: f64,
+    /// ...unless it had more knots than this.
+    knots_max: f64,
+}
 
 /// A spline that was fitted.
 #[derive(Debug)]
@@ -93,11 +105,12 @@ pub fn fit(
         (None, Some(side)) => (even(points, options, side, done)?, None),
         (None, None) => search(points, options, done).map(|(layout, search)| (layout, Some(search)))?,
     };
+    let mut settled = None;
     if let Some(search) = found.as_mut().filter(|search| !search.is_reached && is_automatic(options))
         && let Some(finer) = finer_grid(points, options, layout.places(), done)?
     {
         search.is_replaced = true;
-        layout = finer;
+        (layout, settled) = finer;
     }
     layout.frame.join(points.crs())?;
     let frame = layout.frame.clone();
@@ -106,9 +119,11 @@ pub fn fit(
     let (coefficients, chosen, robust) = match options.interpolates {
         true => (interpolate(&layout, &all)?, None, None),
         false => {
-            let fitted = approximate(&layout, &all, options, are_given);
+            let with = settled.as_ref().map_or_else(|| options.clone(), |chosen| settled_by(chosen, options));
+            let fitted = approximate(&layout, &all, &with, are_given);
             let (coefficients, chosen, robust) = fitted.map_err(|error| error.of_input(points.name()))?;
-            (coefficients, Some(chosen), robust)
+            let choice = settled.and_then(|chosen| chosen.choice).or(chosen.choice);
+            (coefficients, Some(SmoothingChoice { choice, ..chosen }), robust)
         }
     };
     let spline = Spline { layout, coefficients };
@@ -163,10 +178,47 @@ fn is_automatic(options: &Options) -> bool {
     options.tolerance.is_none() && options.max_knots.is_none()
 }
 
-/// Knots on a grid that follows from the distance of points; `None` if it had fewer than `known` knots.
+/// Knots on a grid that follows from the distance of points, with the smoothing chosen over another one, if
+/// it is to be chosen; `None` if the grid had fewer than `known` knots.
 fn finer_grid(
     points: &Points,
     options: &Options,
+    known: usize,
+    done: &dyn Fn(u64),
+) -> Result<Option<(Layout, Option<SmoothingChoice>)>> {
+    let grid = |size| sized_grid(points, options, size, known, done);
+    if options.loss.is_some() || options.interpolates {
+        return Ok(grid(ROBUST)?.map(|layout| (layout, None)));
+    }
+    let settled = match options.smoothing {
+        Some(Smoothing::Lambda(_)) => None,
+        _ => grid(CHOICE)?.map(|coarse| chosen_over(&coarse, points, options, done)).transpose()?,
+    };
+    Ok(grid(FINE)?.map(|layout| (layout, settled)))
+}
+
+/// The smoothing chosen over these knots.
+fn chosen_over(
+    layout: &Layout,
+    points: &Points,
+    options: &Options,
+    done: &dyn Fn(u64),
+) -> Result<SmoothingChoice> {
+    let problem = choose_smoothing(layout, &points.in_frame(&layout.frame, done), options, false);
+    Ok(problem.map_err(|error| error.of_input(points.name()))?.chosen)
+}
+
+/// The options of a fit whose smoothing is chosen.
+fn settled_by(chosen: &SmoothingChoice, options: &Options) -> Options {
+    let smoothing = Some(Smoothing::Lambda(chosen.lambda));
+    Options { smoothing, tension: Some(chosen.tension), ..options.clone() }
+}
+
+/// Knots on a grid of this size; `None` if it had fewer than `known` knots.
+fn sized_grid(
+    points: &Points,
+    options: &Options,
+    size: GridSize,
     known: usize,
     done: &dyn Fn(u64),
 ) -> Result<Option<Layout>> {
@@ -174,7 +226,7 @@ fn finer_grid(
     let all = points.in_frame(&frame, done);
     let [lower, upper] = fitting::bounds(&all).map_err(|error| error.of_input(points.name()))?;
     let area = (upper[0] - lower[0]) * (upper[1] - lower[1]);
-    let side = (GRID_STEP * fitting::spacing(&all)?).max((area / GRID_KNOTS_MAX).sqrt());
+    let side = (size.step * fitting::spacing(&all)?).max((area / size.knots_max).sqrt());
     if area / (side * side) < known as f64 {
         return Ok(None);
     }
