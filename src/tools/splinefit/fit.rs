@@ -30,7 +30,7 @@ const KNOTS_MAX_FIRST: usize = 5_000;
 const FINE: GridSize = GridSize { step: 0.5, knots_max: 600_000.0 };
 /// The grid over which the smoothing is chosen, which takes many solutions. What these knots cannot follow
 /// counts as noise, and a little more smoothing predicts a little better.
-const CHOICE: GridSize = GridSize { step: 1.0, knots_max: 150_000.0 };
+const CHOICE: GridSize = GridSize { step: 1.0, knots_max: 100_000.0 };
 /// The grid of robust fits, which take many solutions, too.
 const ROBUST: GridSize = GridSize { step: 0.7, knots_max: 300_000.0 };
 
