@@ -43,6 +43,13 @@ struct GridSize {
     knots_max: f64,
 }
 
+impl GridSize {
+    /// The side of cells over a box with this area, for this distance of points.
+    fn side(&self, area: f64, distance: f64) -> f64 {
+        (self.step * distance).max((area / self.knots_max).sqrt())
+    }
+}
+
 /// A spline that was fitted.
 #[derive(Debug)]
 pub struct Fitted {
@@ -119,8 +126,8 @@ pub fn fit(
     let (coefficients, chosen, robust) = match options.interpolates {
         true => (interpolate(&layout, &all)?, None, None),
         false => {
-            let with = settled.as_ref().map_or_else(|| options.clone(), |chosen| settled_by(chosen, options));
-            let fitted = approximate(&layout, &all, &with, are_given);
+            let with = settled.as_ref().map(|chosen| settled_by(chosen, options));
+            let fitted = approximate(&layout, &all, with.as_ref().unwrap_or(options), are_given);
             let (coefficients, chosen, robust) = fitted.map_err(|error| error.of_input(points.name()))?;
             let choice = settled.and_then(|chosen| chosen.choice).or(chosen.choice);
             (coefficients, Some(SmoothingChoice { choice, ..chosen }), robust)
@@ -186,7 +193,17 @@ fn finer_grid(
     known: usize,
     done: &dyn Fn(u64),
 ) -> Result<Option<(Layout, Option<SmoothingChoice>)>> {
-    let grid = |size| sized_grid(points, options, size, known, done);
+    let frame = Frame::world(points.crs().clone());
+    let all = points.in_frame(&frame, done);
+    let [lower, upper] = fitting::bounds(&all).map_err(|error| error.of_input(points.name()))?;
+    let (area, distance) = ((upper[0] - lower[0]) * (upper[1] - lower[1]), fitting::spacing(&all)?);
+    let grid = |size: GridSize| {
+        let side = size.side(area, distance);
+        if area / (side * side) < known as f64 {
+            return Ok(None);
+        }
+        even(points, options, side, done).map(Some)
+    };
     if options.loss.is_some() || options.interpolates {
         return Ok(grid(ROBUST)?.map(|layout| (layout, None)));
     }
@@ -212,25 +229,6 @@ fn chosen_over(
 fn settled_by(chosen: &SmoothingChoice, options: &Options) -> Options {
     let smoothing = Some(Smoothing::Lambda(chosen.lambda));
     Options { smoothing, tension: Some(chosen.tension), ..options.clone() }
-}
-
-/// Knots on a grid of this size; `None` if it had fewer than `known` knots.
-fn sized_grid(
-    points: &Points,
-    options: &Options,
-    size: GridSize,
-    known: usize,
-    done: &dyn Fn(u64),
-) -> Result<Option<Layout>> {
-    let frame = Frame::world(points.crs().clone());
-    let all = points.in_frame(&frame, done);
-    let [lower, upper] = fitting::bounds(&all).map_err(|error| error.of_input(points.name()))?;
-    let area = (upper[0] - lower[0]) * (upper[1] - lower[1]);
-    let side = (size.step * fitting::spacing(&all)?).max((area / size.knots_max).sqrt());
-    if area / (side * side) < known as f64 {
-        return Ok(None);
-    }
-    even(points, options, side, done).map(Some)
 }
 
 /// Places knots on a grid with cells of a given side.
