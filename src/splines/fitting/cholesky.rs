@@ -164,7 +164,7 @@ impl Factor<'_> {
         }
         unit[function] = 1.0;
         let direction = self.solve_once(&unit);
-        let sizes = sizes.iter().zip(&self.scale).map(|(size, scale)| size.min(scale.powi(-2)));
+        let sizes = sizes.iter().zip(self.matrix.diagonal()).map(|(size, whole)| size.min(whole));
         let square: f64 = direction.iter().zip(sizes).map(|(x, size)| x * x * size).sum();
         self.matrix.form(&direction).max(0.0) / square
     }
