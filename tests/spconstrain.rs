@@ -20,6 +20,22 @@ pub(super) struct Mesh {
     pub constrained: Vec<[[i64; 2]; 2]>,
 }
 
+impl Mesh {
+    /// Sorts what is given in any order; constraints may be given twice.
+    pub fn new(
+        mut triangles: Vec<[[i64; 2]; 3]>,
+        elevations: BTreeMap<[i64; 2], i64>,
+        mut constrained: Vec<[[i64; 2]; 2]>,
+    ) -> Mesh {
+        triangles.iter_mut().for_each(|corners| corners.sort_unstable());
+        triangles.sort_unstable();
+        constrained.iter_mut().for_each(|ends| ends.sort_unstable());
+        constrained.sort_unstable();
+        constrained.dedup();
+        Mesh { triangles, elevations, constrained }
+    }
+}
+
 /// Runs a program that must succeed.
 pub(super) fn output(name: &str, arguments: &[&str], input: &[u8]) -> Vec<u8> {
     let output = run(name, arguments, input);
@@ -39,23 +55,17 @@ pub(super) fn mesh(stream: &[u8]) -> Mesh {
         }
     }
     let place = |id: u64| [points[id as usize][0], points[id as usize][1]];
-    let mut mesh = Mesh { triangles: Vec::new(), elevations: BTreeMap::new(), constrained: Vec::new() };
-    mesh.elevations.extend(points.iter().map(|&[x, y, z]| ([x, y], z)));
+    let elevations = points.iter().map(|&[x, y, z]| ([x, y], z)).collect();
+    let (mut all, mut constrained) = (Vec::new(), Vec::new());
     for patch in &patches {
         let triangles: Vec<[[i64; 2]; 3]> =
             patch.triangles().map(|corners| corners.map(|local| place(patch.id(local)))).collect();
         for &[triangle, side, _] in &patch.sides {
-            let mut ends = [1, 2].map(|turn| triangles[triangle as usize][(side as usize + turn) % 3]);
-            ends.sort_unstable();
-            mesh.constrained.push(ends);
+            constrained.push([1, 2].map(|turn| triangles[triangle as usize][(side as usize + turn) % 3]));
         }
-        mesh.triangles.extend(triangles);
+        all.extend(triangles);
     }
-    mesh.triangles.iter_mut().for_each(|corners| corners.sort_unstable());
-    mesh.triangles.sort_unstable();
-    mesh.constrained.sort_unstable();
-    mesh.constrained.dedup();
-    mesh
+    Mesh::new(all, elevations, constrained)
 }
 
 /// Asserts that the audit finds nothing.

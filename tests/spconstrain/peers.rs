@@ -4,6 +4,7 @@
 use super::{Mesh, mesh, output};
 use crate::programs::Folder;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+use spmesh_reference::exact::{exact_points, incircle, orientation};
 use spmesh_reference::segments::random_segments;
 use spmesh_reference::sets::{self, Random};
 use std::collections::BTreeMap;
@@ -78,14 +79,9 @@ fn theirs(points: &[Place], segments: &[[Place; 2]]) -> Mesh {
         peer.add_constraint(from, to);
     }
     let at = |point: Point2<f64>| [point.x as i64, point.y as i64];
-    let mut triangles: Vec<[Place; 3]> = peer.inner_faces().map(|face| face.positions().map(at)).collect();
-    triangles.iter_mut().for_each(|corners| corners.sort_unstable());
-    triangles.sort_unstable();
+    let triangles = peer.inner_faces().map(|face| face.positions().map(at)).collect();
     let constrained = peer.undirected_edges().filter(|edge| edge.is_constraint_edge());
-    let mut constrained: Vec<[Place; 2]> = constrained.map(|edge| edge.positions().map(at)).collect();
-    constrained.iter_mut().for_each(|ends| ends.sort_unstable());
-    constrained.sort_unstable();
-    Mesh { triangles, elevations: BTreeMap::new(), constrained }
+    Mesh::new(triangles, BTreeMap::new(), constrained.map(|edge| edge.positions().map(at)).collect())
 }
 
 fn agreed(mesh: &Mesh) -> Agreed {
@@ -129,12 +125,9 @@ fn turn(a: Place, b: Place, c: Place) -> i128 {
     u[0] * v[1] - u[1] * v[0]
 }
 
-/// One if a place is inside of the circle of a triangle, zero if it is on it. Coordinates are below 2^30, so the
-/// determinant is below 2^126.
-fn in_circle(corners: [Place; 3], d: Place) -> i128 {
-    let [a, b, c] = corners.map(|p| [0, 1].map(|axis| i128::from(p[axis] - d[axis])));
-    let square = |[x, y]: [i128; 2]| x * x + y * y;
-    let minor = |p: [i128; 2], q: [i128; 2]| p[0] * q[1] - p[1] * q[0];
-    let determinant = square(a) * minor(b, c) - square(b) * minor(a, c) + square(c) * minor(a, b);
-    determinant.signum() * turn(corners[0], corners[1], corners[2]).signum()
+/// One if a place is inside of the circle of a triangle, zero if it is on it.
+fn in_circle([a, b, c]: [Place; 3], d: Place) -> i32 {
+    let points = exact_points(&sets::as_floats(&[a, b, c, d]));
+    let [a, b, c, d] = [0, 1, 2, 3].map(|place| &points[place]);
+    incircle([a, b, c, d]) * orientation(a, b, c)
 }
