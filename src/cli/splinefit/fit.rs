@@ -31,9 +31,9 @@ Without --knots, the program searches for knots. It starts with a coarse grid ov
 Each round adds knots where residuals exceed --tol [default: 0.25 % of the range of most elevations], up to \
 --max-knots [default: one for 4 points, at most 20,000]. Without both flags, the search ends at 5,000 knots; \
 if residuals still exceed the tolerance, the knots are those of a grid with about four for each point (at \
-most 600,000), which predicts terrain best. The smoothing is chosen over a quarter of them; robust fits have \
-half of them. With --step, knots form a grid with cells of this side. Points as knots are for splines of \
-degree 2 over their convex hull: the border is pulled apart.
+most 600,000), which predicts terrain best. The smoothing is chosen over a quarter of them (at most \
+100,000); robust fits have half of them. With --step, knots form a grid with cells of this side. Points as \
+knots are for splines of degree 2 over their convex hull: the border is pulled apart.
 
 Without --lambda, given knots get the coefficients of least squares. Coefficients that the points leave \
 undetermined are those of least energy. For other knots, lambda and the tension are chosen by restricted \
