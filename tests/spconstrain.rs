@@ -2,6 +2,7 @@
 
 mod areas;
 mod failures;
+mod peer;
 mod pipes;
 
 use std::collections::BTreeMap;
