@@ -63,6 +63,17 @@ fn segments_of_meshes_without_triangles_are_no_edges() {
 }
 
 #[test]
+fn hulls_beside_the_mesh_leave_nothing() {
+    let folder = Folder::new();
+    let ring = r#"{"type":"Polygon","coordinates":[[[-9,-9],[-8,-9],[-9,-8],[-9,-9]]]}"#;
+    let hull = folder.write("hull.geojson", ring);
+    let run = run("spconstrain", &["--hull", &hull], &mesh_of_cloud(300));
+    let (code, message) = outcome(&run);
+    assert!(code == Some(0) && message.contains("no triangles are left"), "{message}");
+    audit(&run.stdout);
+}
+
+#[test]
 fn greatest_lengths_remove_nothing() {
     let triangles = mesh_of_cloud(300);
     for length in ["1e308", "inf"] {
