@@ -171,5 +171,14 @@ fn requests_that_make_no_sense_are_refused() {
     let scale = ["--scale", "0.01,0.01,0.01"];
     let arguments = [&scale[..], &["--lines", &far, &points]].concat();
     assert_outcome("spfinalize", &arguments, b"", 2, "far.txt: line 1: a vertex of a line has x 5000000000");
+    let endless = folder.write("endless.txt", "soft 0 0 1 1e300\n");
+    let arguments = [&scale[..], &["--lines", &endless, &points]].concat();
+    assert_outcome(
+        "spfinalize",
+        &arguments,
+        b"",
+        2,
+        "endless.txt: line 1: a vertex of a line has y 1e300, but",
+    );
     assert_outcome("spfinalize", &["--lines", &lines, "--report", &lines, &points], b"", 2, "--report");
 }

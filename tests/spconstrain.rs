@@ -2,7 +2,7 @@
 
 mod areas;
 mod failures;
-mod peers;
+mod peer;
 mod pipes;
 
 use std::collections::BTreeMap;

@@ -294,7 +294,11 @@ fn bad_water_is_refused_or_right() {
     fails(&[polygon(r#""level":1e9"#, square(20.0, 20.0, ""))], 3, "beyond the grid");
     let mixed = "[[[20,20,1],[30,20,2],[30,30,1],[20,20,1]]]";
     fails(&[polygon("", mixed.into())], 3, "has the elevations 1 and 2, expected one");
-    fails(&[polygon("", "[[[20,20],[30,20],[30,30],[21,20]]]".into())], 3, "a ring is not closed");
+    fails(
+        &[polygon("", "[[[20,20],[30,20],[30,30],[21,20]]]".into())],
+        3,
+        "ends at 21, 20: repeat its first",
+    );
     fails(&[polygon("", "[[[20,20],[null,20],[30,30],[20,20]]]".into())], 3, "vertex 1 is at NaN");
     let two = |z: [&str; 2]| [polygon("", square(20.0, 20.0, z[0])), polygon("", square(25.0, 25.0, z[1]))];
     fails(&two([",5", ",6"]), 3, "the lake meets another one of a different level");

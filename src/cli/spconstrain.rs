@@ -129,6 +129,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let output_bytes = output.bytes_written();
     output.commit()?;
     write_report(report, &changes)?;
+    if stats.triangles[0] > 0 && stats.triangles[1] == 0 {
+        flags.notice("no triangles are left: --hull, --holes or --kill leave out all of them");
+    }
     if stats.open_segments > 0 {
         flags.notice(&about_open(&stats));
     }

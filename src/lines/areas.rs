@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::numbered::{Bent, Numbered, numbered};
+use super::polygons::check_ring;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::Breaklines;
 
@@ -57,15 +58,12 @@ pub(crate) struct Ring {
 /// The rings of the polygons of areas.
 ///
 /// # Errors
-/// Malformed, if a file of an area has a line that is no ring.
+/// Malformed, if a file of an area has a line that is no closed ring.
 pub(crate) fn rings(files: &[(Role, String, Breaklines)]) -> Result<Vec<Ring>> {
     let of_areas = numbered(files).filter(|line| matches!(line.role, Role::Hull | Role::Holes));
-    let ring = |Numbered { role, file, number, polygon, line }: Numbered| match polygon {
-        Some(polygon) => Ok(Ring { role, line: number, polygon }),
-        None => {
-            let error = Error::malformed("found a line, expected polygons");
-            Err(error.at(&line.position).of_input(file))
-        }
+    let ring = |Numbered { role, file, number, polygon, line }: Numbered| {
+        check_ring(line).map_err(|error| error.at(&line.position).of_input(file))?;
+        Ok(Ring { role, line: number, polygon: polygon.expect("a ring has a polygon") })
     };
     of_areas.map(ring).collect()
 }

@@ -83,7 +83,7 @@ impl Grid {
         let name = ["x", "y", "z"][axis];
         let range = [i32::MIN, i32::MAX].map(|end| self.coordinates.to_decimal([f64::from(end); 3])[axis]);
         Error::usage(format!(
-            "a vertex of a line has {name} {world}, but the points are on a grid that ends at {} and {}: the lines may \
+            "a vertex of a line has {name} {world:?}, but the points are on a grid that ends at {} and {}: the lines may \
              have another system (transform them, for example with ogr2ogr -t_srs), or the points a coarser grid \
              (spfinalize --scale)",
             range[0], range[1]

@@ -34,27 +34,34 @@ pub fn read_polygons(paths: &[PathBuf], target: &Target) -> Result<(Vec<Rings>, 
     Ok((polygons, notices))
 }
 
+/// Checks that a line is a closed ring of a polygon.
+///
+/// # Errors
+/// Malformed, if it is not.
+pub(crate) fn check_ring(line: &Breakline) -> Result<()> {
+    if line.polygon.is_none() {
+        return Err(Error::malformed("found a line, expected polygons"));
+    }
+    let ([x, y], [u, v]) = (line.vertices[0], line.vertices[line.vertices.len() - 1]);
+    if [x, y] == [u, v] {
+        return Ok(());
+    }
+    let remedy = "repeat its first position at the end";
+    Err(Error::malformed(format!("a ring starts at {x}, {y} and ends at {u}, {v}: {remedy}")))
+}
+
 /// The stored vertices of a ring, without the last one, which repeats the first.
 ///
 /// # Errors
 /// Malformed, if it is no closed ring.
 pub(crate) fn ring(line: &Breakline, coordinates: &Coordinates) -> Result<Vec<Point2>> {
-    if line.polygon.is_none() {
-        return Err(Error::malformed("found a line, expected polygons"));
-    }
-    let (first, last) = (line.vertices[0], line.vertices[line.vertices.len() - 1]);
-    if first != last {
-        let ([x, y], [u, v]) = (first, last);
-        let message =
-            format!("a ring starts at {x}, {y} and ends at {u}, {v}: repeat its first position at the end");
-        return Err(Error::malformed(message));
-    }
+    check_ring(line)?;
     let stored = |&[x, y]: &Point2| {
         let [u, v, _] = coordinates.to_stored([x, y, 0.0]);
         if u.is_finite() && v.is_finite() {
             return Ok([u, v]);
         }
-        Err(Error::malformed(format!("a vertex at {x}, {y} is too far away from the points")))
+        Err(Error::malformed(format!("a vertex at {x:?}, {y:?} is too far away from the points")))
     };
     let vertices = &line.vertices[..line.vertices.len().max(2) - 1];
     vertices.iter().map(stored).collect()

@@ -6,6 +6,7 @@
 use super::Target;
 use super::areas::{Role, odd};
 use super::numbered::{Bent, Numbered, numbered};
+use super::polygons::check_ring;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::{Breakline, Breaklines};
 use spmesh_model::network::Network;
@@ -125,8 +126,8 @@ fn feature(&Numbered { file, number, polygon, line, .. }: &Numbered, target: &Ta
     if polygon.is_none() && river.is_none() {
         return Err(position.fault("found a line, expected polygons, or lines with the property river"));
     }
-    if polygon.is_some() && line.vertices.first() != line.vertices.last() {
-        return Err(position.fault("a ring is not closed: repeat its first position at the end"));
+    if polygon.is_some() {
+        check_ring(line).map_err(|error| error.at(&line.position).of_input(file))?;
     }
     let is_hard = line.elevations.iter().any(Option::is_some);
     Ok(Feature { line: number, polygon, level, river, is_hard, position })
@@ -160,7 +161,7 @@ fn level(line: &Breakline, target: &Target) -> std::result::Result<Option<f64>, 
     let Some(level) = stated else { return Ok(None) };
     let stored = target.coordinates.to_stored([0.0, 0.0, level])[2];
     if !target.coordinates.can_store(stored) {
-        return Err(format!("the level {level} is beyond the grid of the points"));
+        return Err(format!("the level {level:?} is beyond the grid of the points"));
     }
     Ok(Some(stored))
 }

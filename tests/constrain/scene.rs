@@ -4,6 +4,7 @@ use spmesh_constrain::{Options, Stats, constrain};
 use spmesh_geometry::delaunay2::triangulate;
 use spmesh_lines::Areas;
 use spmesh_model::network::{Network, NetworkSegment, NetworkVertex};
+use spmesh_reference::peer::Peer;
 use spmesh_reference::segments::{is_on, random_segments};
 use spmesh_reference::sets::{Random, as_floats};
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, StreamWriter};
@@ -39,6 +40,13 @@ impl Scene {
             points[first..].iter().all(|&x| !is_on(at, x) || at.contains(&x))
         });
         self
+    }
+
+    /// Points and segments for another implementation.
+    pub fn peer(&self) -> Peer {
+        let ends: Vec<_> =
+            self.segments.iter().map(|ends| ends.map(|end| self.points[end as usize])).collect();
+        Peer::new(&self.points, &ends)
     }
 
     /// The segments, and the points that the mesh does not have; those that `is_hard` accepts have

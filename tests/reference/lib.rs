@@ -9,6 +9,7 @@ pub mod exact3;
 pub mod exhaustive;
 pub mod incremental;
 pub mod noding;
+pub mod peer;
 pub mod segments;
 pub mod sets;
 pub mod sets4;

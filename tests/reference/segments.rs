@@ -49,6 +49,29 @@ pub fn random_segments(
     segments
 }
 
+/// Up to `most` polylines of two to six random points, which may touch and overlap, but cross at points only.
+pub fn random_polylines(random: &mut Random, points: &[[i64; 2]], most: usize) -> Vec<Vec<[i64; 2]>> {
+    let crosses = |s: [[i64; 2]; 2], t: [[i64; 2]; 2]| {
+        let divides = |[p, q]: [[i64; 2]; 2], [a, b]: [[i64; 2]; 2]| turn(p, q, a) * turn(p, q, b) < 0;
+        divides(s, t) && divides(t, s) && !points.iter().any(|&x| is_on(s, x) && is_on(t, x))
+    };
+    let mut parts: Vec<[[i64; 2]; 2]> = Vec::new();
+    let mut lines: Vec<Vec<[i64; 2]>> = Vec::new();
+    for _ in 0..most {
+        let mut any = || points[random.integer(0, points.len() as i64 - 1) as usize];
+        let mut line = vec![any()];
+        for _ in 0..5 {
+            let part = [line[line.len() - 1], any()];
+            if part[0] != part[1] && !parts.iter().any(|&other| crosses(part, other)) {
+                parts.push(part);
+                line.push(part[1]);
+            }
+        }
+        lines.extend((line.len() > 1).then_some(line));
+    }
+    lines
+}
+
 /// The corners of a square, then one to nine points in it: all different.
 pub fn in_square(random: &mut Random, side: i64) -> Vec<[i64; 2]> {
     let count = random.integer(1, 9) as usize;

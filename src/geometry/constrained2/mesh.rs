@@ -81,6 +81,34 @@ impl Mesh {
         Some(Side { triangle: neighbour, place })
     }
 
+    /// The first that `found` returns for a triangle at a vertex, which it takes as the side opposite to the
+    /// vertex. Turns in both directions at once, from the triangle that was written last: what is near it is
+    /// found soon, also at a vertex of many triangles.
+    pub(super) fn find_around<T>(&self, vertex: u32, mut found: impl FnMut(Side) -> Option<T>) -> Option<T> {
+        let at = |triangle: u32| Side { triangle, place: self.place_in(triangle, vertex) };
+        let first = at(self.vertices[vertex as usize].triangle);
+        if let Some(value) = found(first) {
+            return Some(value);
+        }
+        let mut ways = [Some(first); 2];
+        while ways != [None; 2] {
+            for way in 0..2 {
+                let Some(Side { triangle, place }) = ways[way] else { continue };
+                let next = self.across(Side { triangle, place: (place + way + 1) % 3 });
+                ways[way] = next.map(|side| at(side.triangle));
+                let Some(side) = ways[way] else { continue };
+                if let Some(value) = found(side) {
+                    return Some(value);
+                }
+                // Both ways have met, around the whole vertex.
+                if ways[1 - way] == ways[way] {
+                    return None;
+                }
+            }
+        }
+        None
+    }
+
     /// Writes triangle `number` and makes its neighbours and vertices refer to it. Each neighbour comes as
     /// the side that this side is for it.
     pub(super) fn set(

@@ -24,6 +24,8 @@ pub use vertex::Host;
 #[derive(Debug, Default)]
 pub struct Region {
     mesh: Mesh,
+    /// The triangle that the last vertex was inserted in, by its number at the start, and that vertex.
+    last: Option<[u32; 2]>,
 }
 
 /// A triangle of the result.
@@ -40,7 +42,7 @@ impl Region {
     /// `points`, of which no two are equal.
     #[must_use]
     pub fn new(points: &[Point2], triangles: &[[u32; 3]]) -> Region {
-        Region { mesh: border::mesh_of(points, triangles) }
+        Region { mesh: border::mesh_of(points, triangles), last: None }
     }
 
     /// Where a place lies that is in the triangle with this number in the order of [`Region::new`]: the
@@ -57,9 +59,15 @@ impl Region {
     /// [`Region::new`]. Does nothing if a point is there already.
     ///
     /// Domain: as of [`Region::host`].
+    ///
+    /// Cost: O(k) for a way across k triangles: from the vertex before, if it is in the same triangle, or else
+    /// from a corner. So points should follow each other closely.
     pub fn insert(&mut self, point: u32, place: Point2, triangle: u32, predicates: &mut impl Predicates2) {
-        let from = self.mesh.origins[triangle as usize][0];
-        vertex::insert(&mut self.mesh, from, point, place, predicates);
+        let last = self.last.filter(|&[other, _]| other == triangle);
+        let from = last.map_or(self.mesh.origins[triangle as usize][0], |[_, vertex]| vertex);
+        if let Some(vertex) = vertex::insert(&mut self.mesh, from, point, place, predicates) {
+            self.last = Some([triangle, vertex]);
+        }
     }
 
     /// Makes the parts of a segment edges that go from some of the points `on`, which all lie on it, towards

@@ -35,17 +35,18 @@ pub(super) fn host(mesh: &Mesh, from: u32, place: Point2, predicates: &mut impl 
     }
 }
 
-/// Inserts a point at a place to which a straight walk from vertex `from` stays in the region.
+/// Inserts a point at a place to which a straight walk from vertex `from` stays in the region. Returns its
+/// vertex; `None` if the place has one already.
 pub(super) fn insert(
     mesh: &mut Mesh,
     from: u32,
     point: u32,
     place: Point2,
     predicates: &mut impl Predicates2,
-) {
+) -> Option<u32> {
     let at = locate(mesh, from, place, predicates);
     if matches!(at, At::Vertex(_)) {
-        return;
+        return None;
     }
     let vertex = mesh.vertices.len() as u32;
     mesh.vertices.push(Vertex { place, point, triangle: NONE });
@@ -57,6 +58,7 @@ pub(super) fn insert(
         At::On(side) => split_edge(mesh, side, vertex),
     }
     mesh.restore(predicates);
+    Some(vertex)
 }
 
 fn locate(mesh: &Mesh, mut from: u32, place: Point2, predicates: &mut impl Predicates2) -> At {
@@ -83,23 +85,11 @@ fn locate(mesh: &Mesh, mut from: u32, place: Point2, predicates: &mut impl Predi
 
 /// The side between two vertices.
 pub(super) fn edge(mesh: &Mesh, from: u32, to: u32) -> Option<Side> {
-    let first = mesh.vertices[from as usize].triangle;
-    for turn in [1, 2] {
-        let mut triangle = first;
-        loop {
-            let place = mesh.place_in(triangle, from);
-            let vertices = mesh.triangle(triangle).vertices;
-            if let Some(other) = [1, 2].into_iter().find(|other| vertices[(place + other) % 3] == to) {
-                return Some(Side { triangle, place: (place + 3 - other) % 3 });
-            }
-            let Some(next) = mesh.across(Side { triangle, place: (place + turn) % 3 }) else { break };
-            triangle = next.triangle;
-            if triangle == first {
-                return None;
-            }
-        }
-    }
-    None
+    mesh.find_around(from, |Side { triangle, place }| {
+        let vertices = mesh.triangle(triangle).vertices;
+        let other = [1, 2].into_iter().find(|other| vertices[(place + other) % 3] == to)?;
+        Some(Side { triangle, place: (place + 3 - other) % 3 })
+    })
 }
 
 /// Divides a triangle in three.

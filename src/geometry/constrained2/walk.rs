@@ -77,30 +77,18 @@ fn end_at(mesh: &Mesh, entry: Side, apex: u32, to: Point2, predicates: &mut impl
 /// The triangle at a vertex that the line to a place enters.
 fn start(mesh: &Mesh, from: u32, to: Point2, predicates: &mut impl Predicates2) -> Start {
     let origin = mesh.place(from);
-    let first = mesh.vertices[from as usize].triangle;
-    for turn in [1, 2] {
-        let mut triangle = first;
-        loop {
-            let place = mesh.place_in(triangle, from);
-            let vertices = mesh.triangle(triangle).vertices;
-            let ends = [1, 2].map(|turn| vertices[(place + turn) % 3]);
-            let sides = ends.map(|end| predicates.orient2d(origin, to, mesh.place(end)));
-            for (end, side) in ends.into_iter().zip(sides) {
-                if side == Sign::Zero && is_ahead(origin, to, mesh.place(end)) {
-                    return Start::Vertex(end);
-                }
-            }
-            if sides == [Sign::Negative, Sign::Positive] {
-                return Start::Side(Side { triangle, place });
-            }
-            let Some(next) = mesh.across(Side { triangle, place: (place + turn) % 3 }) else { break };
-            triangle = next.triangle;
-            if triangle == first {
-                return Start::Nothing;
+    let entered = mesh.find_around(from, |Side { triangle, place }| {
+        let vertices = mesh.triangle(triangle).vertices;
+        let ends = [1, 2].map(|turn| vertices[(place + turn) % 3]);
+        let sides = ends.map(|end| predicates.orient2d(origin, to, mesh.place(end)));
+        for (end, side) in ends.into_iter().zip(sides) {
+            if side == Sign::Zero && is_ahead(origin, to, mesh.place(end)) {
+                return Some(Start::Vertex(end));
             }
         }
-    }
-    Start::Nothing
+        (sides == [Sign::Negative, Sign::Positive]).then_some(Start::Side(Side { triangle, place }))
+    });
+    entered.unwrap_or(Start::Nothing)
 }
 
 /// Whether a place on the line from `origin` to another place is on the same side of the origin.

@@ -56,7 +56,7 @@ impl EdgeLimit {
             Longest::Unlimited => 0.0,
             // Rounded up, so that its square is not less.
             Longest::Steps(most) => (most as f64).sqrt().next_up(),
-            Longest::World(longest, [scale, _]) => longest / scale,
+            Longest::World(longest, [scale, _]) => (longest / scale).min(f64::MAX),
         }
     }
 

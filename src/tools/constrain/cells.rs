@@ -3,6 +3,7 @@
 use super::bits::Bits;
 use super::pyramid::Pyramid;
 use spmesh_geometry::cell_walk::{TOLERANCE, for_each_cell};
+use spmesh_geometry::predicates::lexicographic;
 use spmesh_model::network::Network;
 use spmesh_model::points::Point2;
 
@@ -151,22 +152,32 @@ impl Cells {
 
     /// The vertex of the network at a place in the box of the network.
     pub(super) fn vertex_at(&self, place: Point2, network: &Network) -> Option<u32> {
-        let cell = self.cell(place);
+        let vertices = self.vertices(self.cell(place));
+        let place_of = |item: u32| network.vertices[(item - self.segments) as usize].place;
+        let at = vertices.partition_point(|&item| lexicographic(place_of(item), place).is_lt());
+        vertices.get(at).filter(|&&item| place_of(item) == place).map(|item| item - self.segments)
+    }
+
+    /// The items of a cell that are vertices. They grow, and so do their places in lexicographic order.
+    fn vertices(&self, cell: usize) -> &[u32] {
         let items = &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize];
-        let mut vertices = items.iter().filter_map(|item| item.checked_sub(self.segments));
-        vertices.find(|&vertex| network.vertices[vertex as usize].place == place)
+        &items[items.partition_point(|&item| item < self.segments)..]
     }
 
     /// Notes that a vertex is found. `is_found` says which are, this one included.
     pub(super) fn find(&mut self, vertex: u32, network: &Network, is_found: &[bool]) {
         let place = network.vertices[vertex as usize].place;
-        let (cell, fine) = (self.cell(place), self.fine_cell(place));
-        let items = &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize];
-        let others = items.iter().filter_map(|item| item.checked_sub(self.segments));
-        let is_last = others
-            .filter(|&other| !is_found[other as usize])
-            .all(|other| self.fine_cell(network.vertices[other as usize].place) != fine);
-        if is_last {
+        let (vertices, fine) = (self.vertices(self.cell(place)), self.fine_cell(place));
+        let is_left = |&item: &u32| {
+            let other = (item - self.segments) as usize;
+            !is_found[other] && self.fine_cell(network.vertices[other].place) == fine
+        };
+        // From the vertex to both sides, as vertices are found about in the order of their places: in a
+        // crowded cell, the next one is left.
+        let at = vertices.partition_point(|&item| item < self.segments + vertex);
+        let beside = |step: usize| [at.checked_sub(step), Some(at + step)];
+        let mut others = (1..vertices.len()).flat_map(beside).flatten();
+        if !others.any(|other| vertices.get(other).is_some_and(is_left)) {
             self.fine_vertices.clear(fine);
         }
     }

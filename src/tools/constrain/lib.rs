@@ -256,8 +256,10 @@ impl<W: Write> Filter<'_, W> {
         }
         let network = self.lines.network;
         let is_outside = |vertex: u32| !self.lines.found[vertex as usize];
-        let outside =
-            (0..).zip(&network.segments).filter(|(_, segment)| segment.ends.into_iter().any(is_outside));
+        // Without triangles, no segment has an edge, also between vertices of the mesh.
+        let is_empty = self.stats.triangles[0] == 0;
+        let is_open = |ends: [u32; 2]| is_empty || ends.into_iter().any(is_outside);
+        let outside = (0..).zip(&network.segments).filter(|(_, segment)| is_open(segment.ends));
         self.open.extend(outside.map(|(number, _)| number));
         self.stats.outside = network.vertices.len() as u64 - self.stats.found - self.stats.added;
         self.stats.held_max = self.holding.triangles_max as u64;

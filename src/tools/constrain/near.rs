@@ -115,10 +115,12 @@ impl<'n> Lines<'n> {
                 &triangle,
                 |bounds| may_meet(local, bounds),
                 |item| match item {
-                    Item::Segment(number) if !segments.contains(&number) => segments.push(number),
-                    _ => (),
+                    Item::Segment(number) => segments.push(number),
+                    Item::Vertex(_) => (),
                 },
             );
+            segments.sort_unstable();
+            segments.dedup();
         }
         if is_small {
             return;

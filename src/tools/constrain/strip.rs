@@ -5,9 +5,12 @@ use super::near::Lines;
 use foldhash::HashMap;
 use spmesh_core::error::Result;
 use spmesh_geometry::constrained2::{Host, Piece, Region};
-use spmesh_geometry::predicates::{Point2, lexicographic};
+use spmesh_geometry::order::{Curve, SpatialOrder};
+use spmesh_geometry::predicates::{Extent, Point2, lexicographic};
 use spmesh_model::bounds::Point;
+use spmesh_model::network::{Network, NetworkSegment};
 use spmesh_stream::Coordinates;
+use std::cmp::Ordering;
 
 /// A component of the constrained triangulation.
 #[derive(Debug, Default)]
@@ -62,11 +65,29 @@ pub(super) fn triangulate(
     Ok(Strip { corners: work.corners, places: work.places, new: work.new, pieces, open: work.open })
 }
 
+/// As many vertices are inserted in any order.
+const FEW: usize = 12;
+
 /// A vertex to be inserted.
+#[derive(Clone, Copy)]
 struct New {
     vertex: u32,
     /// The triangle that it is in.
     triangle: u32,
+}
+
+/// Vertices of a triangle follow each other along a curve, so the way from one to the next is short.
+fn along_curve(mut vertices: Vec<New>, network: &Network) -> Vec<New> {
+    if vertices.len() > FEW {
+        let places: Vec<Point2> =
+            vertices.iter().map(|new| network.vertices[new.vertex as usize].place).collect();
+        let extent = Extent::of(&places);
+        let mut order = SpatialOrder::default();
+        let sorted = order.sort(&places, &extent, Curve::Hilbert);
+        vertices = sorted.map(|index| vertices[index as usize]).collect();
+    }
+    vertices.sort_by_key(|new| new.triangle);
+    vertices
 }
 
 /// A segment, and the points of the region on it.
@@ -74,6 +95,18 @@ struct Part {
     segment: u32,
     on: Vec<u32>,
     is_hard: bool,
+}
+
+/// The order of segments by their first ends, then around these: so the next one at a vertex is found soon.
+/// It need not be exact.
+fn around(network: &Network, a: u32, b: u32) -> Ordering {
+    let [a, b] = [a, b].map(|segment| &network.segments[segment as usize]);
+    let slope = |segment: &NetworkSegment| {
+        // The first end is the lesser one.
+        let [p, q] = network.places(segment);
+        (q[1] - p[1]) / (q[0] - p[0])
+    };
+    a.ends[0].cmp(&b.ends[0]).then_with(|| slope(a).total_cmp(&slope(b)))
 }
 
 /// The points of a region.
@@ -124,7 +157,7 @@ impl Work {
         // A vertex on an edge is in both of its triangles.
         vertices.sort_unstable_by_key(|new| (new.vertex, new.triangle));
         vertices.dedup_by_key(|new| new.vertex);
-        vertices
+        along_curve(vertices, lines.network)
     }
 
     /// Inserts a vertex with its elevation.
@@ -146,11 +179,16 @@ impl Work {
             for &segment in &held.segments {
                 let on = corners.iter().filter(|&&corner| lines.is_on(segment, self.places[corner as usize]));
                 pairs.extend(on.map(|&corner| [segment, corner]));
-                if !self.points.is_empty() {
-                    let ends = lines.network.segments[segment as usize].ends;
-                    let new = ends.iter().filter_map(|end| self.points.get(end));
-                    pairs.extend(new.map(|&point| [segment, point]));
-                }
+            }
+        }
+        if !self.points.is_empty() {
+            let mut segments: Vec<u32> = triangles.iter().flat_map(|held| &held.segments).copied().collect();
+            segments.sort_unstable();
+            segments.dedup();
+            for segment in segments {
+                let ends = lines.network.segments[segment as usize].ends;
+                let new = ends.iter().filter_map(|end| self.points.get(end));
+                pairs.extend(new.map(|&point| [segment, point]));
             }
         }
         pairs.sort_unstable();
@@ -161,7 +199,9 @@ impl Work {
             let is_hard = ends.iter().all(|&end| lines.network.vertices[end as usize].z.is_some());
             Part { segment, on: pairs.iter().map(|pair| pair[1]).collect(), is_hard }
         });
-        parts.collect()
+        let mut parts: Vec<Part> = parts.collect();
+        parts.sort_by(|a, b| around(lines.network, a.segment, b.segment));
+        parts
     }
 
     fn constrain(&mut self, parts: &[Part], lines: &mut Lines, region: &mut Region) -> Result<()> {

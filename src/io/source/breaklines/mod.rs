@@ -101,10 +101,15 @@ pub fn read_polygons(path: &Path) -> Result<Breaklines> {
 }
 
 fn read(path: &Path, takes_wkt: bool) -> Result<Breaklines> {
-    let is_stdin = path.as_os_str() == "-";
-    let input: Box<dyn Read> = if is_stdin { Box::new(open_stdin()?) } else { Box::new(open_file(path)?.0) };
+    let (input, is_file): (Box<dyn Read>, bool) = if path.as_os_str() == "-" {
+        (Box::new(open_stdin()?), false)
+    } else {
+        let (file, kind) = open_file(path)?;
+        (Box::new(file), kind.is_file())
+    };
     let mut input = Plain::new(input).map_err(|e| Error::io("reading", e))?;
-    let is_plain = !is_stdin && !input.is_compressed();
+    // Other formats are read by their names again, or with files beside them.
+    let is_plain = is_file && !input.is_compressed();
     let head = read_head(&mut input).map_err(|e| Error::io("reading", e))?;
     if head.starts_with(SQLITE_MAGIC) {
         return if is_plain { read_geopackage(path) } else { Err(not_in_pipe("GeoPackage")) };
@@ -138,7 +143,9 @@ fn check_text(head: &[u8]) -> Result<()> {
 }
 
 fn not_in_pipe(format: &str) -> Error {
-    Error::usage(format!("a {format} is read from a plain file only: decompress it, and give its path"))
+    let message =
+        format!("a {format} is read from a plain file, not from a pipe or compressed: give its path");
+    Error::usage(message)
 }
 
 #[cfg(feature = "geopackage")]
