@@ -128,7 +128,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     drop(progress);
     let output_bytes = output.bytes_written();
     output.commit()?;
-    write_report(report, &changes)?;
+    write_report(report, &changes, None)?;
     if stats.open_segments > 0 {
         flags.notice(&about_open(&stats));
     }

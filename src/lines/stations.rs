@@ -1,7 +1,7 @@
 //! Elevations along the centre line of a river.
 
-use super::water::Centre;
-use spmesh_model::network::Network;
+use std::ops::Range;
+
 use spmesh_model::points::Point2;
 
 /// Parts of a centre line that have one box.
@@ -17,13 +17,26 @@ pub(crate) struct Stations {
 }
 
 /// A place on a centre line: the number of a part, and the place on it from 0 to 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub(crate) struct Station {
     part: usize,
     along: f64,
 }
 
 impl Station {
+    /// The start of a line.
+    pub(crate) const START: Station = Station { part: 0, along: 0.0 };
+
+    /// The end of a part.
+    pub(crate) fn end(part: usize) -> Station {
+        Station { part, along: 1.0 }
+    }
+
+    /// The lower one.
+    pub(crate) fn max(self, other: Station) -> Station {
+        if other > self { other } else { self }
+    }
+
     /// The nearer vertex; the upper one of equally near ones.
     pub(crate) fn vertex(self) -> usize {
         self.part + usize::from(self.along > 0.5)
@@ -31,9 +44,8 @@ impl Station {
 }
 
 impl Stations {
-    pub(crate) fn new(centre: &Centre, network: &Network) -> Stations {
-        let place = |&vertex: &u32| network.vertices[vertex as usize].place;
-        let places: Vec<Point2> = centre.vertices.iter().map(place).collect();
+    /// Stations at two places at least.
+    pub(crate) fn new(places: Vec<Point2>) -> Stations {
         let parts = places.len() - 1;
         let of_block = |first: usize| {
             let block = &places[first..(first + BLOCK).min(parts) + 1];
@@ -45,10 +57,20 @@ impl Stations {
         Stations { places, boxes, elevations: Vec::new() }
     }
 
+    pub(crate) fn places(&self) -> &[Point2] {
+        &self.places
+    }
+
     /// The station nearest to a place, the upper one of equally near ones. Distances are those of f64.
     pub(crate) fn nearest(&self, place: Point2) -> Station {
-        let (mut best, mut least) = (Station { part: 0, along: 0.0 }, f64::INFINITY);
-        for (block, bounds) in self.boxes.iter().enumerate() {
+        self.nearest_of(0..self.places.len() - 1, place)
+    }
+
+    /// The nearest station of some parts.
+    pub(crate) fn nearest_of(&self, parts: Range<usize>, place: Point2) -> Station {
+        let (mut best, mut least) = (Station { part: parts.start, along: 0.0 }, f64::INFINITY);
+        for block in parts.start / BLOCK..parts.end.div_ceil(BLOCK) {
+            let bounds = self.boxes[block];
             let away =
                 |axis: usize| (bounds[0][axis] - place[axis]).max(place[axis] - bounds[1][axis]).max(0.0);
             // A margin for rounding.
@@ -56,7 +78,7 @@ impl Stations {
                 continue;
             }
             let first = block * BLOCK;
-            for part in first..(first + BLOCK).min(self.places.len() - 1) {
+            for part in first.max(parts.start)..(first + BLOCK).min(parts.end) {
                 let (along, square) = project([self.places[part], self.places[part + 1]], place);
                 if square < least {
                     (best, least) = (Station { part, along }, square);
@@ -127,18 +149,10 @@ fn project([a, b]: [Point2; 2], [x, y]: Point2) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spmesh_model::network::NetworkVertex;
-
-    fn stations(places: &[Point2]) -> Stations {
-        let vertices = places.iter().map(|&place| NetworkVertex { place, z: None }).collect();
-        let network = Network { vertices, segments: Vec::new() };
-        let centre = Centre { vertices: (0..places.len() as u32).collect(), ..Centre::default() };
-        Stations::new(&centre, &network)
-    }
 
     #[test]
     fn elevations_never_rise_and_gaps_are_filled() {
-        let mut river = stations(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [4.0, 0.0], [5.0, 0.0], [6.0, 0.0]]);
+        let mut river = Stations::new([0.0, 1.0, 2.0, 4.0, 5.0, 6.0].map(|x| [x, 0.0]).to_vec());
         assert_eq!(river.settle(&[None; 6]), None);
         assert_eq!(river.settle(&[None, Some(9.0), None, Some(3.0), Some(5.0), None]), Some(2));
         assert_eq!(river.elevations, [9.0, 9.0, 7.0, 3.0, 3.0, 3.0]);
@@ -149,7 +163,7 @@ mod tests {
     #[test]
     fn the_nearest_station_is_found_among_blocks() {
         let places: Vec<Point2> = (0..200).map(|i| [f64::from(i), f64::from(i * i % 17)]).collect();
-        let river = stations(&places);
+        let river = Stations::new(places.clone());
         for number in 0..300 {
             let place = [f64::from(number * 7 % 211), f64::from(number % 23)];
             let all = (0..199).map(|part| (project([places[part], places[part + 1]], place), part));
