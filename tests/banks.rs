@@ -33,10 +33,8 @@ fn line(properties: &str, vertices: &[[f64; 2]], z: impl Fn([f64; 2]) -> Option<
         None => format!("[{x},{y}]"),
     };
     let all: Vec<String> = vertices.iter().map(vertex).collect();
-    format!(
-        r#"{{"type":"Feature","properties":{{{properties}}},"geometry":{{"type":"LineString","coordinates":[{}]}}}}"#,
-        all.join(",")
-    )
+    let geometry = format!(r#"{{"type":"LineString","coordinates":[{}]}}"#, all.join(","));
+    format!(r#"{{"type":"Feature","properties":{{{properties}}},"geometry":{geometry}}}"#)
 }
 
 fn soft(properties: &str, vertices: &[[f64; 2]]) -> String {
@@ -280,9 +278,8 @@ fn the_report_says_how_levels_were_found() {
     let polygon = |properties: &str, [x, y]: [f64; 2], z: &str| {
         let at = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0], [0.0, 0.0]];
         let at = at.map(|[u, v]| format!("[{},{}{z}]", x + u, y + v)).join(",");
-        format!(
-            r#"{{"type":"Feature","properties":{{{properties}}},"geometry":{{"type":"Polygon","coordinates":[[{at}]]}}}}"#
-        )
+        let geometry = format!(r#"{{"type":"Polygon","coordinates":[[{at}]]}}"#);
+        format!(r#"{{"type":"Feature","properties":{{{properties}}},"geometry":{geometry}}}"#)
     };
     let (left, right) = (bank(1.0, 2.0), bank(-1.0, 5.0));
     let features = [

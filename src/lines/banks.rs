@@ -33,8 +33,8 @@ impl Bank {
     }
 }
 
-/// Adds the lines that close rivers between their banks: from the first vertex of the left bank to that of the
-/// right one, and between the last ones. They come behind all files, so the numbers of lines stay.
+/// Adds the lines that close rivers between their banks: from the first vertex of the left bank to that of
+/// the right one, and between the last ones. They come behind all files, so the numbers of lines stay.
 ///
 /// A river of `--lines` is closed, too: so `spconstrain` has the same lines as `spfinalize --flatten`. It
 /// leaves banks that are not sound as they are, since they may be lines of another meaning.
@@ -88,40 +88,53 @@ pub(crate) fn check(
         let message = "a bank is at one place of the grid, expected two at least".to_string();
         return Err((bank, message));
     }
-    let distance = |a: &[u32], at_a: usize, b: &[u32], at_b: usize| {
-        let ([x, y], [u, v]) = (place(a[at_a]), place(b[at_b]));
-        ((u - x) as f64).hypot((v - y) as f64)
-    };
-    let [last_left, last_right] = [left.len() - 1, right.len() - 1];
-    let along = distance(left, 0, right, 0) + distance(left, last_left, right, last_right);
-    if along > distance(left, 0, right, last_right) + distance(left, last_left, right, 0) {
+    let ends = [left, right].map(|bank| [bank[0], bank[bank.len() - 1]].map(&place));
+    if is_crosswise(ends) {
         let message =
             "the banks lead in opposite directions: reverse one of them, so that both lead downstream";
         return Err((Bank::Right, message.into()));
     }
+    let ring = ring([left, right], [upper, lower]);
+    if let Some(vertex) = repeated(&ring) {
+        let [x, y] = world(place(vertex));
+        let (bank, what) = meeting([left, right], vertex);
+        let remedy = "banks may meet at the ends of the river alone, and have their ends at opposite places";
+        return Err((bank, format!("{what} at {x}, {y}: {remedy}")));
+    }
+    if area(&ring, place) > 0 {
+        let message = "the left bank is on the right, seen along the lines: if they lead upstream, reverse \
+                       both; else exchange left and right";
+        return Err((Bank::Left, message.into()));
+    }
+    Ok(())
+}
+
+/// Whether the first place of each of two lines is nearer to the last one of the other, both taken together.
+fn is_crosswise([left, right]: [[[i64; 2]; 2]; 2]) -> bool {
+    let distance = |[x, y]: [i64; 2], [u, v]: [i64; 2]| ((u - x) as f64).hypot((v - y) as f64);
+    let of = |[first, last]: [[i64; 2]; 2]| distance(left[0], first) + distance(left[1], last);
+    of(right) > of([right[1], right[0]])
+}
+
+/// The border of a river, clockwise if its banks are sound. A vertex at which they meet comes once.
+fn ring([left, right]: [&[u32]; 2], [upper, lower]: [&[u32]; 2]) -> Vec<u32> {
     let back = |line: &[u32]| line.iter().rev().copied().collect::<Vec<_>>();
     let mut ring = [left, lower, &back(right), &back(upper)].concat();
     ring.dedup();
     if ring.len() > 1 && ring.first() == ring.last() {
         ring.pop();
     }
-    if let Some(vertex) = repeated(&ring) {
-        let [x, y] = world(place(vertex));
-        let times = [left, right].map(|bank| bank.iter().filter(|&&other| other == vertex).count());
-        let (bank, what) = match times {
-            [2..=usize::MAX, _] => (Bank::Left, "the left bank crosses or touches itself"),
-            [_, 2..=usize::MAX] => (Bank::Right, "the right bank crosses or touches itself"),
-            [1, 1] => (Bank::Right, "the banks cross or touch each other"),
-            _ => (Bank::Left, "the line between the ends of the banks crosses or touches a bank"),
-        };
-        return Err((bank, format!("{what} at {x}, {y}: draw a river whose banks meet at its ends at most")));
+    ring
+}
+
+/// What meets at a vertex that comes twice, and the bank at fault.
+fn meeting(banks: [&[u32]; 2], vertex: u32) -> (Bank, &'static str) {
+    match banks.map(|bank| bank.iter().filter(|&&other| other == vertex).count()) {
+        [2..=usize::MAX, _] => (Bank::Left, "the left bank crosses or touches itself"),
+        [_, 2..=usize::MAX] => (Bank::Right, "the right bank crosses or touches itself"),
+        [1, 1] => (Bank::Right, "the banks cross or touch each other"),
+        _ => (Bank::Left, "the line between the ends of the banks crosses or touches a bank"),
     }
-    if area(&ring, place) > 0 {
-        let message = "the left bank is on the right, seen along the lines: if they lead upstream, reverse both; else \
-                       exchange left and right";
-        return Err((Bank::Left, message.into()));
-    }
-    Ok(())
 }
 
 /// A vertex that comes twice.

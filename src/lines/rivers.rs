@@ -26,17 +26,13 @@ impl Levels {
             true => river.stated(given.network, sections.as_ref()),
             false => near(given, number, &stations),
         };
-        self.found +=
-            known.iter().flatten().filter(|(_, found)| matches!(found, Found::Points(_))).count() as u64;
+        if !river.is_hard {
+            self.found += known.iter().flatten().count() as u64;
+        }
         let elevations: Vec<Option<f64>> = known.iter().map(|known| known.map(|(z, _)| z)).collect();
         let lowered = stations.settle(&elevations).ok_or_else(|| river.position.fault(NO_SHORE))?;
-        for (index, known) in known.iter().enumerate() {
-            self.rows.push(LevelRow::of_station(
-                given,
-                river,
-                (stations.places()[index], *known),
-                stations.elevations[index],
-            ));
+        for ((&place, &known), &z) in stations.places().iter().zip(&known).zip(&stations.elevations) {
+            self.rows.push(LevelRow::of_station(given, river, (place, known), z));
         }
         let moved = match (&river.course, &sections) {
             (Course::Banks { banks, ends }, Some(sections)) => {

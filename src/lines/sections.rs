@@ -1,8 +1,9 @@
 //! Sections of a river by two banks: pairs of opposite vertices.
 //!
 //! Sections follow each other downstream without crossing: from one to the next, one bank advances by one
-//! vertex. It is the bank for which the next section is shorter. So a bay of one bank shifts the sections that
-//! are about as near as it is deep. If places at the same share of both lengths were opposite, it would shift all.
+//! vertex. It is the bank for which the next section is shorter. So a bay of one bank shifts sections up to
+//! about twice its depth below it. If places at the same share of both lengths were opposite, it would shift
+//! all of them.
 
 use std::ops::Range;
 

@@ -10,8 +10,8 @@ const LEAF: usize = 8;
 /// A centre line with the elevation of each of its vertices: its *stations*.
 pub(crate) struct Stations {
     places: Vec<Point2>,
-    /// The boxes of a binary tree: node 1 is the root, nodes 2n and 2n + 1 are below n, and the second half are
-    /// leaves.
+    /// The boxes of a binary tree: node 1 is the root, nodes 2n and 2n + 1 are below n, and the second half
+    /// are leaves.
     boxes: Vec<[Point2; 2]>,
     /// Stored elevations, which never rise downstream.
     pub(crate) elevations: Vec<f64>,

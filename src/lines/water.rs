@@ -127,6 +127,22 @@ impl Water {
         let lakes = self.polygons.iter().filter(|polygon| polygon.river.is_none()).count();
         [lakes as u64, self.rivers.len() as u64]
     }
+
+    /// Enters a river, and its polygon if it has banks.
+    fn enter(&mut self, name: &str, lines: &Lines, bent: &Bent, grid: &Grid) -> Result<()> {
+        let banks = lines.banks(name)?;
+        let of_banks = banks.map(|banks| of_banks(banks, &lines.ends, bent, grid)).transpose()?;
+        let (course, segments) = of_banks.unzip();
+        let (course, leading) = lines.course(name, course.zip(banks), bent)?;
+        let Feature { line, ref position, .. } = *leading[0];
+        if let Some(segments) = segments {
+            let (river, position) = (Some(self.rivers.len()), position.clone());
+            self.polygons.push(WaterPolygon { segments, level: None, river, line, position });
+        }
+        let (name, is_hard) = (name.to_string(), leading.iter().any(|line| line.is_hard));
+        self.rivers.push(River { name, course, is_hard, line, position: position.clone() });
+        Ok(())
+    }
 }
 
 /// Water after noding.
@@ -141,24 +157,8 @@ pub(crate) fn water(features: &[Feature], bent: &Bent, grid: &Grid) -> Result<Wa
         }
     }
     let mut water = Water::default();
-    for (number, (name, lines)) in rivers.iter().enumerate() {
-        let banks = lines.banks(name)?;
-        let of_banks = banks.map(|banks| of_banks(banks, &lines.ends, bent, grid)).transpose()?;
-        let (course, segments) = of_banks.unzip();
-        let (course, leading) = lines.course(name, course.zip(banks), bent)?;
-        let Feature { line, ref position, .. } = *leading[0];
-        if let Some(segments) = segments {
-            let river = Some(number);
-            water.polygons.push(WaterPolygon {
-                segments,
-                level: None,
-                river,
-                line,
-                position: position.clone(),
-            });
-        }
-        let (name, is_hard) = (name.to_string(), leading.iter().any(|line| line.is_hard));
-        water.rivers.push(River { name, course, is_hard, line, position: position.clone() });
+    for (name, lines) in &rivers {
+        water.enter(name, lines, bent, grid)?;
     }
     let rings: Vec<&Feature> = features.iter().filter(|feature| feature.polygon().is_some()).collect();
     for same in rings.chunk_by(|a, b| a.polygon() == b.polygon()) {
@@ -206,13 +206,14 @@ impl<'f> Lines<'f> {
     fn banks(&self, name: &str) -> Result<Option<[&'f Feature; 2]>> {
         match (self.banks, self.polygon) {
             ([Some(bank), _] | [_, Some(bank)], Some(_)) => Err(bank.position.fault(format!(
-                "the river {name:?} has a polygon and a bank, expected a polygon or two banks: remove one of them"
+                "the river {name:?} has a polygon and a bank: remove its polygons, or its banks"
             ))),
             ([Some(left), Some(right)], None) => Ok(Some([left, right])),
             ([Some(bank), None] | [None, Some(bank)], None) => {
-                let (own, other) = if self.banks[0].is_some() { ("left", "right") } else { ("right", "left") };
+                let is_left = self.banks[0].is_some();
+                let (own, other) = if is_left { ("left", "right") } else { ("right", "left") };
                 Err(bank.position.fault(format!(
-                    "the river {name:?} has a {own} bank alone: add a line with the same river and bank {other:?}"
+                    "the river {name:?} has a {own} bank alone: add a line of this river with bank {other:?}"
                 )))
             }
             ([None, None], _) => Ok(None),
