@@ -4,6 +4,7 @@ mod allocation;
 mod areas;
 mod attributes;
 mod audit;
+mod banks;
 mod canopy;
 mod cell_grid;
 mod cli;

@@ -15,10 +15,10 @@ const WATER: &str = r#"{"type":"FeatureCollection","features":[
 
 const LAKE: [[f64; 2]; 5] = [[20.0, 60.0], [45.5, 58.0], [50.0, 80.25], [35.0, 90.0], [18.0, 82.0]];
 const ISLAND: [[f64; 2]; 3] = [[30.0, 70.0], [36.0, 70.0], [34.0, 76.0]];
-const SCALE: [&str; 2] = ["--scale", "0.01,0.01,0.01"];
+pub(crate) const SCALE: [&str; 2] = ["--scale", "0.01,0.01,0.01"];
 
 /// Points in hundredths: a slope that falls to the right, with waves and noise.
-fn points() -> Vec<[i64; 3]> {
+pub(crate) fn points() -> Vec<[i64; 3]> {
     let mut random = Random::new(5);
     let mut points = Vec::new();
     for number in 0..6400 {
@@ -29,7 +29,7 @@ fn points() -> Vec<[i64; 3]> {
     points
 }
 
-fn text(points: &[[i64; 3]]) -> String {
+pub(crate) fn text(points: &[[i64; 3]]) -> String {
     let line = |point: &[i64; 3]| {
         let [x, y, z] = point.map(|value| value as f64 / 100.0);
         format!("{x:.2} {y:.2} {z:.2}\n")
@@ -38,7 +38,7 @@ fn text(points: &[[i64; 3]]) -> String {
 }
 
 /// Whether a place is in a ring; places on it do not occur.
-fn is_in(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+pub(crate) fn is_in(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let mut is_in = false;
     for (index, a) in ring.iter().enumerate() {
         let b = ring[(index + 1) % ring.len()];
@@ -51,7 +51,7 @@ fn in_lake(place: [f64; 2]) -> bool {
     is_in(&LAKE, place) && !is_in(&ISLAND, place)
 }
 
-fn distance(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+pub(crate) fn distance(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
     let parts = (0..ring.len()).map(|index| [ring[index], ring[(index + 1) % ring.len()]]);
     let away = |[a, b]: [[f64; 2]; 2]| {
         let [u, v] = [b[0] - a[0], b[1] - a[1]];
@@ -85,7 +85,7 @@ fn level(points: &[[i64; 3]], width: f64, percentile: f64) -> i64 {
 }
 
 /// The constrained mesh, and the messages of `spfinalize`.
-fn flattened(folder: &Folder, water: &str, flags: &[&str]) -> (Vec<u8>, String) {
+pub(crate) fn flattened(folder: &Folder, water: &str, flags: &[&str]) -> (Vec<u8>, String) {
     let file = folder.write("water.geojson", water);
     let arguments = [&SCALE[..], &["--flatten", &file, "--stats=json"], flags, &["-"]].concat();
     let output = run("spfinalize", &arguments, text(&points()).as_bytes());
@@ -101,7 +101,7 @@ fn flattened(folder: &Folder, water: &str, flags: &[&str]) -> (Vec<u8>, String) 
 }
 
 /// The vertices of a mesh, in hundredths.
-fn vertices(mesh: &[u8]) -> Vec<[i64; 3]> {
+pub(crate) fn vertices(mesh: &[u8]) -> Vec<[i64; 3]> {
     let mut reader = StreamReader::new(mesh, "test").expect("a stream");
     let mut found = Vec::new();
     while let Some(event) = reader.next_event().expect("a sound stream") {
@@ -113,7 +113,7 @@ fn vertices(mesh: &[u8]) -> Vec<[i64; 3]> {
 }
 
 /// Elevation of a vertex at a place in hundredths.
-fn at(vertices: &[[i64; 3]], place: [i64; 2]) -> i64 {
+pub(crate) fn at(vertices: &[[i64; 3]], place: [i64; 2]) -> i64 {
     vertices.iter().find(|[x, y, _]| [*x, *y] == place).unwrap_or_else(|| panic!("no vertex at {place:?}"))[2]
 }
 

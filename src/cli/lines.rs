@@ -7,7 +7,7 @@ use clap::Args;
 use super::parse_numbers;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
-use spmesh_lines::{Areas, ChangeKind, Changes, Options, Sources, Target, Water};
+use spmesh_lines::{Areas, ChangeKind, Changes, Levels, Options, Sources, Target, Water};
 use spmesh_model::network::Network;
 
 /// Lines that are read along with points or a mesh.
@@ -24,7 +24,7 @@ pub(super) struct LineFlags {
     densify: Option<f64>,
 
     /// Write a table of all that was changed about lines: kind, line (numbered from 0), x and y, separated by
-    /// tabs
+    /// tabs. With --flatten, it has the levels of lakes and of stations of rivers, too
     #[arg(long, value_name = "FILE")]
     pub(super) report: Option<PathBuf>,
 }
@@ -93,13 +93,14 @@ impl LineFlags {
     }
 }
 
-/// Writes the report.
+/// Writes the report, with levels if there is water.
 ///
 /// # Errors
 /// If writing fails.
-pub(super) fn write_report(report: Option<Output>, changes: &Changes) -> Result<()> {
+pub(super) fn write_report(report: Option<Output>, changes: &Changes, levels: Option<&Levels>) -> Result<()> {
     let Some(mut output) = report else { return Ok(()) };
-    changes.write_report(&mut output).map_err(|e| Error::io("writing the report", e))?;
+    spmesh_lines::write_report(&mut output, changes, levels)
+        .map_err(|e| Error::io("writing the report", e))?;
     output.commit()
 }
 

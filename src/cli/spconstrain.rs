@@ -128,7 +128,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     drop(progress);
     let output_bytes = output.bytes_written();
     output.commit()?;
-    write_report(report, &changes)?;
+    write_report(report, &changes, None)?;
     if stats.triangles[0] > 0 && stats.triangles[1] == 0 {
         flags.notice("no triangles are left: --hull, --holes or --kill leave out all of them");
     }

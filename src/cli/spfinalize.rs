@@ -236,7 +236,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let stats = spmesh_finalize::run_with(points, &added, &options, &mut watch, &mut output)?;
     drop(watch);
     output.commit()?;
-    write_report(report, &changes)?;
+    let has_water = !flags.water.files().is_empty();
+    write_report(report, &changes, has_water.then_some(&levels))?;
     if let Some(message) = summary(&changes) {
         notice(TOOL, &flags.common, &message);
     }

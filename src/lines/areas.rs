@@ -16,7 +16,7 @@ pub struct Sources<'p> {
     pub hull: &'p [PathBuf],
     /// Polygons inside of which it is removed.
     pub holes: &'p [PathBuf],
-    /// Lakes, rivers and their centre lines.
+    /// Lakes, and rivers with their centre lines or banks.
     pub water: &'p [PathBuf],
 }
 
@@ -27,6 +27,8 @@ pub(crate) enum Role {
     Hull,
     Holes,
     Water,
+    /// Lines that close rivers of `Water` between their banks.
+    Ends,
 }
 
 impl<'p> Sources<'p> {

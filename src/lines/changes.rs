@@ -1,7 +1,5 @@
 //! What was changed about lines.
 
-use std::io::{self, Write};
-
 use spmesh_geometry::noding::NodingChange;
 use spmesh_model::points::Point2;
 
@@ -121,18 +119,6 @@ impl Changes {
     #[must_use]
     pub fn list(&self) -> &[Change] {
         self.list.as_deref().unwrap_or_default()
-    }
-
-    /// Writes the list as tab-separated values, with a line of names. Lines are numbered from 0, over all
-    /// files.
-    ///
-    /// # Errors
-    /// If writing fails.
-    pub fn write_report(&self, output: &mut impl Write) -> io::Result<()> {
-        writeln!(output, "kind\tline\tx\ty")?;
-        self.list().iter().try_for_each(|Change { kind, line, place: [x, y] }| {
-            writeln!(output, "{}\t{line}\t{x}\t{y}", kind.name())
-        })
     }
 }
 

@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::Target;
-use super::stations::Stations;
-use super::water::{Water, WaterPolygon};
+use super::report::{Found, LevelRow};
+use super::water::{Stated, Water, WaterPolygon};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::polygons::{Polygons, Side};
+use spmesh_geometry::polygons::Polygons;
 use spmesh_model::bounds::Point;
 use spmesh_model::network::Network;
-use spmesh_stream::Coordinates;
 
 /// The levels of water.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -21,6 +20,18 @@ pub struct Levels {
     pub found: u64,
     /// Messages for the user.
     pub notices: Vec<String>,
+    /// Lakes and stations of rivers, for the report.
+    pub(crate) rows: Vec<LevelRow>,
+}
+
+/// What levels are found from.
+pub(crate) struct Given<'a> {
+    pub(crate) network: &'a Network,
+    pub(crate) water: &'a Water,
+    /// The points near the shore of each polygon.
+    pub(crate) shores: Vec<Vec<Point>>,
+    pub(crate) percentile: f64,
+    pub(crate) target: &'a Target,
 }
 
 impl Levels {
@@ -37,128 +48,30 @@ impl Levels {
     pub fn find(
         network: &Network,
         water: &Water,
-        shores: Vec<Vec<Point>>,
+        mut shores: Vec<Vec<Point>>,
         percentile: f64,
         target: &Target,
     ) -> Result<Levels> {
-        let mut levels = Levels::default();
-        let mut shores = shores;
         shores.resize(water.polygons.len(), Vec::new());
-        let rivers = levels.rivers(network, water, &shores, percentile, target)?;
-        for polygon in &water.polygons {
-            if let Some(centre) = polygon.centre {
-                levels.river(network, water, polygon, (centre, &rivers[centre]), target);
-            }
+        let given = Given { network, water, shores, percentile, target };
+        let mut levels = Levels::default();
+        for number in 0..water.rivers.len() {
+            levels.river(&given, number)?;
         }
-        levels.lakes(network, water, shores, percentile)?;
+        levels.lakes(&given)?;
         Ok(levels)
     }
 
-    /// The centre lines with their elevations.
-    fn rivers(
-        &mut self,
-        network: &Network,
-        water: &Water,
-        shores: &[Vec<Point>],
-        percentile: f64,
-        target: &Target,
-    ) -> Result<Vec<Stations>> {
-        let mut rivers = Vec::new();
-        for (number, centre) in water.centres.iter().enumerate() {
-            let mut stations = Stations::new(centre, network);
-            let mut known = vec![None; centre.vertices.len()];
-            if centre.is_hard {
-                let stated = centre.vertices.iter().map(|&vertex| network.vertices[vertex as usize].z);
-                known = stated.collect();
-            } else {
-                let mut near = vec![Vec::new(); known.len()];
-                for (polygon, points) in water.polygons.iter().zip(shores) {
-                    if polygon.centre == Some(number) {
-                        for &[x, y, z] in points {
-                            near[stations.nearest([x, y]).vertex()].push(z);
-                        }
-                    }
-                }
-                for (known, near) in known.iter_mut().zip(near) {
-                    *known = percentile_of(near, percentile);
-                    self.found += u64::from(known.is_some());
-                }
-            }
-            let ends = [known.iter().flatten().next(), known.iter().flatten().next_back()];
-            let is_upstream = matches!(ends, [Some(first), Some(last)] if first < last);
-            let lowered = stations.settle(&known).ok_or_else(|| centre.position.fault(NO_SHORE))?;
-            let place = || format!("{}: {}", centre.position.file, centre.position.position);
-            if is_upstream {
-                let world =
-                    |z: Option<&f64>| target.coordinates.to_decimal([0.0, 0.0, *z.unwrap_or(&0.0)])[2];
-                let [first, last] = ends.map(world);
-                self.notices.push(format!(
-                    "{}: the river rises from {first} to {last}: its centre line must lead downstream",
-                    place()
-                ));
-            } else if centre.is_hard && lowered > 0 {
-                self.notices.push(format!(
-                    "{}: {lowered} vertices of the centre line were lowered to those upstream: give spconstrain \
-                     lines without these elevations",
-                    place()
-                ));
-            }
-            rivers.push(stations);
-        }
-        Ok(rivers)
-    }
-
-    /// The vertices of a river.
-    fn river(
-        &mut self,
-        network: &Network,
-        water: &Water,
-        polygon: &WaterPolygon,
-        (centre, stations): (usize, &Stations),
-        target: &Target,
-    ) {
-        let round = |z: f64| match target.coordinates {
-            Coordinates::I32 { .. } => z.round(),
-            Coordinates::F64 => z,
-        };
-        let mut take = |vertex: u32, z: f64| {
-            let own = self.elevations.entry(vertex).or_insert(f64::INFINITY);
-            *own = own.min(round(z));
-        };
-        for vertex in vertices(network, polygon) {
-            let station = stations.nearest(network.vertices[vertex as usize].place);
-            take(vertex, stations.elevation(station));
-        }
-        let inside = Polygons::of_edges(polygon.edges(network).map(|edge| (0, edge)));
-        for (&vertex, &z) in water.centres[centre].vertices.iter().zip(&stations.elevations) {
-            if inside.side(network.vertices[vertex as usize].place) != Side::Outside {
-                take(vertex, z);
-            }
-        }
-    }
-
     /// The vertices of lakes, and those of rivers in them.
-    fn lakes(
-        &mut self,
-        network: &Network,
-        water: &Water,
-        shores: Vec<Vec<Point>>,
-        percentile: f64,
-    ) -> Result<()> {
+    fn lakes(&mut self, given: &Given) -> Result<()> {
+        let &Given { network, water, .. } = given;
         let mut levels = vec![None; water.polygons.len()];
         let mut of_lakes: BTreeMap<u32, (f64, usize)> = BTreeMap::new();
-        for (number, (polygon, points)) in water.polygons.iter().zip(shores).enumerate() {
-            if polygon.centre.is_some() {
+        for (number, polygon) in water.polygons.iter().enumerate() {
+            if polygon.river.is_some() {
                 continue;
             }
-            let level = match polygon.level {
-                Some(level) => level,
-                None => {
-                    self.found += 1;
-                    let heights = points.iter().map(|point| point[2]).collect();
-                    percentile_of(heights, percentile).ok_or_else(|| polygon.position.fault(NO_SHORE))?
-                }
-            };
+            let level = self.lake(given, number)?;
             levels[number] = Some(level);
             for vertex in vertices(network, polygon) {
                 let (known, _) = *of_lakes.entry(vertex).or_insert((level, number));
@@ -187,9 +100,27 @@ impl Levels {
         self.elevations.extend(of_lakes.into_iter().map(|(vertex, (level, _))| (vertex, level)));
         Ok(())
     }
+
+    /// The level of a lake.
+    fn lake(&mut self, given: &Given, number: usize) -> Result<f64> {
+        let polygon = &given.water.polygons[number];
+        let (level, found) = match polygon.level {
+            Some(Stated { level, by_property: true }) => (level, Found::Property),
+            Some(Stated { level, by_property: false }) => (level, Found::Coordinates),
+            None => {
+                self.found += 1;
+                let heights: Vec<f64> = given.shores[number].iter().map(|point| point[2]).collect();
+                let count = heights.len();
+                let level = percentile_of(heights, given.percentile);
+                (level.ok_or_else(|| polygon.position.fault(NO_SHORE))?, Found::Points(count))
+            }
+        };
+        self.rows.push(LevelRow::of_lake(given, polygon, level, found));
+        Ok(level)
+    }
 }
 
-const NO_SHORE: &str = "no points are near the shore: state its level (property level, or third coordinates), or look \
+pub(crate) const NO_SHORE: &str = "no points are near the shore: state its level (property level, or third coordinates), or look \
                         for points farther away with --shore-width";
 
 fn in_conflict(polygon: &WaterPolygon) -> Error {
@@ -199,7 +130,7 @@ fn in_conflict(polygon: &WaterPolygon) -> Error {
 }
 
 /// The vertices of the border of a polygon, each once.
-fn vertices(network: &Network, polygon: &WaterPolygon) -> Vec<u32> {
+pub(crate) fn vertices(network: &Network, polygon: &WaterPolygon) -> Vec<u32> {
     let ends = polygon.segments.iter().flat_map(|&segment| network.segments[segment as usize].ends);
     let mut vertices: Vec<u32> = ends.collect();
     vertices.sort_unstable();
@@ -208,7 +139,7 @@ fn vertices(network: &Network, polygon: &WaterPolygon) -> Vec<u32> {
 }
 
 /// The least of the values such that `percent` of all, at least, are not above it; `None` of none.
-fn percentile_of(mut values: Vec<f64>, percent: f64) -> Option<f64> {
+pub(crate) fn percentile_of(mut values: Vec<f64>, percent: f64) -> Option<f64> {
     let rank = ((percent * values.len() as f64 / 100.0).ceil() as usize).clamp(1, values.len().max(1));
     if values.is_empty() {
         return None;

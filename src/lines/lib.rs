@@ -5,12 +5,17 @@
 //! stream (`grid`); and `geometry::noding` makes crossings and overlaps common vertices.
 
 mod areas;
+mod banks;
 mod changes;
+mod features;
 mod grid;
 mod levels;
 mod numbered;
 mod polygons;
 mod prepare;
+mod report;
+mod rivers;
+mod sections;
 mod stations;
 mod systems;
 mod water;
@@ -30,6 +35,7 @@ use grid::Grid;
 pub use levels::Levels;
 use numbered::Bent;
 pub use polygons::read_polygons;
+pub use report::write_report;
 pub use water::{Water, WaterPolygon};
 
 /// The stream that lines are for.
@@ -61,7 +67,8 @@ pub struct Options {
     pub lists_changes: bool,
 }
 
-/// Reads the lines of files as one network. Lines are numbered over all files, in their order.
+/// Reads the lines of files as one network. Lines are numbered over all files, in their order. Between the
+/// ends of two banks of a river are lines, too, behind all others.
 ///
 /// The network depends on the set of lines alone, but for the numbers of lines. Its coordinates are those
 /// that the stream stores. If these are f64, they are rounded to decimals: as many places as leave fewer than
@@ -87,11 +94,11 @@ pub fn read_with_areas(
     read_all(sources, target, options).map(|(network, areas, _, changes)| (network, areas, changes))
 }
 
-/// Reads lines as [`read`], and lakes and rivers, whose shores and centre lines are lines, too.
+/// Reads lines as [`read`], and lakes and rivers, whose shores, banks and centre lines are lines, too.
 ///
 /// # Errors
-/// As there; malformed, if a feature is neither a polygon nor the centre line of a river; usage, if there is
-/// water and points have no elevation.
+/// As there; malformed, if a feature is neither a polygon nor the centre line or a bank of a river, or banks
+/// bound no area; usage, if there is water and points have no elevation.
 pub fn read_with_water(
     sources: &Sources,
     target: &Target,
@@ -119,9 +126,10 @@ fn read_all(
         }
         files.push((role, name, file));
     }
+    banks::close(&mut files);
     let grid = Grid::of(target, files.iter().flat_map(|(_, _, file)| &file.lines));
     let rings = areas::rings(&files)?;
-    let features = water::features(&files, target)?;
+    let features = features::features(&files, target)?;
     let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
     let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
     let noding = NodingOptions {
@@ -134,7 +142,7 @@ fn read_all(
     if !rings.is_empty() || !features.is_empty() {
         let bent = Bent::new(&noded, &vertices, &starts);
         areas = areas::areas(&rings, &bent)?;
-        water = water::water(&features, &bent)?;
+        water = water::water(&features, &bent, &grid)?;
     }
     Ok((network(noded, &grid), areas, water, changes))
 }

@@ -1,29 +1,43 @@
 //! Elevations along the centre line of a river.
 
-use super::water::Centre;
-use spmesh_model::network::Network;
+use std::ops::Range;
+
 use spmesh_model::points::Point2;
 
-/// Parts of a centre line that have one box.
-const BLOCK: usize = 16;
+/// Parts of a centre line in a leaf of the tree of boxes.
+const LEAF: usize = 8;
 
 /// A centre line with the elevation of each of its vertices: its *stations*.
 pub(crate) struct Stations {
     places: Vec<Point2>,
-    /// The box of each block of parts.
+    /// The boxes of a binary tree: node 1 is the root, nodes 2n and 2n + 1 are below n, and the second half
+    /// are leaves.
     boxes: Vec<[Point2; 2]>,
     /// Stored elevations, which never rise downstream.
     pub(crate) elevations: Vec<f64>,
 }
 
 /// A place on a centre line: the number of a part, and the place on it from 0 to 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub(crate) struct Station {
     part: usize,
     along: f64,
 }
 
 impl Station {
+    /// The start of a line.
+    pub(crate) const START: Station = Station { part: 0, along: 0.0 };
+
+    /// The end of a part.
+    pub(crate) fn end(part: usize) -> Station {
+        Station { part, along: 1.0 }
+    }
+
+    /// The lower one.
+    pub(crate) fn max(self, other: Station) -> Station {
+        if other > self { other } else { self }
+    }
+
     /// The nearer vertex; the upper one of equally near ones.
     pub(crate) fn vertex(self) -> usize {
         self.part + usize::from(self.along > 0.5)
@@ -31,39 +45,67 @@ impl Station {
 }
 
 impl Stations {
-    pub(crate) fn new(centre: &Centre, network: &Network) -> Stations {
-        let place = |&vertex: &u32| network.vertices[vertex as usize].place;
-        let places: Vec<Point2> = centre.vertices.iter().map(place).collect();
+    /// Stations at two places at least.
+    pub(crate) fn new(places: Vec<Point2>) -> Stations {
         let parts = places.len() - 1;
-        let of_block = |first: usize| {
-            let block = &places[first..(first + BLOCK).min(parts) + 1];
-            block.iter().fold([block[0]; 2], |[min, max], place| {
-                [[0, 1].map(|axis| min[axis].min(place[axis])), [0, 1].map(|axis| max[axis].max(place[axis]))]
-            })
-        };
-        let boxes = (0..parts).step_by(BLOCK).map(of_block).collect();
+        let leaves = parts.div_ceil(LEAF).next_power_of_two();
+        let mut boxes = vec![NOWHERE; 2 * leaves];
+        for (part, ends) in places.windows(2).enumerate() {
+            let leaf = &mut boxes[leaves + part / LEAF];
+            ends.iter().for_each(|&place| *leaf = join(*leaf, [place; 2]));
+        }
+        (1..leaves).rev().for_each(|node| boxes[node] = join(boxes[2 * node], boxes[2 * node + 1]));
         Stations { places, boxes, elevations: Vec::new() }
+    }
+
+    pub(crate) fn places(&self) -> &[Point2] {
+        &self.places
     }
 
     /// The station nearest to a place, the upper one of equally near ones. Distances are those of f64.
     pub(crate) fn nearest(&self, place: Point2) -> Station {
-        let (mut best, mut least) = (Station { part: 0, along: 0.0 }, f64::INFINITY);
-        for (block, bounds) in self.boxes.iter().enumerate() {
-            let away =
-                |axis: usize| (bounds[0][axis] - place[axis]).max(place[axis] - bounds[1][axis]).max(0.0);
-            // A margin for rounding.
-            if (away(0) * away(0) + away(1) * away(1)) * (1.0 - 1e-12) > least {
-                continue;
+        self.nearest_of(0..self.places.len() - 1, place)
+    }
+
+    /// The nearest station of some parts.
+    pub(crate) fn nearest_of(&self, parts: Range<usize>, place: Point2) -> Station {
+        let mut found = (Station { part: parts.start, along: 0.0 }, f64::INFINITY);
+        self.search(1, &parts, place, &mut found);
+        found.0
+    }
+
+    /// Finds a nearer station below a node of the tree; `found` has the nearest one so far, and the square of
+    /// its distance.
+    fn search(&self, node: usize, parts: &Range<usize>, place: Point2, found: &mut (Station, f64)) {
+        let leaves = self.boxes.len() / 2;
+        let level = node.ilog2();
+        let width = LEAF * (leaves >> level);
+        let first = (node - (1 << level)) * width;
+        let own = first.max(parts.start)..(first + width).min(parts.end);
+        // A margin for rounding.
+        if own.is_empty() || self.away(node, place) * (1.0 - 1e-12) > found.1 {
+            return;
+        }
+        if node < leaves {
+            let mut below = [2 * node, 2 * node + 1];
+            if self.away(below[1], place) < self.away(below[0], place) {
+                below.reverse();
             }
-            let first = block * BLOCK;
-            for part in first..(first + BLOCK).min(self.places.len() - 1) {
-                let (along, square) = project([self.places[part], self.places[part + 1]], place);
-                if square < least {
-                    (best, least) = (Station { part, along }, square);
-                }
+            return below.into_iter().for_each(|node| self.search(node, parts, place, found));
+        }
+        for part in own {
+            let (along, square) = project([self.places[part], self.places[part + 1]], place);
+            if square < found.1 || square == found.1 && part < found.0.part {
+                *found = (Station { part, along }, square);
             }
         }
-        best
+    }
+
+    /// The square of the distance of a place from the box of a node.
+    fn away(&self, node: usize, place: Point2) -> f64 {
+        let [min, max] = self.boxes[node];
+        let [x, y] = [0, 1].map(|axis| (min[axis] - place[axis]).max(place[axis] - max[axis]).max(0.0));
+        x * x + y * y
     }
 
     /// The elevation at a station.
@@ -114,6 +156,14 @@ impl Stations {
     }
 }
 
+/// A box without places.
+const NOWHERE: [Point2; 2] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+
+/// The box around two boxes.
+fn join([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> [Point2; 2] {
+    [[0, 1].map(|axis| a[axis].min(c[axis])), [0, 1].map(|axis| b[axis].max(d[axis]))]
+}
+
 /// The place on a part nearest to another one, from 0 to 1, and the square of their distance.
 fn project([a, b]: [Point2; 2], [x, y]: Point2) -> (f64, f64) {
     let [u, v] = [b[0] - a[0], b[1] - a[1]];
@@ -127,18 +177,10 @@ fn project([a, b]: [Point2; 2], [x, y]: Point2) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spmesh_model::network::NetworkVertex;
-
-    fn stations(places: &[Point2]) -> Stations {
-        let vertices = places.iter().map(|&place| NetworkVertex { place, z: None }).collect();
-        let network = Network { vertices, segments: Vec::new() };
-        let centre = Centre { vertices: (0..places.len() as u32).collect(), ..Centre::default() };
-        Stations::new(&centre, &network)
-    }
 
     #[test]
     fn elevations_never_rise_and_gaps_are_filled() {
-        let mut river = stations(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [4.0, 0.0], [5.0, 0.0], [6.0, 0.0]]);
+        let mut river = Stations::new([0.0, 1.0, 2.0, 4.0, 5.0, 6.0].map(|x| [x, 0.0]).to_vec());
         assert_eq!(river.settle(&[None; 6]), None);
         assert_eq!(river.settle(&[None, Some(9.0), None, Some(3.0), Some(5.0), None]), Some(2));
         assert_eq!(river.elevations, [9.0, 9.0, 7.0, 3.0, 3.0, 3.0]);
@@ -147,14 +189,16 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_station_is_found_among_blocks() {
+    fn the_nearest_station_is_found_among_all_or_some() {
         let places: Vec<Point2> = (0..200).map(|i| [f64::from(i), f64::from(i * i % 17)]).collect();
-        let river = stations(&places);
+        let river = Stations::new(places.clone());
         for number in 0..300 {
             let place = [f64::from(number * 7 % 211), f64::from(number % 23)];
-            let all = (0..199).map(|part| (project([places[part], places[part + 1]], place), part));
-            let ((along, _), part) = all.min_by(|a, b| a.0.1.total_cmp(&b.0.1)).unwrap();
-            assert_eq!(river.nearest(place), Station { part, along }, "{place:?}");
+            for parts in [0..199, number as usize % 150..number as usize % 150 + 49, 7..8] {
+                let all = parts.clone().map(|part| (project([places[part], places[part + 1]], place), part));
+                let ((along, _), part) = all.min_by(|a, b| a.0.1.total_cmp(&b.0.1)).unwrap();
+                assert_eq!(river.nearest_of(parts, place), Station { part, along }, "{place:?}");
+            }
         }
     }
 }

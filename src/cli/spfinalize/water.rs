@@ -18,7 +18,8 @@ pub(super) struct WaterFlags {
     /// Make the lakes and rivers of this file flat: points in them and on their shores are dropped, and
     /// vertices of shores become points at the level of the water. Polygons are lakes; their level is that of
     /// their vertices, or the property level, or else that of points near the shore. Polygons with the
-    /// property river are rivers; a line with the same one is their centre line, and leads downstream.
+    /// property river are rivers; a line with the same one is their centre line, and leads downstream. Two
+    /// lines with the same river, and with the property bank left and right, are a river without a polygon.
     /// GeoJSON, Shapefile or GeoPackage. May be given several times
     #[arg(long, value_name = "FILE")]
     flatten: Vec<PathBuf>,

@@ -51,8 +51,10 @@ pub struct Breakline {
 pub struct Properties {
     /// Elevation of a lake.
     pub level: Option<String>,
-    /// Name that a river has in common with its centre line.
+    /// Name that the lines and polygons of a river have in common.
     pub river: Option<String>,
+    /// Side of a river that a line is the bank of.
+    pub bank: Option<String>,
 }
 
 impl Properties {
@@ -61,6 +63,7 @@ impl Properties {
         match name {
             _ if name.eq_ignore_ascii_case("level") => Some(&mut self.level),
             _ if name.eq_ignore_ascii_case("river") => Some(&mut self.river),
+            _ if name.eq_ignore_ascii_case("bank") => Some(&mut self.bank),
             _ => None,
         }
     }
