@@ -23,21 +23,22 @@ struct Edge {
     is_below_mesh: bool,
 }
 
-/// Proves that a border is one that cutting leaves. `edges` have their triangles on the left; `kill` is the
-/// kill length or 0.
+/// Proves that a border is one that cutting leaves. Of each of its `triangles` the edge from the first to the
+/// second corner is on the border; `kill` is the kill length or 0.
 ///
 /// Memory: the border. Cost: n log n for n edges, unless very many are under way at once.
 pub(super) fn check(
-    edges: &[[Corner; 2]],
+    triangles: &[[Corner; 3]],
     constraints: &Constraints,
     kill: f64,
     ledger: &mut Ledger,
 ) -> Result<(), Violation> {
-    check_simple(edges, ledger)?;
+    let edges: Vec<[Corner; 2]> = triangles.iter().map(|&[from, to, _]| [from, to]).collect();
+    check_simple(&edges, ledger)?;
     if kill > 0.0 {
-        return check_lengths(edges, constraints, kill, ledger);
+        return check_lengths(&edges, constraints, kill, ledger);
     }
-    check_reasons(edges, constraints, ledger)
+    check_reasons(triangles, constraints, ledger)
 }
 
 /// Proves that the border does not meet itself, and that the mesh is to the left of its edges.
@@ -153,13 +154,14 @@ fn check_lengths(
     Err(name_corners(Violation::new(Check::Border, message), &[*a, *b]))
 }
 
-/// Proves that each edge of the border is on a segment, or on the convex hull of all vertices.
+/// Proves that each edge of the border is on a segment, or on the convex hull of all vertices, or that an open
+/// segment crosses its triangle.
 fn check_reasons(
-    edges: &[[Corner; 2]],
+    triangles: &[[Corner; 3]],
     constraints: &Constraints,
     ledger: &mut Ledger,
 ) -> Result<(), Violation> {
-    let mut corners: Vec<Xy> = edges.iter().map(|[from, _]| from.at).collect();
+    let mut corners: Vec<Xy> = triangles.iter().map(|[from, ..]| from.at).collect();
     corners.sort_by(|&p, &q| lexicographic(p, q));
     corners.dedup();
     // The hull from left to right below, from right to left above, with all points on its sides.
@@ -167,13 +169,15 @@ fn check_reasons(
     hull.extend(side_of_hull(corners.iter().rev().copied(), ledger));
     hull.sort_by(compare);
     let is_on_hull = |ends: [Xy; 2]| hull.binary_search_by(|side| compare(side, &ends)).is_ok();
-    let free = edges.iter().filter(|[a, b]| constraints.of_border([a.id, b.id]).is_none());
-    let Some([a, b]) = free.filter(|[a, b]| !is_on_hull([a.at, b.at])).min_by_key(|[a, b]| [a.id, b.id])
-    else {
-        return Ok(());
-    };
-    let message =
-        format!("the edge {} to {} of the border is neither on a segment nor on the hull", a.id, b.id);
+    let free = triangles.iter().filter(|[a, b, _]| constraints.of_border([a.id, b.id]).is_none());
+    let inner = free.filter(|[a, b, _]| !is_on_hull([a.at, b.at]));
+    let wrong = inner.filter(|corners| !constraints.has_open_in(corners.map(|it| it.at), ledger));
+    let Some([a, b, _]) = wrong.min_by_key(|[a, b, _]| [a.id, b.id]) else { return Ok(()) };
+    let message = format!(
+        "the edge {} to {} of the border is neither on a segment nor on the hull, and no open segment crosses its \
+         triangle",
+        a.id, b.id
+    );
     Err(name_corners(Violation::new(Check::Border, message), &[*a, *b]))
 }
 

@@ -51,6 +51,31 @@ impl Constraints {
         self.sides.get(&sorted(edge)).copied()
     }
 
+    /// Whether an open segment crosses the interior of a counterclockwise triangle. Cost: the open segments.
+    ///
+    /// A segment and the interior of a triangle are apart if the line of a side or that of the segment has them
+    /// on different sides.
+    pub(super) fn has_open_in(&self, corners: [Xy; 3], ledger: &mut Ledger) -> bool {
+        let [a, b, c] = corners;
+        self.open.iter().any(|&number| {
+            let [p, q] = self.segments[number as usize];
+            let mut turns = |u, v, places: &[Xy]| {
+                let turns = places.iter().map(|&at| orientation(u, v, at));
+                let signs = turns.map(|turn| {
+                    ledger.count(Check::Border, turn.exactly);
+                    turn.sign
+                });
+                signs.collect::<Vec<Ordering>>()
+            };
+            let is_beside = |ends: [Xy; 2]| turns(ends[0], ends[1], &[p, q]).iter().all(|turn| turn.is_le());
+            if [[a, b], [b, c], [c, a]].into_iter().any(is_beside) {
+                return false;
+            }
+            let sides = turns(p, q, &corners);
+            sides.contains(&Ordering::Less) && sides.contains(&Ordering::Greater)
+        })
+    }
+
     /// Takes an edge from the first of its triangles, which states that it is on `segment`, or on none.
     pub(super) fn first(
         &mut self,

@@ -106,8 +106,12 @@ impl MeshAudit {
         else {
             return Ok(());
         };
-        let edges = self.triangles.edges.iter().map(|(ends, _)| ends.map(|id| self.hull.corner(id)));
-        border::check(&edges.collect::<Vec<_>>(), constraints, kill, ledger)
+        let triangle = |([from, to], apex): ([u64; 2], Corner)| {
+            let [from, to] = [from, to].map(|id| self.hull.corner(id));
+            [from, to, apex]
+        };
+        let triangles: Vec<[Corner; 3]> = self.triangles.edges.iter().map(triangle).collect();
+        border::check(&triangles, constraints, kill, ledger)
     }
 
     pub(super) fn triangles(&self) -> &Triangles {

@@ -44,8 +44,9 @@ Vertices of lines that the mesh does not have are added. Where a line states an 
 point at the same place; a vertex without one takes the elevation of the surface. Parts of lines outside of the mesh are \
 left out, with a notice. To extend the mesh by lines, give them to spfinalize, too.
 
-Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Points inside of holes stay vertices, \
-without triangles. --kill removes triangles at edges of the border that are longer than a length, and goes on with those \
+Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Where a ring leaves the mesh, the \
+triangles stay whole that it divides between its last vertex inside and the border; --densify D makes these ways shorter \
+than D. Points inside of holes stay vertices, without triangles. --kill removes triangles at edges of the border that are longer than a length, and goes on with those \
 behind them, but never across lines: a concave hull. Only triangles with such an edge wait for it.
 
 Triangles that no line changes pass at once. Memory is that of the lines, about 100 bytes a segment, and of the triangles \
@@ -135,6 +136,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if stats.open_segments > 0 {
         flags.notice(&about_open(&stats));
     }
+    if stats.divided > 0 {
+        flags.notice(&about_divided(&stats));
+    }
     if let Some(format) = flags.stats {
         rows::print(format, started.elapsed(), counts(&stats, reader.bytes_read(), output_bytes));
     }
@@ -150,11 +154,21 @@ fn about_open(stats: &Stats) -> String {
     )
 }
 
-fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 15] {
+/// The notice about triangles that rings divide.
+fn about_divided(stats: &Stats) -> String {
+    format!(
+        "rings of --hull or --holes leave the mesh and divide {} triangles on the way: these stay whole. With \
+         --densify D, only triangles within D of the border are divided",
+        stats.divided
+    )
+}
+
+fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 16] {
     [
         ("triangles read", "triangles_read", stats.triangles[0]),
         ("triangles written", "triangles", stats.triangles[1]),
         ("triangles cut off", "removed", stats.removed),
+        ("triangles that rings divide", "divided", stats.divided),
         ("triangles that waited", "waited", stats.held),
         ("most triangles waiting", "waited_max", stats.held_max),
         ("strips", "strips", stats.strips),

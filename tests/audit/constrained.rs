@@ -239,6 +239,28 @@ fn borders_are_those_that_cutting_leaves() {
     assert!(notched.verdict(1).unwrap_err().starts_with("hull"));
 }
 
+/// Where a ring leaves the mesh, triangles that it divides stay, and others go.
+#[test]
+fn borders_at_open_segments_are_those_of_triangles_that_they_divide() {
+    let points = vec![[0, 0], [100, 0], [50, 1], [0, 100], [100, 100]];
+    let of = |segment: [Place; 2], gone: [usize; 2]| {
+        let mut mesh = ConstrainedMesh::new(points.clone(), vec![segment]);
+        assert_eq!(mesh.open, BTreeSet::from([0]));
+        mesh.is_cut = true;
+        mesh.triangles.retain(|triangle| !gone.iter().all(|corner| triangle.contains(corner)));
+        assert_eq!(mesh.triangles.len(), 3);
+        mesh.state();
+        mesh.verdict(1)
+    };
+    // Through all but the triangle at the bottom, at its apex, and beside it; through the apex alone.
+    of([[-10, 2], [110, 2]], [0, 1]).unwrap();
+    assert!(of([[-10, 50], [110, 60]], [0, 1]).is_ok());
+    for segment in [[[-10, 90], [60, 200]], [[20, -5], [30, -1]], [[-10, 30], [20, 60]]] {
+        let message = of(segment, [0, 1]).unwrap_err();
+        assert!(message.contains("neither on a segment nor on the hull"), "{message}");
+    }
+}
+
 /// Two triangles that overlap although every edge is used once.
 #[test]
 fn overlapping_parts_of_a_cut_mesh_are_found() {

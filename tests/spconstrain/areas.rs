@@ -5,8 +5,7 @@ use crate::programs::Folder;
 use spmesh_core::random::Random;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Scattered points, and polygons: one with a corner outside of the points, two that overlap, one with a
-/// hole.
+/// Scattered points, and polygons among them: two that overlap, one with a hole.
 fn scene(folder: &Folder, seed: u64) -> Vec<u8> {
     let mut random = Random::new(seed);
     let points: String = (0..1500)
@@ -138,5 +137,102 @@ fn long_edges_are_taken_off_the_border() {
             peeled(&all, inside.triangles, length),
             "seed {seed}, length {length}"
         );
+    }
+}
+
+/// Whether a line from `p` to `q` meets the interior of a triangle.
+fn divides([p, q]: [[i64; 2]; 2], corners: &[[i64; 2]; 3]) -> bool {
+    let turn = |a: [i64; 2], b: [i64; 2], c: [i64; 2]| {
+        ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).signum()
+    };
+    let [a, b, c] = *corners;
+    let out = turn(a, b, c);
+    let is_beyond = |u, v| [p, q].iter().all(|&at| turn(u, v, at) * out <= 0);
+    let sides = corners.map(|at| turn(p, q, at));
+    !is_beyond(a, b) && !is_beyond(b, c) && !is_beyond(c, a) && sides.contains(&1) && sides.contains(&-1)
+}
+
+/// A star around a place, counterclockwise; closed.
+fn star(random: &mut Random, [x, y]: [f64; 2], radius: f64, corners: usize) -> Vec<[i64; 2]> {
+    let corner = |number: usize| {
+        let angle = std::f64::consts::TAU * (number as f64 + 0.8 * random.unit()) / corners as f64;
+        let reach = radius * (0.3 + 0.7 * random.unit());
+        [x + reach * angle.cos(), y + reach * angle.sin()].map(|x| x.round() as i64)
+    };
+    let mut ring: Vec<[i64; 2]> = (0..corners).map(corner).collect();
+    ring.push(ring[0]);
+    ring
+}
+
+fn polygon_file(folder: &Folder, name: &str, ring: &[[i64; 2]]) -> String {
+    let text = format!(r#"{{"type":"Polygon","coordinates":[{ring:?}]}}"#);
+    folder.file(name, text);
+    folder.path(name)
+}
+
+#[test]
+fn triangles_that_a_ring_divides_where_it_leaves_the_mesh_stay() {
+    let (mut divided, mut removed) = (0, 0);
+    for seed in 0..40 {
+        let folder = Folder::new();
+        let mut random = Random::new(100 + seed);
+        let points: String =
+            (0..300).map(|_| format!("{} {} 0\n", random.below(1000), random.below(1000))).collect();
+        folder.file("points.txt", points);
+        let points = output("spfinalize", &[&folder.path("points.txt")], &[]);
+        let stream = output("spdelaunay2d", &[], &points);
+        let centre = [1200.0 * random.unit() - 100.0, 1200.0 * random.unit() - 100.0];
+        let corners = 3 + random.below(12) as usize;
+        let hull = star(&mut random, centre, 900.0, corners);
+        let path = polygon_file(&folder, "area.geojson", &hull);
+        let all = mesh(&output("spconstrain", &["--lines", &path], &stream));
+        let is_divided =
+            |corners: &[[i64; 2]; 3]| hull.windows(2).any(|side| divides([side[0], side[1]], corners));
+        let of_hull = |corners: &&[[i64; 2]; 3]| {
+            is_divided(corners) || is_in(&hull, [0, 1].map(|axis| corners.iter().map(|at| at[axis]).sum()))
+        };
+        for (flag, is_hull) in [("--hull", true), ("--holes", false)] {
+            let cut = output("spconstrain", &[flag, &path], &stream);
+            audit(&cut);
+            let stays = |corners: &&[[i64; 2]; 3]| is_divided(corners) || of_hull(corners) == is_hull;
+            let expected: Vec<[[i64; 2]; 3]> = all.triangles.iter().filter(stays).copied().collect();
+            assert_eq!(mesh(&cut).triangles, expected, "seed {seed}, {flag}");
+            removed += all.triangles.len() - expected.len();
+        }
+        divided += all.triangles.iter().filter(|corners| is_divided(corners)).count();
+    }
+    assert!(divided > 400 && removed > 5000, "{divided} divided, {removed} removed");
+}
+
+#[test]
+fn rings_with_vertices_on_the_border_of_the_mesh_leave_it_there() {
+    let folder = Folder::new();
+    let points: String =
+        (0..11).flat_map(|x| (0..11).map(move |y| format!("{} {} 0\n", 10 * x, 10 * y))).collect();
+    folder.file("points.txt", points);
+    let points = output("spfinalize", &[&folder.path("points.txt")], &[]);
+    let stream = output("spdelaunay2d", &[], &points);
+    // Through vertices of the border, along it, through edges of it at new vertices, and across it.
+    for ring in [
+        vec![[-50, 0], [150, 0], [150, 50], [-50, 50], [-50, 0]],
+        vec![[0, 0], [105, 105], [0, 100], [0, 0]],
+        vec![[0, 5], [100, 5], [100, 25], [0, 33], [0, 5]],
+        vec![[-20, 15], [0, 15], [50, 47], [0, 85], [-20, 85], [-20, 15]],
+        vec![[-7, -7], [107, 111], [-7, 111], [-7, -7]],
+        vec![[-100, -100], [300, -100], [300, 300], [-100, 300], [-100, -100]],
+    ] {
+        let path = polygon_file(&folder, "area.geojson", &ring);
+        let all = mesh(&output("spconstrain", &["--lines", &path], &stream));
+        for (flag, is_hull) in [("--hull", true), ("--holes", false)] {
+            let cut = output("spconstrain", &[flag, &path], &stream);
+            audit(&cut);
+            let stays = |corners: &&[[i64; 2]; 3]| {
+                let middle = [0, 1].map(|axis| corners.iter().map(|at| at[axis]).sum());
+                is_in(&ring, middle) == is_hull
+                    || ring.windows(2).any(|side| divides([side[0], side[1]], corners))
+            };
+            let expected: Vec<[[i64; 2]; 3]> = all.triangles.iter().filter(stays).copied().collect();
+            assert_eq!(mesh(&cut).triangles, expected, "{ring:?}, {flag}");
+        }
     }
 }

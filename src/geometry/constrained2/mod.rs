@@ -11,12 +11,13 @@
 
 mod border;
 mod chord;
+mod crossing;
 mod mesh;
 mod vertex;
 mod walk;
 
 use crate::predicates::{Point2, Predicates2};
-use mesh::{Mesh, NONE};
+use mesh::{Mesh, NONE, Side};
 use spmesh_core::error::Result;
 pub use vertex::Host;
 
@@ -26,6 +27,14 @@ pub struct Region {
     mesh: Mesh,
     /// The triangle that the last vertex was inserted in, by its number at the start, and that vertex.
     last: Option<[u32; 2]>,
+}
+
+/// A side on the border of a region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BorderSide {
+    side: Side,
+    /// The places of its ends; the region is on its left.
+    pub ends: [Point2; 2],
 }
 
 /// A triangle of the result.
@@ -95,8 +104,26 @@ impl Region {
         Ok(leaves)
     }
 
+    /// The sides on the border now.
+    pub fn border(&self) -> impl Iterator<Item = BorderSide> + '_ {
+        crossing::border(&self.mesh).map(|(side, ends)| BorderSide { side, ends })
+    }
+
+    /// The triangles, numbered as in [`Region::pieces`], that a segment crosses which enters through a side
+    /// of the border: up to the next vertex on it, or to the border.
+    ///
+    /// Domain: the segment crosses the side, and its first end is outside.
+    pub fn crossed(
+        &self,
+        entry: &BorderSide,
+        segment: [Point2; 2],
+        predicates: &mut impl Predicates2,
+    ) -> Vec<u32> {
+        crossing::from_border(&self.mesh, entry.side, segment, predicates)
+    }
+
     /// The triangles now.
-    pub fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
+    pub fn pieces(&self) -> impl ExactSizeIterator<Item = Piece> + '_ {
         self.mesh.triangles.iter().map(|triangle| Piece {
             points: triangle.vertices.map(|vertex| self.mesh.vertices[vertex as usize].point),
             segments: triangle.segments.map(|segment| (segment != NONE).then_some(segment)),

@@ -1,5 +1,6 @@
 //! What is cut from the border of the mesh: all outside of a hull, holes, and triangles with long edges.
 
+use super::leaving::OfAreas;
 use foldhash::HashMap;
 use spmesh_core::error::Result;
 use spmesh_geometry::polygons::{Polygons, Side};
@@ -34,6 +35,8 @@ pub(super) struct Cut {
     is_cut: bool,
     /// Triangles that were removed.
     pub(super) removed: u64,
+    /// Triangles that stay because a ring divides them where it leaves the mesh.
+    pub(super) divided: u64,
     /// Edges on segments of which one triangle is decided, by the segment and the lesser end: whether it
     /// stays.
     edges: HashMap<(u32, [u64; 2]), bool>,
@@ -64,6 +67,7 @@ impl Cut {
             outline,
             is_cut: areas.hull.is_some() || areas.holes.is_some() || options.kill.is_some(),
             removed: 0,
+            divided: 0,
             edges: HashMap::default(),
             open: Vec::new(),
         }
@@ -75,20 +79,28 @@ impl Cut {
         (self.is_cut, self.limit.stored_length())
     }
 
-    /// Whether a triangle is inside of the hull and of no hole. `on` are the segments of its sides.
+    /// Whether a triangle is inside of the hull and of no hole. `on` are the segments of its sides. Areas whose
+    /// rings cross it, as `crossed` says, do not cut it off.
     #[inline]
-    pub(super) fn keeps(&mut self, corners: [Point2; 3], on: [Option<u32>; 3]) -> bool {
+    pub(super) fn keeps(
+        &mut self,
+        corners: [Point2; 3],
+        on: [Option<u32>; 3],
+        [in_hull, off_holes]: OfAreas,
+    ) -> bool {
         if self.hull.is_none() && self.holes.is_none() {
             return true;
         }
         // Three times the middle of the triangle, which is exact for integers and on no border.
         let middle = [0, 1].map(|axis| corners[0][axis] + corners[1][axis] + corners[2][axis]);
         let contains = |area: &Polygons| area.side(middle) == Side::Inside;
-        let is_kept = self.hull.as_ref().is_none_or(contains) && !self.holes.as_ref().is_some_and(contains);
+        let is_kept = (in_hull || self.hull.as_ref().is_none_or(contains))
+            && (off_holes || !self.holes.as_ref().is_some_and(contains));
         if !is_kept {
             self.removed += 1;
             self.note(corners, on, false);
         }
+        self.divided += u64::from(is_kept && (in_hull || off_holes));
         is_kept
     }
 

@@ -12,6 +12,7 @@ mod cells;
 mod circle;
 mod cut;
 mod held;
+mod leaving;
 mod near;
 mod pyramid;
 mod strip;
@@ -22,6 +23,7 @@ use std::io::{Read, Write};
 use cut::Cut;
 pub use cut::CutOptions;
 use held::{Held, Holding};
+use leaving::Rings;
 use near::Lines;
 use spmesh_core::error::{Error, Result};
 use spmesh_lines::Areas;
@@ -60,6 +62,8 @@ pub struct Stats {
     pub raised: u64,
     /// Triangles that were cut off.
     pub removed: u64,
+    /// Triangles that stay whole though the ring of an area divides them where it leaves the mesh.
+    pub divided: u64,
     /// Triangles that waited.
     pub held: u64,
     /// Components of triangles that waited.
@@ -97,6 +101,7 @@ pub fn constrain<R: Read, W: Write>(
     let header = Header { compressed, constrained, ..header_of(reader.header(), network) };
     let mut filter = Filter {
         lines: Lines::new(network),
+        rings: Rings::new(areas, network.segments.len()),
         holding: Holding::default(),
         live: LiveVertices::new(),
         writing: Writing::new(StreamWriter::new(output, header)?, network, cut)?,
@@ -144,6 +149,7 @@ fn header_of(header: &Header, network: &Network) -> Header {
 
 struct Filter<'n, W: Write> {
     lines: Lines<'n>,
+    rings: Rings,
     holding: Holding,
     live: LiveVertices<Point>,
     writing: Writing<W>,
@@ -233,7 +239,8 @@ impl<W: Write> Filter<'_, W> {
 
     /// Triangulates a component anew.
     fn strip(&mut self, triangles: &[Held]) -> Result<()> {
-        let strip = strip::triangulate(triangles, &self.holding, &mut self.lines, &self.coordinates)?;
+        let strip =
+            strip::triangulate(triangles, &self.holding, &mut self.lines, &self.rings, &self.coordinates)?;
         self.stats.strips += 1;
         self.stats.added += strip.new.len() as u64;
         self.open.extend(&strip.open);

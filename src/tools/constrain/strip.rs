@@ -1,6 +1,7 @@
 //! Triangulates a component of waiting triangles anew.
 
 use super::held::{Held, Holding};
+use super::leaving::{OfAreas, Rings};
 use super::near::Lines;
 use foldhash::HashMap;
 use spmesh_core::error::Result;
@@ -25,6 +26,8 @@ pub(super) struct Strip {
     pub(super) pieces: Vec<Piece>,
     /// Segments that leave the region before they reach a vertex.
     pub(super) open: Vec<u32>,
+    /// For each piece whether the part of a ring crosses it that leaves the mesh; empty if there is none.
+    pub(super) crossed: Vec<OfAreas>,
 }
 
 /// The constrained triangulation of `triangles`.
@@ -38,6 +41,7 @@ pub(super) fn triangulate(
     triangles: &[Held],
     holding: &Holding,
     lines: &mut Lines,
+    rings: &Rings,
     coordinates: &Coordinates,
 ) -> Result<Strip> {
     let mut work = Work::new(triangles, holding);
@@ -61,8 +65,9 @@ pub(super) fn triangulate(
     }
     let parts = work.parts(triangles, lines);
     work.constrain(&parts, lines, &mut region)?;
-    let pieces = region.pieces().collect();
-    Ok(Strip { corners: work.corners, places: work.places, new: work.new, pieces, open: work.open })
+    let (pieces, crossed) = (region.pieces().collect(), rings.leaving(triangles, &region, lines));
+    let Work { corners, places, new, open, .. } = work;
+    Ok(Strip { corners, places, new, pieces, open, crossed })
 }
 
 /// As many vertices are inserted in any order.

@@ -89,7 +89,7 @@ impl<W: Write> Writing<W> {
         if !self.cut.is_cut() {
             return Ok(true);
         }
-        if !self.cut.keeps(places, on) {
+        if !self.cut.keeps(places, on, [false; 2]) {
             return Ok(false);
         }
         let ids = ids().map(|id| self.id(id));
@@ -116,9 +116,10 @@ impl<W: Write> Writing<W> {
     /// Adds the triangles of a strip, whose corners have these ids in the input.
     pub(super) fn add(&mut self, ids: &[u64], finalized: &[u64], strip: &Strip) {
         let first_new = self.new.len() as u64;
-        for piece in &strip.pieces {
+        for (number, piece) in strip.pieces.iter().enumerate() {
             let places = piece.points.map(|point| strip.places[point as usize]);
-            if self.cut.keeps(places, piece.segments) {
+            let crossed = strip.crossed.get(number).copied().unwrap_or_default();
+            if self.cut.keeps(places, piece.segments, crossed) {
                 let vertices = piece.points.map(|point| match (point as usize).checked_sub(ids.len()) {
                     None => self.id(ids[point as usize]),
                     Some(new) => NEW - (first_new + new as u64),
@@ -248,7 +249,8 @@ impl<W: Write> Writing<W> {
         }
         let triangles = [stats.triangles[0], self.writer.totals().simplices];
         let open_segments = open.len() as u64;
-        let stats = Stats { triangles, open_segments, removed: self.cut.removed, ..stats };
+        let Cut { removed, divided, .. } = self.cut;
+        let stats = Stats { triangles, open_segments, removed, divided, ..stats };
         Ok((self.writer.end(points, merged)?, stats))
     }
 }
