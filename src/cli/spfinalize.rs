@@ -230,6 +230,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         watch.notice(message);
     }
     let added = flags.added(&network, &levels, &target);
+    let has_lines = !network.vertices.is_empty();
+    drop(network);
     let selected = Selected::new(&input, &areas);
     // Without polygons, no point takes a way round.
     let points: &dyn Passes = if areas.keep_all() { &input } else { &selected };
@@ -242,7 +244,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         notice(TOOL, &flags.common, &message);
     }
     let lines = LineStats {
-        has_lines: !network.vertices.is_empty(),
+        has_lines,
         water: flags.water.counts(&water, &levels),
         points: added.len(),
         replaced: added.replaced(),

@@ -20,6 +20,7 @@ mod stations;
 mod systems;
 mod water;
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 use spmesh_core::error::{Error, Result};
@@ -137,13 +138,13 @@ fn read_all(
         crossings_max: LINE_CROSSINGS_MAX,
     };
     let mut note = |change, line, place| changes.note(ChangeKind::of(change), line, || grid.world(place));
-    let noded = node_lines(&vertices, &starts, &noding, &mut note)?;
-    let (mut areas, mut water) = (Areas::default(), Water::default());
-    if !rings.is_empty() || !features.is_empty() {
-        let bent = Bent::new(&noded, &vertices, &starts);
-        areas = areas::areas(&rings, &bent)?;
-        water = water::water(&features, &bent, &grid)?;
+    if rings.is_empty() && features.is_empty() {
+        let noded = node_lines(Cow::Owned(vertices), &starts, &noding, &mut note)?;
+        return Ok((network(noded, &grid), Areas::default(), Water::default(), changes));
     }
+    let noded = node_lines(Cow::Borrowed(&vertices), &starts, &noding, &mut note)?;
+    let bent = Bent::new(&noded, &vertices, &starts);
+    let (areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
     Ok((network(noded, &grid), areas, water, changes))
 }
 

@@ -1,5 +1,6 @@
 //! Noding against snap rounding by definition, and on sets that are hard for it.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use spmesh_core::random::Random;
@@ -19,7 +20,7 @@ fn node_vertices(lines: &[Vec<LineVertex>], options: &NodingOptions) -> (Noded, 
         assert!((line as usize) < lines.len(), "{change:?} of line {line}");
         *changes.entry(format!("{change:?}")).or_default() += 1;
     };
-    let noded = node_lines(&vertices, &starts, options, &mut note).expect("noded");
+    let noded = node_lines(Cow::Owned(vertices), &starts, options, &mut note).expect("noded");
     (noded, changes)
 }
 
@@ -183,11 +184,11 @@ fn too_many_crossings_are_refused() {
     let vertices: Vec<LineVertex> = without_elevations(&lines).concat();
     let starts: Vec<u32> = (0..200).map(|line| 2 * line).collect();
     let options = NodingOptions { crossings_max: 5000, ..OPTIONS };
-    let error = node_lines(&vertices, &starts, &options, &mut |_, _, _| {}).unwrap_err();
+    let error = node_lines(Cow::Owned(vertices), &starts, &options, &mut |_, _, _| {}).unwrap_err();
     assert!(error.to_string().contains("more than 5000 crossings"), "{error}");
     let far = [LineVertex { place: [COORDINATE_MAX + 1, 0], z: None }];
-    assert!(node_lines(&far, &[0], &options, &mut |_, _, _| {}).is_err());
-    assert!(node_lines(&[], &[], &options, &mut |_, _, _| {}).unwrap().vertices.is_empty());
+    assert!(node_lines(Cow::Borrowed(&far), &[0], &options, &mut |_, _, _| {}).is_err());
+    assert!(node_lines(Cow::Borrowed(&[]), &[], &options, &mut |_, _, _| {}).unwrap().vertices.is_empty());
 }
 
 /// None of these takes more than a moment, which a quadratic method would.

@@ -9,28 +9,25 @@ use super::search::Found;
 use super::{LineVertex, Noded, NodingChange, NodingOptions};
 use spmesh_model::network::NetworkSegment;
 
-/// Bends all segments.
+/// Bends all segments. Frees what it needs no longer, as the result takes as much memory.
 pub(super) fn bend(
-    places: &Places,
+    places: Places,
     starts: &[u32],
-    segments: &Segments,
+    segments: Segments,
     found: Found,
     options: &NodingOptions,
     note: &mut dyn FnMut(NodingChange, u32, Place),
 ) -> Noded {
-    let nodes = Nodes::of(places, &found.crossings);
+    let Places { places, elevations, conflicts, .. } = places;
+    let nodes = Nodes::of(places, elevations, &found.crossings);
     let touches = nodes.sorted(&found.touches);
     drop(found);
     let count = nodes.places.len();
     let line = |vertex: u32| starts.partition_point(|&start| start <= vertex) as u32 - 1;
     let mut bends = Bends {
-        interpolated: vec![f64::NAN; if places.elevations.is_empty() { 0 } else { count }],
+        interpolated: vec![f64::NAN; if nodes.has_elevations() { count } else { 0 }],
         bent: vec![u32::MAX; count],
-        conflicts: places
-            .conflicts
-            .iter()
-            .map(|&[place, vertex]| [nodes.of_place(place), line(vertex)])
-            .collect(),
+        conflicts: conflicts.iter().map(|&[place, vertex]| [nodes.of_place(place), line(vertex)]).collect(),
         pieces: Vec::with_capacity(segments.ends.len() + touches.len()),
         nodes,
         options: *options,
@@ -44,7 +41,7 @@ pub(super) fn bend(
         bends.chain(segments.ends[segment], own, &mut chain);
         bends.follow(segments.parts(segment), &chain, &mut cover);
     }
-    drop(touches);
+    drop((touches, segments));
     bends.finish(note)
 }
 
@@ -141,16 +138,18 @@ impl Bends {
     }
 
     fn finish(mut self, note: &mut dyn FnMut(NodingChange, u32, Place)) -> Noded {
-        self.pieces.sort_unstable();
-        let mut segments = Vec::with_capacity(self.pieces.len());
+        let mut pieces = std::mem::take(&mut self.pieces);
+        pieces.sort_unstable();
+        let mut segments = Vec::with_capacity(pieces.len());
         let nodes = &self.nodes;
-        for same in self.pieces.chunk_by(|a, b| a.ends == b.ends) {
+        for same in pieces.chunk_by(|a, b| a.ends == b.ends) {
             let Piece { ends, line, .. } = same[0];
             segments.push(NetworkSegment { ends, line });
             if same.len() > 1 || same[0].is_shared {
                 note(NodingChange::Overlap, line, nodes.places[ends[0] as usize]);
             }
         }
+        drop(pieces);
         for (node, &line) in (0u32..).zip(&self.bent) {
             if line != u32::MAX {
                 let is_crossing = nodes.is_crossing(node);

@@ -16,6 +16,7 @@
 //! no order of crossings along a sweep line, so each decision is one exact sign.
 
 mod bend;
+mod buckets;
 mod chain;
 mod chords;
 mod collinear;
@@ -24,6 +25,8 @@ mod exact;
 mod nodes;
 mod places;
 mod search;
+
+use std::borrow::Cow;
 
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::LINE_VERTICES_MAX;
@@ -88,7 +91,7 @@ pub struct NodingOptions {
 /// interpolated between the next vertices before and behind that have one, along each segment with an
 /// elevation at both of its ends that passes; the lowest counts.
 ///
-/// Shape: about 70 bytes per vertex, beside arguments and result.
+/// Memory: about 80 bytes per vertex, in which the result has room. Vertices that are owned are freed early.
 ///
 /// # Errors
 /// Malformed, if there are more than `LINE_VERTICES_MAX` vertices, a coordinate exceeds [`COORDINATE_MAX`],
@@ -97,17 +100,18 @@ pub struct NodingOptions {
 /// Cost: O(n log n) steps for n vertices, plus O(log) of the extent for each crossing and each bend; more
 /// where many segments that are not parallel run close beside each other.
 pub fn node_lines(
-    vertices: &[LineVertex],
+    vertices: Cow<[LineVertex]>,
     starts: &[u32],
     options: &NodingOptions,
     note: &mut dyn FnMut(NodingChange, u32, [i64; 2]),
 ) -> Result<Noded> {
-    check(vertices)?;
-    let places = Places::of(vertices);
-    let parts = Parts::of(&places, vertices, starts, note);
+    check(&vertices)?;
+    let places = Places::of(&vertices);
+    let parts = Parts::of(&places, &vertices, starts, note);
+    drop(vertices);
     let segments = collinear::merge(&places.places, parts);
     let found = search::search(&places.places, &segments, options.crossings_max)?;
-    Ok(bend::bend(&places, starts, &segments, found, options, note))
+    Ok(bend::bend(places, starts, segments, found, options, note))
 }
 
 fn check(vertices: &[LineVertex]) -> Result<()> {

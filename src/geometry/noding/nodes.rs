@@ -1,7 +1,6 @@
 //! The vertices of the result.
 
 use super::exact::Place;
-use super::places::Places;
 
 /// The vertices of the result: places of lines, and crossings.
 pub(super) struct Nodes {
@@ -16,31 +15,31 @@ pub(super) struct Nodes {
 }
 
 impl Nodes {
-    pub(super) fn of(places: &Places, crossings: &[Place]) -> Nodes {
+    /// Of places of lines, with the elevations that lines state or none, and crossings.
+    pub(super) fn of(places: Vec<Place>, elevations: Vec<f64>, crossings: &[Place]) -> Nodes {
         if crossings.is_empty() {
-            let (stated, places) = (places.elevations.clone(), places.places.clone());
-            return Nodes { places, numbers: Vec::new(), stated, is_crossing: Vec::new() };
+            return Nodes { places, numbers: Vec::new(), stated: elevations, is_crossing: Vec::new() };
         }
         let mut order: Vec<u32> = (0..crossings.len() as u32).collect();
         order.sort_unstable_by_key(|&crossing| crossings[crossing as usize]);
-        let (old, total) = (places.places.len(), places.places.len() + crossings.len());
+        let (old, total) = (places.len(), places.len() + crossings.len());
         let mut nodes = Nodes {
             places: Vec::with_capacity(total),
             numbers: vec![0; total],
-            stated: Vec::with_capacity(if places.elevations.is_empty() { 0 } else { total }),
+            stated: Vec::with_capacity(if elevations.is_empty() { 0 } else { total }),
             is_crossing: Vec::with_capacity(total),
         };
         let (mut place, mut crossing) = (0, 0);
         while nodes.places.len() < total {
             let next = order.get(crossing).map(|&crossing| crossings[crossing as usize]);
-            let is_crossing = place == old || next.is_some_and(|next| next < places.places[place]);
+            let is_crossing = place == old || next.is_some_and(|next| next < places[place]);
             let number = if is_crossing { old + order[crossing] as usize } else { place };
             nodes.numbers[number] = nodes.places.len() as u32;
             nodes.is_crossing.push(is_crossing);
-            if !places.elevations.is_empty() {
-                nodes.stated.push(if is_crossing { f64::NAN } else { places.elevations[place] });
+            if !elevations.is_empty() {
+                nodes.stated.push(if is_crossing { f64::NAN } else { elevations[place] });
             }
-            nodes.places.extend(if is_crossing { next } else { Some(places.places[place]) });
+            nodes.places.extend(if is_crossing { next } else { Some(places[place]) });
             (place, crossing) = (place + usize::from(!is_crossing), crossing + usize::from(is_crossing));
         }
         nodes
@@ -49,6 +48,11 @@ impl Nodes {
     /// The node of a place of lines, or beyond these, of a crossing.
     pub(super) fn of_place(&self, number: u32) -> u32 {
         self.numbers.get(number as usize).copied().unwrap_or(number)
+    }
+
+    /// Whether lines state elevations.
+    pub(super) fn has_elevations(&self) -> bool {
+        !self.stated.is_empty()
     }
 
     pub(super) fn stated(&self, node: u32) -> f64 {

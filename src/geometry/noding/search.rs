@@ -1,10 +1,11 @@
 //! Crossings, and the segments that pass through hot pixels, by division of the plane.
 //!
-//! A cell is a rectangle of pixels. It is divided until few segments meet it, or until it has no vertex and
+//! A cell is a rectangle of pixels; the first ones are those of a grid ([`super::buckets`]). It is divided until few segments meet it, or until it has no vertex and
 //! [`super::chords`] proves that no two of its segments meet in it. A cell of one pixel needs no division
 //! either: it is hot if it has a vertex or a crossing, and then all of its segments are bent to its centre.
 //! So segments that share a vertex, or run close to each other, are compared in pairs nowhere.
 
+use super::buckets::Buckets;
 use super::chords::Chords;
 use super::collinear::Segments;
 use super::exact::{Place, crossing_pixel, meets_pixel};
@@ -79,7 +80,7 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    fn around(places: &[Place]) -> Cell {
+    pub(super) fn around(places: &[Place]) -> Cell {
         let first = places.first().copied().unwrap_or_default();
         let mut cell = Cell { min: first, max: first };
         for place in places {
@@ -96,7 +97,7 @@ impl Cell {
         (0..2).all(|axis| self.min[axis] <= place[axis] && place[axis] < self.max[axis])
     }
 
-    fn len(&self, axis: usize) -> i64 {
+    pub(super) fn len(&self, axis: usize) -> i64 {
         self.max[axis] - self.min[axis]
     }
 
@@ -110,26 +111,37 @@ impl Cell {
 /// # Errors
 /// Malformed, if there are more than `crossings_max` crossings, or bends in proportion.
 pub(super) fn search(places: &[Place], segments: &Segments, crossings_max: usize) -> Result<Found> {
-    let ends = segments.ends.iter();
-    let geometry = ends.map(|ends| Geometry::of(ends.map(|end| places[end as usize]))).collect();
     let mut search = Search {
         places,
-        geometry,
-        cells: (0..segments.ends.len() as u32).collect(),
+        numbers: Vec::new(),
+        geometry: Vec::new(),
+        cells: Vec::new(),
         found: Found { crossings: Vec::new(), touches: Vec::new() },
         crossings_max,
         chords: Chords::default(),
         pixels: Vec::new(),
     };
-    let mut vertices: Vec<u32> = (0..places.len() as u32).collect();
-    search.divide(&Cell::around(places), 0, &mut vertices)?;
+    Buckets::of(places, &segments.ends).for_each(|cell, numbers, vertices| {
+        let of = |&number: &u32| Geometry::of(segments.ends[number as usize].map(|end| places[end as usize]));
+        search.geometry.clear();
+        search.geometry.extend(numbers.iter().map(of));
+        search.numbers.clear();
+        search.numbers.extend_from_slice(numbers);
+        search.cells.clear();
+        search.cells.extend(0..numbers.len() as u32);
+        search.divide(cell, 0, vertices)
+    })?;
     Ok(search.found)
 }
 
 struct Search<'a> {
     places: &'a [Place],
+    /// The segments of the present cell of the grid, by their numbers...
+    numbers: Vec<u32>,
+    /// ...and their coordinates.
     geometry: Vec<Geometry>,
-    /// The segments of the cells on the way to the present one, which has the last ones.
+    /// Places in `geometry` of the segments of the cells on the way to the present one, which has the last
+    /// ones.
     cells: Vec<u32>,
     found: Found,
     crossings_max: usize,
@@ -259,7 +271,7 @@ impl Search<'_> {
             let is_near =
                 geometry.a[0] - 1.0 < x && x < geometry.b[0] + 1.0 && low - 1.0 < y && y < high + 1.0;
             if is_near && !geometry.has_end([x, y]) && meets_pixel(geometry.ends(), pixel) {
-                self.found.touches.push([segment, number]);
+                self.found.touches.push([self.numbers[segment as usize], number]);
             }
         }
         // Crossings of two segments bend four times at most, the vertices of lines once each in good lines.

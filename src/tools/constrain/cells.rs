@@ -2,6 +2,7 @@
 
 use super::bits::Bits;
 use super::pyramid::Pyramid;
+use spmesh_geometry::cell_lists::CellLists;
 use spmesh_geometry::cell_walk::{TOLERANCE, for_each_cell};
 use spmesh_geometry::predicates::lexicographic;
 use spmesh_model::network::Network;
@@ -10,6 +11,9 @@ use spmesh_model::points::Point2;
 /// Cells per segment and vertex, about, and their least and greatest number.
 const CELLS_PER_ITEM: f64 = 1.0;
 const CELLS: [f64; 2] = [4096.0, 4_194_304.0];
+
+/// Items of all cells, for each segment and vertex, and beside these, at most: with more, cells are larger.
+const ITEMS_MAX: [usize; 2] = [32, 1 << 20];
 
 /// Fine cells along the side of a cell: they say quickly that nothing is near.
 const FINE: usize = 4;
@@ -32,10 +36,8 @@ pub(super) struct Cells {
     scale: f64,
     columns: usize,
     rows: usize,
-    /// For each cell the place of its first item, and one more.
-    starts: Vec<u32>,
     /// Numbers of segments; those of vertices come after all segments.
-    items: Vec<u32>,
+    items: CellLists,
     segments: u32,
     /// Fine cells that a segment meets.
     fine_segments: Bits,
@@ -67,33 +69,37 @@ impl CellBox {
 
 impl Cells {
     pub(super) fn new(network: &Network) -> Cells {
-        let places: Vec<Point2> = network.vertices.iter().map(|vertex| vertex.place).collect();
-        let bounds = CellBox::of(&places);
-        drop(places);
+        let mut bounds = CellBox::of(&[]);
+        network.vertices.iter().for_each(|vertex| bounds.extend(vertex.place));
         let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
         let wanted = CELLS_PER_ITEM * (network.segments.len() + network.vertices.len()) as f64;
         let wanted = wanted.clamp(CELLS[0], CELLS[1]);
         // A long thin box has few cells across, and at most as many along as it may have in all.
         let side = (width * height / wanted).sqrt().max(width.max(height) / wanted);
-        let side = if side > 0.0 { side } else { 1.0 };
-        let count = |length: f64| (length / side) as usize + 1;
-        let [columns, rows] = [count(width), count(height)];
-        let mut cells = Cells {
-            origin: bounds.min,
-            scale: 1.0 / side,
+        let mut side = if side > 0.0 { side } else { 1.0 };
+        loop {
+            let count = |length: f64| (length / side) as usize + 1;
+            let mut cells = Cells::empty(bounds.min, 1.0 / side, [count(width), count(height)]);
+            if cells.fill(network) {
+                return cells;
+            }
+            // One cell has each item once.
+            side *= 2.0;
+        }
+    }
+
+    fn empty(origin: Point2, scale: f64, [columns, rows]: [usize; 2]) -> Cells {
+        Cells {
+            origin,
+            scale,
             columns,
             rows,
-            starts: vec![0; columns * rows + 1],
-            items: Vec::new(),
-            segments: network.segments.len() as u32,
-            fine_segments: Bits::new([columns * FINE, rows * FINE]),
-            fine_vertices: Bits::new([columns * FINE, rows * FINE]),
+            items: CellLists::default(),
+            segments: 0,
+            fine_segments: Bits::default(),
+            fine_vertices: Bits::default(),
             pyramid: Pyramid::default(),
-        };
-        cells.fill(network);
-        let is_occupied = |cell: usize| cells.starts[cell] < cells.starts[cell + 1];
-        cells.pyramid = Pyramid::new([columns, rows], is_occupied);
-        cells
+        }
     }
 
     /// Cells per unit.
@@ -106,33 +112,35 @@ impl Cells {
         [0, 1].map(|axis| (place[axis] - self.origin[axis]) * self.scale)
     }
 
-    /// Counts the items of each cell, then puts them in.
-    fn fill(&mut self, network: &Network) {
-        let mut counts = vec![0u32; self.columns * self.rows];
-        self.for_each_place(network, |cell, _| counts[cell] += 1);
-        let mut sum = 0;
-        for (start, count) in self.starts.iter_mut().zip(counts.iter().chain([&0])) {
-            *start = sum;
-            sum += count;
-        }
-        let mut items = vec![0; sum as usize];
-        let mut next = counts;
-        next.copy_from_slice(&self.starts[..self.starts.len() - 1]);
-        self.for_each_place(network, |cell, item| {
-            items[next[cell] as usize] = item;
-            next[cell] += 1;
+    /// Enters what is in each cell. Returns whether that is few enough.
+    fn fill(&mut self, network: &Network) -> bool {
+        self.segments = network.segments.len() as u32;
+        let size = [self.columns, self.rows];
+        let count = self.segments + network.vertices.len() as u32;
+        let most = ITEMS_MAX[0] * count as usize + ITEMS_MAX[1];
+        let items = CellLists::of(self.columns * self.rows, count, most, |item, visit| {
+            if let Some(vertex) = item.checked_sub(self.segments) {
+                return visit(self.cell(network.vertices[vertex as usize].place));
+            }
+            let ends = network.places(&network.segments[item as usize]).map(|end| self.local(end));
+            for_each_cell(ends, size, |[column, row]| visit(row * self.columns + column));
         });
+        let Some(items) = items else { return false };
+        self.pyramid = Pyramid::new(size, |cell| !items.get(cell).is_empty());
         self.items = items;
-        let mut fine = std::mem::take(&mut self.fine_segments);
+        self.fill_fine(network);
+        true
+    }
+
+    fn fill_fine(&mut self, network: &Network) {
         let size = self.fine_size();
+        let (mut segments, mut vertices) = (Bits::new(size), Bits::new(size));
         for segment in &network.segments {
             let ends = network.places(segment).map(|end| self.local(end).map(|x| x * FINE as f64));
-            for_each_cell(ends, size, |cell| fine.set(cell));
+            for_each_cell(ends, size, |cell| segments.set(cell));
         }
-        self.fine_segments = fine;
-        for vertex in &network.vertices {
-            self.fine_vertices.set(self.fine_cell(vertex.place));
-        }
+        network.vertices.iter().for_each(|vertex| vertices.set(self.fine_cell(vertex.place)));
+        (self.fine_segments, self.fine_vertices) = (segments, vertices);
     }
 
     fn fine_size(&self) -> [usize; 2] {
@@ -160,7 +168,7 @@ impl Cells {
 
     /// The items of a cell that are vertices. They grow, and so do their places in lexicographic order.
     fn vertices(&self, cell: usize) -> &[u32] {
-        let items = &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+        let items = self.items.get(cell);
         &items[items.partition_point(|&item| item < self.segments)..]
     }
 
@@ -179,17 +187,6 @@ impl Cells {
         let mut others = (1..vertices.len()).flat_map(beside).flatten();
         if !others.any(|other| vertices.get(other).is_some_and(is_left)) {
             self.fine_vertices.clear(fine);
-        }
-    }
-
-    fn for_each_place(&self, network: &Network, mut found: impl FnMut(usize, u32)) {
-        let size = [self.columns, self.rows];
-        for (number, segment) in (0..).zip(&network.segments) {
-            let ends = network.places(segment).map(|end| self.local(end));
-            for_each_cell(ends, size, |[column, row]| found(row * self.columns + column, number));
-        }
-        for (number, vertex) in (self.segments..).zip(&network.vertices) {
-            found(self.cell(vertex.place), number);
         }
     }
 
@@ -220,14 +217,23 @@ impl Cells {
         mut found: impl FnMut(Item),
     ) {
         let Some(range) = range(bounds, [self.columns, self.rows]) else { return };
-        self.pyramid.for_each_in(range, meets, |cell| {
-            for &item in &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize] {
+        let mut visit = |cell: usize| {
+            for &item in self.items.get(cell) {
                 found(match item.checked_sub(self.segments) {
                     None => Item::Segment(item),
                     Some(vertex) => Item::Vertex(vertex),
                 });
             }
-        });
+        };
+        let [columns, rows] = range;
+        if columns[1] - columns[0] <= 1 && rows[1] - rows[0] <= 1 {
+            // Looking at the items of so few cells is quicker than to leave out one.
+            for row in rows[0]..=rows[1] {
+                (columns[0]..=columns[1]).for_each(|column| visit(row * self.columns + column));
+            }
+            return;
+        }
+        self.pyramid.for_each_in(range, meets, visit);
     }
 }
 

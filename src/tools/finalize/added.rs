@@ -4,7 +4,9 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use foldhash::HashSet;
+use foldhash::fast::FixedState;
+use std::cmp::Ordering as Order;
+use std::hash::BuildHasher;
 
 use super::passes::{Passes, next_kept};
 use spmesh_core::error::Result;
@@ -17,19 +19,43 @@ const BATCH: usize = 1 << 14;
 /// Points that are added to an input.
 #[derive(Debug, Default)]
 pub struct AddedPoints {
+    /// In lexicographic order of their places.
     points: Vec<Point>,
-    /// x and y of all of them, as bits.
-    places: HashSet<[u64; 2]>,
+    /// A bit for each value that the hash of a place of them can have.
+    hashes: Vec<u64>,
     /// Points of the input that the last pass left out.
     replaced: AtomicU64,
 }
 
 impl AddedPoints {
-    /// Adds points, in stored coordinates of the input, to an input of the plane.
+    /// Adds points, in stored coordinates of the input, to an input of the plane. No two have one place.
     #[must_use]
-    pub fn new(points: Vec<Point>) -> AddedPoints {
-        let places = points.iter().map(place).collect();
-        AddedPoints { points, places, replaced: AtomicU64::new(0) }
+    pub fn new(mut points: Vec<Point>) -> AddedPoints {
+        points.sort_unstable_by(by_place);
+        // Of other places, one in sixteen or fewer has the hash of one of these.
+        let bits = (16 * points.len()).next_power_of_two().max(64);
+        let mut added = AddedPoints { points, hashes: vec![0; bits / 64], replaced: AtomicU64::new(0) };
+        for index in 0..added.points.len() {
+            let hash = added.hash_of(&added.points[index]);
+            added.hashes[hash / 64] |= 1 << (hash % 64);
+        }
+        added
+    }
+
+    fn hash_of(&self, [x, y, _]: &Point) -> usize {
+        // -0 and 0 are one place.
+        let hash = FixedState::default().hash_one([(x + 0.0).to_bits(), (y + 0.0).to_bits()]);
+        hash as usize & (64 * self.hashes.len() - 1)
+    }
+
+    /// Whether one of these points has the place of a point.
+    fn has_place_of(&self, point: &Point) -> bool {
+        if self.points.is_empty() {
+            return false;
+        }
+        let hash = self.hash_of(point);
+        self.hashes[hash / 64] >> (hash % 64) & 1 == 1
+            && self.points.binary_search_by(|other| by_place(other, point)).is_ok()
     }
 
     /// Number of points that are added.
@@ -51,9 +77,9 @@ impl AddedPoints {
     }
 }
 
-/// The bits of x and y; -0 is 0.
-fn place(point: &Point) -> [u64; 2] {
-    [(point[0] + 0.0).to_bits(), (point[1] + 0.0).to_bits()]
+/// The lexicographic order of places; -0 is 0. Points of the input may have coordinates that are not finite.
+fn by_place(a: &Point, b: &Point) -> Order {
+    (a[0] + 0.0).total_cmp(&(b[0] + 0.0)).then_with(|| (a[1] + 0.0).total_cmp(&(b[1] + 0.0)))
 }
 
 /// An input with added points.
@@ -132,7 +158,7 @@ impl PointReader for WithAddedReader<'_> {
         let WithAddedReader { reader, added, row, replaced, rows, .. } = self;
         // Points of the input at places of added points are left out.
         next_kept(&mut **reader, batch, row.len(), rows, |point| {
-            let is_free = !added.places.contains(&place(point));
+            let is_free = !added.has_place_of(point);
             *replaced += u64::from(!is_free);
             is_free
         })?;
