@@ -182,3 +182,23 @@ fn requests_that_make_no_sense_are_refused() {
     );
     assert_outcome("spfinalize", &["--lines", &lines, "--report", &lines, &points], b"", 2, "--report");
 }
+
+#[test]
+fn a_far_vertex_does_not_take_the_shape_of_other_lines() {
+    let folder = Folder::new();
+    // Without a scale, coordinates are f64, and the grid of lines follows from the greatest one.
+    let points = folder.write("points.txt", "0 0.5 0\n100 0 0\n0 100 0\n100 100 0\n");
+    let far = folder.write("far.txt", "soft 10 10 20 20\nsoft 30 30 1e308 40\n");
+    let message =
+        "far.txt: line 1: the line would become one place: a coordinate of lines is as great as 1e308";
+    assert_outcome("spfinalize", &["--lines", &far, &points], b"", 2, message);
+    let farther = folder.write("farther.txt", "line 10 10 1 20 20 2\nline 30 30 1 1e10 40 2\n");
+    let run = run("spfinalize", &["--lines", &farther, &points], b"");
+    let (code, message) = outcome(&run);
+    assert_eq!(code, Some(0));
+    assert!(message.contains("as great as 10000000000.0: lines are rounded to steps of 0.01"), "{message}");
+    let good = folder.write("good.txt", "line 10 10 1 10.0000001 10 2\nline 30 30 1 4000000 40 2\n");
+    assert!(
+        !outcome(&crate::programs::run("spfinalize", &["--lines", &good, &points], b"")).1.contains("great")
+    );
+}

@@ -23,20 +23,49 @@ pub(crate) struct Grid {
     digits: i32,
     /// Moves of vertices that are counted, in world units.
     move_min: f64,
+    /// The greatest magnitude of coordinates of lines, if the digits follow from it.
+    most: Option<f64>,
 }
 
 impl Grid {
     pub(crate) fn of<'a>(target: &Target, lines: impl Iterator<Item = &'a Breakline>) -> Grid {
-        let digits = match target.coordinates {
-            Coordinates::I32 { .. } => 0,
-            Coordinates::F64 => digits(lines),
+        let (digits, most) = match target.coordinates {
+            Coordinates::I32 { .. } => (0, None),
+            Coordinates::F64 => {
+                let most = most(lines);
+                (digits(most), Some(most))
+            }
         };
         let move_min = match System::of(&target.crs).horizontal {
             Some(system) if system.is_angular() => MOVE_DEGREES,
             Some(Horizontal { unit, .. }) => MOVE_METRES / unit.size,
             None => MOVE_METRES,
         };
-        Grid { coordinates: target.coordinates, digits, move_min }
+        Grid { coordinates: target.coordinates, digits, move_min, most }
+    }
+
+    /// What to say if a coordinate is so great that its steps move other vertices.
+    pub(crate) fn notice(&self) -> Option<String> {
+        let (most, step) = (self.most?, scaled(1.0, -self.digits));
+        (step > 2.0 * self.move_min).then(|| {
+            format!(
+                "a coordinate of lines is as great as {most:?}: lines are rounded to steps of {step:?}. If it is a \
+                 mistake, leave out this vertex"
+            )
+        })
+    }
+
+    /// Checks that a line keeps some length, if steps are greater than lines should need.
+    ///
+    /// # Errors
+    /// Usage, if its vertices are at several places of the world, but at one place of the grid.
+    pub(crate) fn check_length(&self, world: &[(Point2, Option<f64>)], on_grid: &[LineVertex]) -> Result<()> {
+        let has_length = world.iter().any(|vertex| vertex.0 != world[0].0);
+        let is_lost = has_length && on_grid.iter().all(|vertex| vertex.place == on_grid[0].place);
+        match self.notice().filter(|_| is_lost) {
+            Some(notice) => Err(Error::usage(format!("the line would become one place: {notice}"))),
+            None => Ok(()),
+        }
     }
 
     /// A vertex on the grid.
@@ -96,33 +125,25 @@ fn scaled(value: f64, power: i32) -> f64 {
     if power < 0 { value / 10f64.powi(-power) } else { value * 10f64.powi(power) }
 }
 
-/// Decimal places of the grid for coordinates of f64: as many as their magnitudes leave.
-fn digits<'a>(lines: impl Iterator<Item = &'a Breakline>) -> i32 {
+/// The greatest magnitude of coordinates.
+fn most<'a>(lines: impl Iterator<Item = &'a Breakline>) -> f64 {
     let values = lines.flat_map(|line| &line.vertices).flatten();
-    let most = values.fold(0.0f64, |most, value| most.max(value.abs()));
+    values.fold(0.0, |most, value| most.max(value.abs()))
+}
+
+/// Decimal places of the grid for coordinates of f64: as many as the greatest magnitude leaves.
+fn digits(most: f64) -> i32 {
     (-20..=20).rev().find(|&digits| scaled(most, digits) < F64_STEPS).unwrap_or(-300)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spmesh_io::source::Properties;
 
     #[test]
     fn the_digits_follow_the_greatest_coordinate() {
-        let of = |most: f64| {
-            let vertices = vec![[0.5, -most]];
-            let line = Breakline {
-                vertices,
-                elevations: vec![None],
-                polygon: None,
-                properties: Properties::default(),
-                position: String::new(),
-            };
-            digits([line].iter())
-        };
-        assert_eq!((of(1.0), of(4_100_000.0), of(0.0), of(1e20)), (12, 6, 12, -8));
-        let grid = Grid { coordinates: Coordinates::F64, digits: 6, move_min: 0.0 };
+        assert_eq!((digits(1.0), digits(4_100_000.0), digits(0.0), digits(1e20)), (12, 6, 12, -8));
+        let grid = Grid { coordinates: Coordinates::F64, digits: 6, move_min: 0.0, most: None };
         let vertex = grid.vertex([499_991.708, 0.1], None, 0, &mut Changes::new(false)).unwrap();
         assert_eq!(grid.stored(vertex.place), [499_991.708, 0.1]);
     }

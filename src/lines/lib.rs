@@ -129,6 +129,7 @@ fn read_all(
     }
     banks::close(&mut files);
     let grid = Grid::of(target, files.iter().flat_map(|(_, _, file)| &file.lines));
+    changes.notices.extend(grid.notice());
     let rings = areas::rings(&files)?;
     let features = features::features(&files, target)?;
     let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
@@ -168,9 +169,11 @@ fn stored(
                 let message = format!("more than {LINE_VERTICES_MAX} vertices of lines{remedy}");
                 return Err(fault(Error::malformed(message)));
             }
+            let first = vertices.len();
             for &(place, z) in &line {
                 vertices.push(grid.vertex(place, z, number, changes).map_err(fault)?);
             }
+            grid.check_length(&line, &vertices[first..]).map_err(fault)?;
         }
     }
     Ok((vertices, starts))
