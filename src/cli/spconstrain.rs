@@ -128,8 +128,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         constrain(&mut reader, &network, &areas, output, &options, |vertices| progress.set(vertices))?;
     drop(progress);
     let output_bytes = output.bytes_written();
-    output.commit()?;
     write_report(report, &changes, None)?;
+    output.commit()?;
     if stats.triangles[0] > 0 && stats.triangles[1] == 0 {
         flags.notice("no triangles are left: --hull, --holes or --kill leave out all of them");
     }
@@ -163,7 +163,7 @@ fn about_divided(stats: &Stats) -> String {
     )
 }
 
-fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 16] {
+fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 17] {
     [
         ("triangles read", "triangles_read", stats.triangles[0]),
         ("triangles written", "triangles", stats.triangles[1]),
@@ -174,6 +174,7 @@ fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 16] 
         ("strips", "strips", stats.strips),
         ("segments", "segments", stats.segments),
         ("segments that leave the mesh", "open_segments", stats.open_segments),
+        ("segments that were cut off", "cut_segments", stats.cut_segments),
         ("line vertices in the mesh", "vertices_found", stats.found),
         ("line vertices added", "vertices_added", stats.added),
         ("line vertices outside", "vertices_outside", stats.outside),

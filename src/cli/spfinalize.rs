@@ -237,9 +237,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let points: &dyn Passes = if areas.keep_all() { &input } else { &selected };
     let stats = spmesh_finalize::run_with(points, &added, &options, &mut watch, &mut output)?;
     drop(watch);
-    output.commit()?;
     let has_water = !flags.water.files().is_empty();
     write_report(report, &changes, has_water.then_some(&levels))?;
+    output.commit()?;
     if let Some(message) = summary(&changes) {
         notice(TOOL, &flags.common, &message);
     }

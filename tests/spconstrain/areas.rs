@@ -1,7 +1,7 @@
 //! Hulls, holes, and long edges at the border, against triangles that are tried one by one.
 
 use super::{Mesh, audit, mesh, output};
-use crate::programs::Folder;
+use crate::programs::{Folder, outcome, run};
 use spmesh_core::random::Random;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -202,6 +202,24 @@ fn triangles_that_a_ring_divides_where_it_leaves_the_mesh_stay() {
         divided += all.triangles.iter().filter(|corners| is_divided(corners)).count();
     }
     assert!(divided > 400 && removed > 5000, "{divided} divided, {removed} removed");
+}
+
+#[test]
+fn segments_in_areas_that_are_cut_off_do_not_leave_the_mesh() {
+    let folder = Folder::new();
+    let stream = scene(&folder, 7);
+    let hull = polygon_file(&folder, "hull.geojson", &HULL);
+    folder.file("lines.txt", "soft 20 20 40 60\nsoft 300 300 420 330\n");
+    let lines = folder.path("lines.txt");
+    let run = run("spconstrain", &["--hull", &hull, "--lines", &lines, "--stats=json"], &stream);
+    let (code, message) = outcome(&run);
+    assert_eq!(code, Some(0), "{message}");
+    audit(&run.stdout);
+    assert!(
+        message.contains(r#""cut_segments":1,"#) && message.contains(r#""open_segments":0,"#),
+        "{message}"
+    );
+    assert!(!message.contains("leave the mesh"), "{message}");
 }
 
 #[test]

@@ -3,16 +3,16 @@
 //! A smooth spline rounds off the edges of terrain, where slopes break: residuals next to an edge are many
 //! scales, and there are many of them. A gross error is alone. So a residual is compared with those nearby:
 //! the local scale follows from the quantile of magnitudes in a square of three by three cells, if that is
-//! greater than the scale of all residuals. A quarter of the observations there may be gross errors.
+//! greater than the scale of all residuals. A tenth of the observations there may be gross errors.
 
 use super::polygon;
 use crate::bases::Basis;
 use spmesh_geometry::predicates::Point2;
 
 /// The quantile of magnitudes that a local scale follows from...
-const QUANTILE: f64 = 0.75;
+const QUANTILE: f64 = 0.9;
 /// ...and that of normal errors, in standard deviations.
-const NORMAL: f64 = 1.150_349_380_376_008;
+const NORMAL: f64 = 1.644_853_626_951_472;
 /// The greatest local scale, in scales of all residuals: where nearly all observations are gross errors, they
 /// are still rejected.
 const FACTOR_MAX: f64 = 8.0;

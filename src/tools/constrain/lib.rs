@@ -52,6 +52,8 @@ pub struct Stats {
     pub segments: u64,
     /// Segments that are not wholly edges because they leave the mesh.
     pub open_segments: u64,
+    /// Other segments that are not wholly edges because the triangles on both sides were cut off.
+    pub cut_segments: u64,
     /// Vertices of the network that the mesh had.
     pub found: u64,
     /// Vertices of the network that were added to the mesh.

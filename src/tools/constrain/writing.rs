@@ -241,16 +241,19 @@ impl<W: Write> Writing<W> {
             }
             self.write(&[], &triangles, &mut vertices)?;
         }
+        open.sort_unstable();
+        open.dedup();
+        let open_segments = open.len() as u64;
         open.extend(self.cut.take_open());
         open.sort_unstable();
         open.dedup();
+        let cut_segments = open.len() as u64 - open_segments;
         for open in open.chunks(SEGMENTS_MAX) {
             self.writer.open_segments(open)?;
         }
         let triangles = [stats.triangles[0], self.writer.totals().simplices];
-        let open_segments = open.len() as u64;
         let Cut { removed, divided, .. } = self.cut;
-        let stats = Stats { triangles, open_segments, removed, divided, ..stats };
+        let stats = Stats { triangles, open_segments, cut_segments, removed, divided, ..stats };
         Ok((self.writer.end(points, merged)?, stats))
     }
 }
