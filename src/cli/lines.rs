@@ -21,7 +21,7 @@ pub(super) struct LineFlags {
 
     /// Divide parts of lines that are longer than this, in world units
     #[arg(long, value_name = "LENGTH", value_parser = parse_length)]
-    densify: Option<f64>,
+    pub(super) densify: Option<f64>,
 
     /// Write a table of all that was changed about lines: kind, line (numbered from 0), x and y, separated by
     /// tabs. With --flatten, it has the levels of lakes and of stations of rivers, too

@@ -137,7 +137,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         flags.notice(&about_open(&stats));
     }
     if stats.divided > 0 {
-        flags.notice(&about_divided(&stats));
+        flags.notice(&about_divided(&stats, flags.lines.densify));
     }
     if let Some(format) = flags.stats {
         rows::print(format, started.elapsed(), counts(&stats, reader.bytes_read(), output_bytes));
@@ -147,18 +147,22 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 
 /// The notice about segments that leave the mesh.
 fn about_open(stats: &Stats) -> String {
+    let all = if stats.open_segments == stats.segments { ", perhaps of another place or system" } else { "" };
     format!(
-        "{} of {} segments leave the mesh and are no edges there: to extend the mesh, give the lines to spfinalize \
-         --lines, too",
+        "{} of {} segments leave the mesh and are no edges there{all}: lines with elevations extend the mesh if \
+         spfinalize --lines has them, too",
         stats.open_segments, stats.segments
     )
 }
 
 /// The notice about triangles that rings divide.
-fn about_divided(stats: &Stats) -> String {
+fn about_divided(stats: &Stats, densify: Option<f64>) -> String {
+    let remedy = match densify {
+        None => "with --densify D, rings have a vertex at least every D, and divide fewer",
+        Some(_) => "a lesser --densify leaves fewer of them, and --kill removes those with long edges",
+    };
     format!(
-        "rings of --hull or --holes leave the mesh and divide {} triangles on the way: these stay whole. With \
-         --densify D, only triangles within D of the border are divided",
+        "rings of --hull or --holes leave the mesh and divide {} triangles on the way, which stay whole: {remedy}",
         stats.divided
     )
 }

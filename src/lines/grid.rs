@@ -120,7 +120,7 @@ impl Grid {
     }
 }
 
-/// A number times a power of ten, rounded once: powers of up to 22 are exact.
+/// A number times a power of ten, rounded once if the power is at most 22, which is exact.
 fn scaled(value: f64, power: i32) -> f64 {
     if power < 0 { value / 10f64.powi(-power) } else { value * 10f64.powi(power) }
 }
@@ -133,7 +133,7 @@ fn most<'a>(lines: impl Iterator<Item = &'a Breakline>) -> f64 {
 
 /// Decimal places of the grid for coordinates of f64: as many as the greatest magnitude leaves.
 fn digits(most: f64) -> i32 {
-    (-20..=20).rev().find(|&digits| scaled(most, digits) < F64_STEPS).unwrap_or(-300)
+    (-300..=300).rev().find(|&digits| scaled(most, digits) < F64_STEPS).unwrap_or(-300)
 }
 
 #[cfg(test)]

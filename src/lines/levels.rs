@@ -120,7 +120,7 @@ impl Levels {
     }
 }
 
-pub(crate) const NO_SHORE: &str = "no points are near the shore: state its level (property level, or third coordinates), or look \
+const NO_SHORE: &str = "no points are near the shore: state its level (property level, or third coordinates), or look \
                         for points farther away with --shore-width";
 
 fn in_conflict(polygon: &WaterPolygon) -> Error {

@@ -114,7 +114,7 @@ fn read_all(
     options: &Options,
 ) -> Result<(Network, Areas, Water, Changes)> {
     if options.densify.is_some_and(|longest| !(longest > 0.0 && longest.is_finite())) {
-        return Err(Error::usage("the longest part of a line must be a positive number"));
+        return Err(Error::usage("--densify, the longest part of a line, must be a positive number"));
     }
     let mut changes = Changes::new(options.lists_changes);
     let mut files = Vec::new();

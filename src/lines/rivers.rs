@@ -1,6 +1,6 @@
 //! The levels of rivers: elevations at stations, and at the vertices of shores.
 
-use super::levels::{Given, Levels, NO_SHORE, percentile_of, vertices};
+use super::levels::{Given, Levels, percentile_of, vertices};
 use super::report::{Found, LevelRow};
 use super::sections::Sections;
 use super::stations::Stations;
@@ -10,6 +10,9 @@ use spmesh_geometry::polygons::{Polygons, Side};
 use spmesh_model::network::Network;
 use spmesh_model::points::Point2;
 use spmesh_stream::Coordinates;
+
+const NO_POINTS: &str = "no points are near the shore: state the elevations of the river as third coordinates of its centre \
+                         line or banks, or look for points farther away with --shore-width";
 
 /// Elevations that differ by more than this part of their magnitude count as different in streams of f64.
 const F64_PART: f64 = 1e-9;
@@ -30,7 +33,7 @@ impl Levels {
             self.found += known.iter().flatten().count() as u64;
         }
         let elevations: Vec<Option<f64>> = known.iter().map(|known| known.map(|(z, _)| z)).collect();
-        let lowered = stations.settle(&elevations).ok_or_else(|| river.position.fault(NO_SHORE))?;
+        let lowered = stations.settle(&elevations).ok_or_else(|| river.position.fault(NO_POINTS))?;
         for ((&place, &known), &z) in stations.places().iter().zip(&known).zip(&stations.elevations) {
             self.rows.push(LevelRow::of_station(given, river, (place, known), z));
         }
@@ -155,7 +158,8 @@ impl River {
         if first < last {
             let [first, last] = [first, last].map(|z| given.target.coordinates.to_decimal([0.0, 0.0, z])[2]);
             return Some(format!(
-                "{}: the river rises from {first} to {last}: {lines} must lead downstream",
+                "{}: the river rises from {first} to {last}, and is at most {first} everywhere now: {lines} must lead \
+                 downstream",
                 self.position
             ));
         }

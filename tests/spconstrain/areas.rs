@@ -254,3 +254,26 @@ fn rings_with_vertices_on_the_border_of_the_mesh_leave_it_there() {
         }
     }
 }
+
+#[test]
+fn areas_among_coordinates_that_are_not_exact_are_exact() {
+    for seed in 0..60 {
+        let folder = Folder::new();
+        let mut random = Random::new(700 + seed);
+        let offset = if seed % 2 == 0 { 0.0 } else { 500_000.0 };
+        let mut place = || [0, 1].map(|_| offset + random.below(100) as f64 / 10.0);
+        let points: String = (0..40).map(|_| place()).map(|[x, y]| format!("{x} {y} 0\n")).collect();
+        let corners: Vec<String> = (0..4).map(|_| place()).map(|[x, y]| format!("[{x},{y}]")).collect();
+        let ring = format!("{},{}", corners.join(","), corners[0]);
+        folder.file("area.geojson", format!(r#"{{"type":"Polygon","coordinates":[[{ring}]]}}"#));
+        let area = folder.path("area.geojson");
+        // Without a scale, coordinates are f64, so that places on a line of decimals are beside it.
+        let points = output("spfinalize", &["-"], points.as_bytes());
+        let stream = output("spdelaunay2d", &[], &points);
+        for flags in [["--hull", &area, "--quiet"], ["--holes", &area, "--quiet"]] {
+            audit(&output("spconstrain", &flags, &stream));
+            let dense = [&flags[..], &["--densify", "0.7"]].concat();
+            audit(&output("spconstrain", &dense, &stream));
+        }
+    }
+}

@@ -21,7 +21,7 @@ fn wrong_uses_are_said() {
     let open = folder.write("open.geojson", ring);
     for (arguments, input, code, part) in [
         (&[][..], &mesh[..], 2, "nothing to do"),
-        (&["--lines", &lines], &constrained, 2, "has lines already"),
+        (&["--lines", &lines], &constrained, 2, "is constrained or cut already"),
         (&["--lines", &lines], &points, 2, "these are points: triangulate them with spdelaunay2d"),
         (&["--lines", &missing], &mesh, 1, "No such file"),
         (&["--lines", &bad], &mesh, 3, "line 1"),

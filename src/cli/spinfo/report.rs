@@ -52,7 +52,14 @@ impl Summary<'_> {
         }
         if let Some(Constrained { is_cut, kill }) = self.header.constrained {
             let border = if is_cut { "cut" } else { "the convex hull" };
-            let kill = if kill > 0.0 { format!(", edges up to {kill} (stored)") } else { String::new() };
+            let step = match self.header.coordinates {
+                Coordinates::F64 => 1.0,
+                Coordinates::I32 { scale, .. } => scale[0],
+            };
+            let kill = match kill * step {
+                0.0 => String::new(),
+                kill => format!(", its edges have at most {}", (1e9 * kill).round() / 1e9),
+            };
             line("constrained", format!("yes, the border is {border}{kill}"));
         }
         self.counts(&mut line);

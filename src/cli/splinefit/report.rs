@@ -17,16 +17,16 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
         let (tolerance, most) = (search.goal.tolerance, search.goal.max_knots);
         let knots = spline.layout.places();
         let above = search.rounds.last().map_or(0, |round| round.above);
-        let above = format!("{above} points are farther off");
         notices.push(match (search.is_replaced, search.is_reached) {
             (true, _) => format!(
-                "{knots} knots on a grid, {functions} functions: with {most} knots, tolerance {}, {above}",
+                "{knots} knots on a grid, {functions} functions: a search for at most {most} knots left {above} \
+                 residuals above the tolerance {}",
                 short(tolerance)
             ),
             (false, is_reached) => format!(
                 "{knots} knots (at most {most}), {functions} functions, tolerance {}: {}",
                 short(tolerance),
-                if is_reached { "reached" } else { &above }
+                if is_reached { "reached".into() } else { format!("{above} points are farther off") }
             ),
         });
     }
@@ -47,7 +47,8 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
     if let Some((scale, has_settled)) = report.scale {
         notices.push(format!("standard deviation of points: {}", short(scale)));
         if !has_settled {
-            notices.push("weights did not settle: the fit is that of the last round".into());
+            notices
+                .push("robust weights did not settle in 50 rounds: the fit is that of the last one".into());
         }
     }
     if let Some(rejected) = rejected {
@@ -63,7 +64,7 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
 /// Notices about a chosen `lambda` and its tension.
 fn of_choice(choice: &Choice, tension: f64) -> Vec<String> {
     let floor = if choice.is_at_floor() { ", the least that the distance of points allows" } else { "" };
-    let tension = if tension > 0.0 { format!(" in tension {}", short(tension)) } else { String::new() };
+    let tension = if tension > 0.0 { format!(" and tension {}", short(tension)) } else { String::new() };
     let mut notices = vec![format!("smoothed with lambda {}{tension}{floor}", short(choice.best.lambda))];
     if let Some(first) = choice.failed.first() {
         let all = choice.failed.len() + choice.trials.len();

@@ -5,6 +5,7 @@
 
 mod cells;
 mod rows;
+mod triangle;
 
 use spmesh_model::points::Point2;
 

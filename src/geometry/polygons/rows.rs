@@ -14,7 +14,7 @@ const ROWS_PER_EDGE: f64 = 0.5;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Edge {
     pub(super) ends: [Point2; 2],
-    polygon: u32,
+    pub(super) polygon: u32,
 }
 
 /// The edges of polygons by rows.

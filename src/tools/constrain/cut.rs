@@ -3,7 +3,7 @@
 use super::leaving::OfAreas;
 use foldhash::HashMap;
 use spmesh_core::error::Result;
-use spmesh_geometry::polygons::{Polygons, Side};
+use spmesh_geometry::polygons::Polygons;
 use spmesh_geometry::predicates::lexicographic;
 use spmesh_io::outline::{ConcaveOutline, EdgeLimit, Inside, Waiting};
 use spmesh_lines::Areas;
@@ -54,7 +54,7 @@ impl Cut {
         coordinates: &Coordinates,
         options: &CutOptions,
     ) -> Cut {
-        let area = |polygons: &Option<Vec<Vec<u32>>>| polygons.as_ref().map(|it| tripled(network, it));
+        let area = |polygons: &Option<Vec<Vec<u32>>>| polygons.as_ref().map(|it| union(network, it));
         let outline = options.kill.map(|length| {
             ConcaveOutline::new(length, coordinates, options.memory, options.temp_dir.as_deref())
                 .with_vertices()
@@ -91,9 +91,7 @@ impl Cut {
         if self.hull.is_none() && self.holes.is_none() {
             return true;
         }
-        // Three times the middle of the triangle, which is exact for integers and on no border.
-        let middle = [0, 1].map(|axis| corners[0][axis] + corners[1][axis] + corners[2][axis]);
-        let contains = |area: &Polygons| area.side(middle) == Side::Inside;
+        let contains = |area: &Polygons| area.has_triangle(corners);
         let is_kept = (in_hull || self.hull.as_ref().is_none_or(contains))
             && (off_holes || !self.holes.as_ref().is_some_and(contains));
         if !is_kept {
@@ -191,14 +189,11 @@ impl Cut {
     }
 }
 
-/// The union of polygons whose borders are segments of a network, three times as large.
-fn tripled(network: &Network, polygons: &[Vec<u32>]) -> Polygons {
+/// The union of polygons whose borders are segments of a network.
+fn union(network: &Network, polygons: &[Vec<u32>]) -> Polygons {
     let numbered = (0..).zip(polygons);
     Polygons::of_edges(numbered.flat_map(|(polygon, segments)| {
-        segments.iter().map(move |&segment| {
-            let ends = network.places(&network.segments[segment as usize]);
-            (polygon, ends.map(|end| end.map(|x| 3.0 * x)))
-        })
+        segments.iter().map(move |&segment| (polygon, network.places(&network.segments[segment as usize])))
     }))
 }
 
