@@ -154,8 +154,8 @@ fn check_lengths(
     Err(name_corners(Violation::new(Check::Border, message), &[*a, *b]))
 }
 
-/// Proves that each edge of the border is on a segment, or on the convex hull of all vertices, or that an open
-/// segment crosses its triangle.
+/// Proves that each edge of the border is on a segment, or on the convex hull of all vertices, or that an
+/// open segment crosses its triangle.
 fn check_reasons(
     triangles: &[[Corner; 3]],
     constraints: &Constraints,
@@ -174,8 +174,8 @@ fn check_reasons(
     let wrong = inner.filter(|corners| !constraints.has_open_in(corners.map(|it| it.at), ledger));
     let Some([a, b, _]) = wrong.min_by_key(|[a, b, _]| [a.id, b.id]) else { return Ok(()) };
     let message = format!(
-        "the edge {} to {} of the border is neither on a segment nor on the hull, and no open segment crosses its \
-         triangle",
+        "the edge {} to {} of the border is neither on a segment nor on the hull, and no open segment \
+         crosses its triangle",
         a.id, b.id
     );
     Err(name_corners(Violation::new(Check::Border, message), &[*a, *b]))

@@ -53,8 +53,8 @@ impl Constraints {
 
     /// Whether an open segment crosses the interior of a counterclockwise triangle. Cost: the open segments.
     ///
-    /// A segment and the interior of a triangle are apart if the line of a side or that of the segment has them
-    /// on different sides.
+    /// A segment and the interior of a triangle are apart if the line of a side or that of the segment has
+    /// them on different sides.
     pub(super) fn has_open_in(&self, corners: [Xy; 3], ledger: &mut Ledger) -> bool {
         let [a, b, c] = corners;
         self.open.iter().any(|&number| {

@@ -44,10 +44,11 @@ Vertices of lines that the mesh does not have are added. Where a line states an 
 point at the same place; a vertex without one takes the elevation of the surface. Parts of lines outside of the mesh are \
 left out, with a notice. To extend the mesh by lines, give them to spfinalize, too.
 
-Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Where a ring leaves the mesh, the \
-triangles stay whole that it divides between its last vertex inside and the border; --densify D makes these ways shorter \
-than D. Points inside of holes stay vertices, without triangles. --kill removes triangles at edges of the border that are longer than a length, and goes on with those \
-behind them, but never across lines: a concave hull. Only triangles with such an edge wait for it.
+Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Where a ring leaves the \
+mesh, the triangles stay whole that it divides between its last vertex inside and the border; --densify D \
+makes these ways shorter than D. Points inside of holes stay vertices, without triangles. --kill removes \
+triangles at edges of the border that are longer than a length, and goes on with those behind them, but \
+never across lines: a concave hull. Only triangles with such an edge wait for it.
 
 Triangles that no line changes pass at once. Memory is that of the lines, about 100 bytes a segment, and of the triangles \
 that a line changes, until the last of them has come.
@@ -149,8 +150,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 fn about_open(stats: &Stats) -> String {
     let all = if stats.open_segments == stats.segments { ", perhaps of another place or system" } else { "" };
     format!(
-        "{} of {} segments leave the mesh and are no edges there{all}: lines with elevations extend the mesh if \
-         spfinalize --lines has them, too",
+        "{} of {} segments leave the mesh and are no edges there{all}: lines with elevations extend the \
+         mesh if spfinalize --lines has them, too",
         stats.open_segments, stats.segments
     )
 }
@@ -162,7 +163,8 @@ fn about_divided(stats: &Stats, densify: Option<f64>) -> String {
         Some(_) => "a lesser --densify leaves fewer of them, and --kill removes those with long edges",
     };
     format!(
-        "rings of --hull or --holes leave the mesh and divide {} triangles on the way, which stay whole: {remedy}",
+        "rings of --hull or --holes leave the mesh and divide {} triangles on the way, which stay whole: \
+         {remedy}",
         stats.divided
     )
 }

@@ -11,8 +11,8 @@ pub struct CellLists {
 }
 
 impl CellLists {
-    /// Puts numbers below `count` into cells. `cells_of` calls with each cell of a number, and is asked twice. `None`
-    /// if there are more than `most` entries, which are fewer than 2^32.
+    /// Puts numbers below `count` into cells. `cells_of` calls with each cell of a number, and is asked
+    /// twice. `None` if there are more than `most` entries, which are fewer than 2^32.
     ///
     /// Each list is in increasing order.
     pub fn of(

@@ -12,8 +12,8 @@ pub fn for_each_cell(ends: [Point2; 2], size: [usize; 2], found: impl FnMut([usi
     for_each_cell_within(ends, size, TOLERANCE, found);
 }
 
-/// As [`for_each_cell`], with the cells that places within `reach` of the segment on both axes are in, in units of
-/// cells.
+/// As [`for_each_cell`], with the cells that places within `reach` of the segment on both axes are in, in
+/// units of cells.
 #[inline]
 pub fn for_each_cell_within(
     ends: [Point2; 2],

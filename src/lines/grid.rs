@@ -49,8 +49,8 @@ impl Grid {
         let (most, step) = (self.most?, scaled(1.0, -self.digits));
         (step > 2.0 * self.move_min).then(|| {
             format!(
-                "a coordinate of lines is as great as {most:?}: lines are rounded to steps of {step:?}. If it is a \
-                 mistake, leave out this vertex"
+                "a coordinate of lines is as great as {most:?}: lines are rounded to steps of {step:?}. If \
+                 it is a mistake, leave out this vertex"
             )
         })
     }
@@ -112,9 +112,9 @@ impl Grid {
         let name = ["x", "y", "z"][axis];
         let range = [i32::MIN, i32::MAX].map(|end| self.coordinates.to_decimal([f64::from(end); 3])[axis]);
         Error::usage(format!(
-            "a vertex of a line has {name} {world:?}, but the points are on a grid that ends at {} and {}: the lines may \
-             have another system (transform them, for example with ogr2ogr -t_srs), or the points a coarser grid \
-             (spfinalize --scale)",
+            "a vertex of a line has {name} {world:?}, but the points are on a grid that ends at {} and {}: \
+             the lines may have another system (transform them, for example with ogr2ogr -t_srs), or the \
+             points a coarser grid (spfinalize --scale)",
             range[0], range[1]
         ))
     }

@@ -94,7 +94,8 @@ fn divide(vertices: &[Vertex], longest: f64, number: u32, changes: &mut Changes)
             let count = (length(before.0, vertex.0) / longest).ceil();
             if count + divided.len() as f64 > LINE_VERTICES_MAX as f64 {
                 return Err(Error::malformed(format!(
-                    "parts of at most {longest:?} make more than {LINE_VERTICES_MAX} vertices: divide lines less"
+                    "parts of at most {longest:?} make more than {LINE_VERTICES_MAX} vertices: divide lines \
+                     less"
                 )));
             }
             let is_reversed = vertex.0 < before.0;

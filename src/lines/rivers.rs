@@ -11,8 +11,9 @@ use spmesh_model::network::Network;
 use spmesh_model::points::Point2;
 use spmesh_stream::Coordinates;
 
-const NO_POINTS: &str = "no points are near the shore: state the elevations of the river as third coordinates of its centre \
-                         line or banks, or look for points farther away with --shore-width";
+const NO_POINTS: &str = "no points are near the shore: state the elevations of the river as third \
+                         coordinates of its centre line or banks, or look for points farther away with \
+                         --shore-width";
 
 /// Elevations that differ by more than this part of their magnitude count as different in streams of f64.
 const F64_PART: f64 = 1e-9;
@@ -158,8 +159,8 @@ impl River {
         if first < last {
             let [first, last] = [first, last].map(|z| given.target.coordinates.to_decimal([0.0, 0.0, z])[2]);
             return Some(format!(
-                "{}: the river rises from {first} to {last}, and is at most {first} everywhere now: {lines} must lead \
-                 downstream",
+                "{}: the river rises from {first} to {last}, and is at most {first} everywhere now: {lines} \
+                 must lead downstream",
                 self.position
             ));
         }

@@ -19,8 +19,8 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
         let above = search.rounds.last().map_or(0, |round| round.above);
         notices.push(match (search.is_replaced, search.is_reached) {
             (true, _) => format!(
-                "{knots} knots on a grid, {functions} functions: a search for at most {most} knots left {above} \
-                 residuals above the tolerance {}",
+                "{knots} knots on a grid, {functions} functions: a search for at most {most} knots left \
+                 {above} residuals above the tolerance {}",
                 short(tolerance)
             ),
             (false, is_reached) => format!(

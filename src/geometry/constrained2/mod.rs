@@ -69,8 +69,8 @@ impl Region {
     ///
     /// Domain: as of [`Region::host`].
     ///
-    /// Cost: O(k) for a way across k triangles: from the vertex before, if it is in the same triangle, or else
-    /// from a corner. So points should follow each other closely.
+    /// Cost: O(k) for a way across k triangles: from the vertex before, if it is in the same triangle, or
+    /// else from a corner. So points should follow each other closely.
     pub fn insert(&mut self, point: u32, place: Point2, triangle: u32, predicates: &mut impl Predicates2) {
         let last = self.last.filter(|&[other, _]| other == triangle);
         let from = last.map_or(self.mesh.origins[triangle as usize][0], |[_, vertex]| vertex);

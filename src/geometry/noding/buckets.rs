@@ -11,8 +11,8 @@ const PER_CELL: f64 = 6.0;
 /// Entries of segments in cells for each segment, at most: with more, cells are larger.
 const ENTRIES_MAX: usize = 4;
 
-/// A segment is listed in all cells that places are in within so many pixels of it: more than half of a pixel, for
-/// the sides of cells, and all rounding errors.
+/// A segment is listed in all cells that places are in within so many pixels of it: more than half of a
+/// pixel, for the sides of cells, and all rounding errors.
 const REACH: f64 = 1.5;
 
 /// Cells of a grid and what is in them, column by column.

@@ -1,9 +1,10 @@
 //! Crossings, and the segments that pass through hot pixels, by division of the plane.
 //!
-//! A cell is a rectangle of pixels; the first ones are those of a grid ([`super::buckets`]). It is divided until few segments meet it, or until it has no vertex and
-//! [`super::chords`] proves that no two of its segments meet in it. A cell of one pixel needs no division
-//! either: it is hot if it has a vertex or a crossing, and then all of its segments are bent to its centre.
-//! So segments that share a vertex, or run close to each other, are compared in pairs nowhere.
+//! A cell is a rectangle of pixels; the first ones are those of a grid ([`super::buckets`]). It is divided
+//! until few segments meet it, or until it has no vertex and [`super::chords`] proves that no two of its
+//! segments meet in it. A cell of one pixel needs no division either: it is hot if it has a vertex or a
+//! crossing, and then all of its segments are bent to its centre. So segments that share a vertex, or run
+//! close to each other, are compared in pairs nowhere.
 
 use super::buckets::Buckets;
 use super::chords::Chords;

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 impl Polygons {
     /// Whether a counterclockwise triangle is inside of a polygon.
     ///
-    /// A corner that is on no border decides, or a place inside of the triangle. A triangle may be so thin that
-    /// no numbers are inside of it; then all edges are looked at, in integers of any size.
+    /// A corner that is on no border decides, or a place inside of the triangle. A triangle may be so thin
+    /// that no numbers are inside of it; then all edges are looked at, in integers of any size.
     ///
     /// Domain: coordinates are finite, and no edge of a polygon meets the interior of the triangle.
     #[must_use]

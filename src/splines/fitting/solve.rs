@@ -298,8 +298,8 @@ impl<'a> Equations<'a> {
             "smooth with a lambda above zero, or use fewer knots there"
         };
         Err(Error::usage(format!(
-            "{} of {} functions are not determined by {} observations: {empty} of these functions have none, and the \
-             others too few; the first one is at {} {}: {remedy}",
+            "{} of {} functions are not determined by {} observations: {empty} of these functions have \
+             none, and the others too few; the first one is at {} {}: {remedy}",
             undetermined.len(),
             self.basis.len(),
             self.normal.count,

@@ -79,8 +79,8 @@ impl Cut {
         (self.is_cut, self.limit.stored_length())
     }
 
-    /// Whether a triangle is inside of the hull and of no hole. `on` are the segments of its sides. Areas whose
-    /// rings cross it, as `crossed` says, do not cut it off.
+    /// Whether a triangle is inside of the hull and of no hole. `on` are the segments of its sides. Areas
+    /// whose rings cross it, as `crossed` says, do not cut it off.
     #[inline]
     pub(super) fn keeps(
         &mut self,

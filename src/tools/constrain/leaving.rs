@@ -1,8 +1,8 @@
 //! Rings of areas that leave the mesh.
 //!
 //! A ring has no edge between the last vertex on it and the border, so it divides the triangles there. They
-//! stay whole: what is cut off lies beyond the ring, and each edge of the new border is on a segment, or belongs
-//! to a triangle that a ring crosses.
+//! stay whole: what is cut off lies beyond the ring, and each edge of the new border is on a segment, or
+//! belongs to a triangle that a ring crosses.
 
 use super::held::Held;
 use super::near::Lines;
@@ -37,8 +37,8 @@ impl Rings {
         Rings { areas: of }
     }
 
-    /// For each triangle of a region whether the part of a ring crosses it that leaves the mesh; empty if there is
-    /// none. All vertices and segments are in the region.
+    /// For each triangle of a region whether the part of a ring crosses it that leaves the mesh; empty if
+    /// there is none. All vertices and segments are in the region.
     pub(super) fn leaving(&self, triangles: &[Held], region: &Region, lines: &mut Lines) -> Vec<OfAreas> {
         if self.areas.is_empty() {
             return Vec::new();
@@ -62,8 +62,8 @@ impl Rings {
         crossed
     }
 
-    /// The segments of rings in a region that leave the mesh: those that stay inside have both of their ends in
-    /// the region.
+    /// The segments of rings in a region that leave the mesh: those that stay inside have both of their ends
+    /// in the region.
     fn open(&self, triangles: &[Held], lines: &Lines) -> Vec<u32> {
         let is_ring = |segment: &u32| self.areas[*segment as usize] != [false; 2];
         let is_open = |segment: &u32| {

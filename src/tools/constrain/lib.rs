@@ -128,7 +128,8 @@ pub fn constrain<R: Read, W: Write>(
 fn check(header: &Header) -> Result<()> {
     check_surface(header, false)?;
     if header.constrained.is_some() {
-        let message = "the mesh is constrained or cut already: give all lines and areas at once, to the mesh without them";
+        let message = "the mesh is constrained or cut already: give all lines and areas at once, to the \
+                       mesh without them";
         return Err(Error::usage(message));
     }
     Ok(())
