@@ -26,6 +26,9 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 pub(super) const RIDGE: f64 = 1e-13;
 /// Directions v with a lesser v'Mv / v'Dv are undetermined.
 pub(super) const CURVATURE_MIN: f64 = 1e-12;
+/// Functions are looked at from the least pivot on. So many determined ones in a row end the search: with
+/// very little smoothing, a hundred thousand functions have small pivots, and looking at one takes a solution.
+const STRONG_ENOUGH: usize = 200;
 /// Steps of refinement. For pivots that are not weak, each step multiplies the error by the relative error
 /// that the ridge causes.
 const REFINEMENTS: usize = 3;
@@ -125,12 +128,22 @@ impl Factor<'_> {
         let original = symbolic.perm().map(|order| order.arrays().0);
         // A unit vector has a part of at least 1 / sqrt(number of functions) in some function.
         let pivot_min = 10.0 * CURVATURE_MIN * self.scale.len() as f64;
-        let candidates = self.pivots().into_iter().enumerate().filter(|&(_, pivot)| pivot < pivot_min);
-        let functions = candidates.map(|(place, _)| original.map_or(place, |order| order[place]));
-        let mut weak: Vec<(usize, f64)> = functions
-            .map(|function| (function, self.curvature(function, sizes)))
-            .filter(|&(_, curvature)| curvature < CURVATURE_MIN)
-            .collect();
+        let pivots = self.pivots();
+        let mut places: Vec<usize> = (0..pivots.len()).filter(|&place| pivots[place] < pivot_min).collect();
+        places.sort_by(|&a, &b| pivots[a].total_cmp(&pivots[b]));
+        let (mut weak, mut strong) = (Vec::new(), 0);
+        for function in places.into_iter().map(|place| original.map_or(place, |order| order[place])) {
+            let curvature = self.curvature(function, sizes);
+            if curvature < CURVATURE_MIN {
+                weak.push((function, curvature));
+                strong = 0;
+            } else {
+                strong += 1;
+            }
+            if strong == STRONG_ENOUGH {
+                break;
+            }
+        }
         weak.sort_unstable_by_key(|&(function, _)| function);
         weak
     }
