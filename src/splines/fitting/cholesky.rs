@@ -27,7 +27,7 @@ pub(super) const RIDGE: f64 = 1e-13;
 /// Directions v with a lesser v'Mv / v'Dv are undetermined.
 pub(super) const CURVATURE_MIN: f64 = 1e-12;
 /// Functions are looked at from the least pivot on. So many determined ones in a row end the search: with
-/// very little smoothing, a hundred thousand functions have small pivots, and looking at one takes a solution.
+/// very little smoothing, a hundred thousand of them have small pivots, and looking at one takes a solution.
 const STRONG_ENOUGH: usize = 200;
 /// Steps of refinement. For pivots that are not weak, each step multiplies the error by the relative error
 /// that the ridge causes.
