@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn the_digits_follow_the_greatest_coordinate() {
-        assert_eq!((digits(1.0), digits(4_100_000.0), digits(0.0), digits(1e20)), (12, 6, 12, -8));
+        assert_eq!((digits(1.0), digits(4_100_000.0), digits(0.5), digits(1e20)), (12, 6, 12, -8));
         let grid = Grid { coordinates: Coordinates::F64, digits: 6, move_min: 0.0, most: None };
         let vertex = grid.vertex([499_991.708, 0.1], None, 0, &mut Changes::new(false)).unwrap();
         assert_eq!(grid.stored(vertex.place), [499_991.708, 0.1]);
