@@ -42,7 +42,7 @@ nor on their directions. Lines that cross, touch or overlap get common vertices 
 
 Vertices of lines that the mesh does not have are added. Where a line states an elevation, it counts, and not that of a \
 point at the same place; a vertex without one takes the elevation of the surface. Parts of lines outside of the mesh are \
-left out, with a notice. To extend the mesh by lines, give them to spfinalize, too.
+left out, with a notice. Lines with elevations extend the mesh if spfinalize has them, too.
 
 Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Where a ring leaves the \
 mesh, the triangles stay whole that it divides between its last vertex inside and the border; --densify D \

@@ -1,6 +1,7 @@
 //! Edges in horizontal rows, and the exact test of a place among those of its row.
 
 use super::Side;
+use crate::cell_lists::CellLists;
 use crate::predicates::{FiniteFloatPredicates, Predicates2, Sign};
 use spmesh_model::points::Point2;
 
@@ -25,12 +26,12 @@ pub(super) struct Rows {
     bottom: f64,
     /// Rows per unit of y.
     scale: f64,
+    /// Numbers of edges in each row.
+    entries: CellLists,
     /// For each row the place of its first group, and one more.
     starts: Vec<usize>,
-    /// One for each polygon in a row, in increasing order, and one more.
+    /// One for each polygon in a row, in increasing order.
     groups: Vec<Group>,
-    /// Numbers of edges, increasing in each row.
-    entries: Vec<u32>,
 }
 
 /// The edges of a polygon in a row.
@@ -38,8 +39,8 @@ pub(super) struct Rows {
 struct Group {
     /// The least and the greatest x of the edges.
     width: [f64; 2],
-    /// The place of the first one in `entries`.
-    start: usize,
+    /// The places of the first and behind the last one among those of the row.
+    places: [u32; 2],
 }
 
 impl Rows {
@@ -57,8 +58,8 @@ impl Rows {
         let rows = (ROWS_PER_EDGE * count).min(ENTRIES_PER_EDGE * count / parts.max(1.0)) as usize + 1;
         let scale = rows as f64 / height * 0.5;
         let scale = if scale.is_finite() { scale } else { 0.0 };
-        let (starts, groups, entries) = (vec![0; rows + 1], Vec::new(), Vec::new());
-        let mut found = Rows { edges, bottom, scale, starts, groups, entries };
+        let (entries, starts) = (CellLists::default(), vec![0; rows + 1]);
+        let mut found = Rows { edges, bottom, scale, entries, starts, groups: Vec::new() };
         found.fill();
         found
     }
@@ -75,40 +76,31 @@ impl Rows {
     }
 
     fn fill(&mut self) {
-        let range = |rows: &Rows, edge: &Edge| rows.row(edge.ends[0][1])..=rows.row(edge.ends[1][1]);
-        let mut next = vec![0; self.starts.len()];
-        for edge in &self.edges {
-            range(self, edge).for_each(|row| next[row + 1] += 1);
-        }
-        (1..next.len()).for_each(|row| next[row] += next[row - 1]);
-        let firsts = next.clone();
-        self.entries = vec![0; next[self.rows()]];
-        for (number, edge) in (0..).zip(&self.edges) {
-            for row in range(self, edge) {
-                self.entries[next[row]] = number;
-                next[row] += 1;
-            }
-        }
-        for row in 0..self.rows() {
+        let rows = self.rows();
+        let entries = CellLists::of(rows, self.edges.len() as u32, usize::MAX, |edge, visit| {
+            let [first, last] = self.edges[edge as usize].ends.map(|end| self.row(end[1]));
+            (first..=last).for_each(visit);
+        });
+        self.entries = entries.expect("fewer than 2^32 entries");
+        for row in 0..rows {
             self.starts[row] = self.groups.len();
-            self.group(firsts[row]..firsts[row + 1]);
+            self.group(row);
         }
-        let last = self.rows();
-        self.starts[last] = self.groups.len();
-        self.groups.push(Group { width: [0.0; 2], start: self.entries.len() });
+        self.starts[rows] = self.groups.len();
     }
 
     /// Makes the groups of a row.
-    fn group(&mut self, entries: std::ops::Range<usize>) {
+    fn group(&mut self, row: usize) {
         let mut before = None;
-        for place in entries {
-            let edge = self.edges[self.entries[place] as usize];
+        for (place, &number) in (0..).zip(self.entries.get(row)) {
+            let edge = self.edges[number as usize];
             if before.replace(edge.polygon) != Some(edge.polygon) {
-                self.groups.push(Group { width: [f64::INFINITY, f64::NEG_INFINITY], start: place });
+                self.groups.push(Group { width: [f64::INFINITY, f64::NEG_INFINITY], places: [place; 2] });
             }
             let [a, b] = edge.ends.map(|end| end[0]);
-            if let Some(Group { width, .. }) = self.groups.last_mut() {
+            if let Some(Group { width, places }) = self.groups.last_mut() {
                 *width = [width[0].min(a).min(b), width[1].max(a).max(b)];
+                places[1] = place + 1;
             }
         }
     }
@@ -126,14 +118,15 @@ impl Rows {
             return;
         }
         let row = self.row(place[1]);
-        for group in self.starts[row]..self.starts[row + 1] {
-            let Group { width: [low, high], start } = self.groups[group];
+        let entries = self.entries.get(row);
+        for group in &self.groups[self.starts[row]..self.starts[row + 1]] {
+            let Group { width: [low, high], places: [first, behind] } = *group;
             // Beyond these edges, a ray to the right meets none of them, or each crossing has its
             // counterpart.
             if place[0] < low || place[0] > high {
                 continue;
             }
-            let edges = &self.entries[start..self.groups[group + 1].start];
+            let edges = &entries[first as usize..behind as usize];
             let side = self.side_of(edges, place);
             if side != Side::Outside {
                 found(self.edges[edges[0] as usize].polygon, side);

@@ -44,6 +44,8 @@ pub(super) struct Cells {
     /// Fine cells with vertices that were not found yet.
     fine_vertices: Bits,
     pyramid: Pyramid,
+    /// Cells with an item in them or beside them.
+    near: Bits,
 }
 
 /// A box in units of cells.
@@ -99,6 +101,7 @@ impl Cells {
             fine_segments: Bits::default(),
             fine_vertices: Bits::default(),
             pyramid: Pyramid::default(),
+            near: Bits::default(),
         }
     }
 
@@ -127,6 +130,7 @@ impl Cells {
         });
         let Some(items) = items else { return false };
         self.pyramid = Pyramid::new(size, |cell| !items.get(cell).is_empty());
+        self.near = self.pyramid.finest_spread();
         self.items = items;
         self.fill_fine(network);
         true
@@ -188,6 +192,14 @@ impl Cells {
         if !others.any(|other| vertices.get(other).is_some_and(is_left)) {
             self.fine_vertices.clear(fine);
         }
+    }
+
+    /// Whether nothing is nearer to a place than the side of a cell; may be false then, too.
+    #[inline]
+    pub(super) fn is_far(&self, place: Point2) -> bool {
+        let (local, size) = (self.local(place), [self.columns, self.rows]);
+        let is_beside = (0..2).any(|axis| local[axis] < -1.0 || local[axis] > size[axis] as f64 + 1.0);
+        is_beside || !self.near.get([0, 1].map(|axis| (local[axis] as usize).min(size[axis] - 1)))
     }
 
     /// Whether no segment is in a box.

@@ -17,6 +17,8 @@ pub(super) struct Lines<'n> {
     predicates: FiniteFloatPredicates,
     /// Around the present patch, all vertices within twice this distance were found. In stored units.
     margin: f64,
+    /// A little less than the side of a cell, in stored units.
+    reach: f64,
     segments: Vec<u32>,
     vertices: Vec<u32>,
 }
@@ -45,9 +47,11 @@ impl Meeting {
 
 impl<'n> Lines<'n> {
     pub(super) fn new(network: &'n Network) -> Lines<'n> {
+        let cells = Cells::new(network);
         Lines {
             network,
-            cells: Cells::new(network),
+            reach: 0.99 / cells.scale(),
+            cells,
             found: vec![false; network.vertices.len()],
             predicates: FiniteFloatPredicates::default(),
             margin: 0.0,
@@ -81,6 +85,10 @@ impl<'n> Lines<'n> {
 
     /// What meets a triangle, whose corners are counterclockwise; `None` if nothing does.
     pub(super) fn meeting(&mut self, corners: [Point2; 3]) -> Option<Meeting> {
+        // Most triangles are small and far from lines.
+        if is_circle_less(self.reach, corners) && self.cells.is_far(corners[0]) {
+            return None;
+        }
         self.collect(corners);
         if self.segments.is_empty() && self.vertices.is_empty() {
             return None;
@@ -106,7 +114,7 @@ impl<'n> Lines<'n> {
     fn collect(&mut self, corners: [Point2; 3]) {
         let local = corners.map(|corner| self.cells.local(corner));
         let triangle = CellBox::of(&local);
-        let is_small = self.is_small(corners);
+        let is_small = is_circle_less(self.margin, corners);
         let (segments, vertices, found) = (&mut self.segments, &mut self.vertices, &self.found);
         segments.clear();
         vertices.clear();
@@ -136,20 +144,6 @@ impl<'n> Lines<'n> {
                 },
             );
         }
-    }
-
-    /// Whether the circle of a triangle of the present patch stays where all vertices were found: whether its
-    /// diameter is less than the margin. The square of the diameter is the product of the squares of the
-    /// sides over that of twice the area.
-    #[inline]
-    fn is_small(&self, [a, b, c]: [Point2; 3]) -> bool {
-        let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
-        let w = [u[0] - v[0], u[1] - v[1]];
-        let [uu, vv, ww] = [u, v, w].map(|p| p[0] * p[0] + p[1] * p[1]);
-        let twice_area = u[0] * v[1] - u[1] * v[0];
-        let reach = self.margin * twice_area;
-        // Rounding errors of the area matter in flat triangles only, which are not small.
-        uu * vv * ww < reach * reach && twice_area * twice_area > 1e-12 * uu * vv
     }
 
     /// Notes that a vertex of the network is a vertex of the mesh.
@@ -229,6 +223,19 @@ impl<'n> Lines<'n> {
     pub(super) fn predicates(&mut self) -> &mut FiniteFloatPredicates {
         &mut self.predicates
     }
+}
+
+/// Whether the diameter of the circle of a triangle is less than a length. Its square is the product of the
+/// squares of the sides over that of twice the area.
+#[inline]
+fn is_circle_less(length: f64, [a, b, c]: [Point2; 3]) -> bool {
+    let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
+    let w = [u[0] - v[0], u[1] - v[1]];
+    let [uu, vv, ww] = [u, v, w].map(|p| p[0] * p[0] + p[1] * p[1]);
+    let twice_area = u[0] * v[1] - u[1] * v[0];
+    let reach = length * twice_area;
+    // Rounding errors of the area matter in flat triangles only, which are not small.
+    uu * vv * ww < reach * reach && twice_area * twice_area > 1e-12 * uu * vv
 }
 
 /// Whether the boxes of some places have nothing in common.

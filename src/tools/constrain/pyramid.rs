@@ -18,10 +18,14 @@ struct Level {
 impl Level {
     fn new(size: [usize; 2], is_occupied: impl Fn([usize; 2]) -> bool) -> Level {
         let mut bits = Bits::new(size);
-        let squares = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| [column, row]));
-        squares.filter(|&square| is_occupied(square)).for_each(|square| bits.set(square));
+        squares(size).filter(|&square| is_occupied(square)).for_each(|square| bits.set(square));
         Level { size, bits }
     }
+}
+
+/// The squares of a grid, row by row.
+fn squares([columns, rows]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
+    (0..rows).flat_map(move |row| (0..columns).map(move |column| [column, row]))
 }
 
 impl Pyramid {
@@ -40,6 +44,17 @@ impl Pyramid {
             levels.push(level);
         }
         Pyramid { levels }
+    }
+
+    /// The occupied cells and those beside them.
+    pub(super) fn finest_spread(&self) -> Bits {
+        let Level { size, bits } = &self.levels[0];
+        let around = |at: usize, axis: usize| at.saturating_sub(1)..=(at + 1).min(size[axis] - 1);
+        let mut spread = Bits::new(*size);
+        for [column, row] in squares(*size).filter(|&square| bits.get(square)) {
+            around(row, 1).for_each(|row| around(column, 0).for_each(|column| spread.set([column, row])));
+        }
+        spread
     }
 
     /// Calls `found` with the numbers of occupied cells in a range of columns and rows that `meets` accepts.
