@@ -41,7 +41,7 @@ those of the Delaunay triangulation as far as no line is in the way. It depends 
 nor on their directions. Lines that cross, touch or overlap get common vertices on the grid of the stream.
 
 Vertices of lines that the mesh does not have are added. Where a line states an elevation, it counts, and not that of a \
-point at the same place; a vertex without one takes the elevation of the surface. Parts of lines outside of the mesh are \
+point at the same place, also amid a segment; a vertex without one takes the elevation of the surface. Parts of lines outside of the mesh are \
 left out, with a notice. Lines with elevations extend the mesh if spfinalize has them, too.
 
 Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Where a ring leaves the \

@@ -9,7 +9,6 @@ use spmesh_core::error::Result;
 use spmesh_geometry::polygons::{Polygons, Side};
 use spmesh_model::network::Network;
 use spmesh_model::points::Point2;
-use spmesh_stream::Coordinates;
 
 const NO_POINTS: &str = "no points are near the shore: state the elevations of the river as third \
                          coordinates of its centre line or banks, or look for points farther away with \
@@ -95,22 +94,15 @@ impl Levels {
     /// Gives a vertex its elevation, unless another river is lower there.
     fn take(&mut self, given: &Given, vertex: u32, z: f64) {
         let own = self.elevations.entry(vertex).or_insert(f64::INFINITY);
-        *own = own.min(given.rounded(z));
+        *own = own.min(given.target.coordinates.rounded(z));
     }
 }
 
 impl Given<'_> {
-    fn rounded(&self, z: f64) -> f64 {
-        match self.target.coordinates {
-            Coordinates::I32 { .. } => z.round(),
-            Coordinates::F64 => z,
-        }
-    }
-
     /// Whether a vertex of the network has another elevation than `z`.
     fn states_another(&self, vertex: u32, z: f64) -> bool {
         let Some(stated) = self.network.vertices[vertex as usize].z else { return false };
-        let difference = (self.rounded(stated) - self.rounded(z)).abs();
+        let difference = (self.target.coordinates.rounded(stated) - self.target.coordinates.rounded(z)).abs();
         difference > F64_PART * stated.abs().max(1.0)
     }
 }

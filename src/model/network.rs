@@ -34,9 +34,26 @@ pub struct NetworkSegment {
 }
 
 impl Network {
+    /// The elevations that lines state at the ends of a segment, if they do at both.
+    #[must_use]
+    pub fn elevations(&self, segment: u32) -> Option<[f64; 2]> {
+        let [a, b] = self.segments[segment as usize].ends.map(|end| self.vertices[end as usize].z);
+        a.zip(b).map(<[f64; 2]>::from)
+    }
+
     /// The places of the ends of a segment.
     #[must_use]
     pub fn places(&self, segment: &NetworkSegment) -> [Point2; 2] {
         segment.ends.map(|end| self.vertices[end as usize].place)
     }
+}
+
+/// The elevation at a place on an edge, between those of its ends. The lexicographically lesser end comes
+/// first, so that the direction does not matter.
+#[must_use]
+pub fn elevation_between([a, b]: [Point2; 2], [low, high]: [f64; 2], place: Point2) -> f64 {
+    let difference = |to: Point2| [to[0] - a[0], to[1] - a[1]];
+    let (whole, part) = (difference(b), difference(place));
+    let axis = usize::from(whole[1].abs() > whole[0].abs());
+    low + (high - low) * (part[axis] / whole[axis])
 }

@@ -65,6 +65,15 @@ impl Coordinates {
         }
     }
 
+    /// The value nearest to a stored one, or to a sum or mean of such, that the grid has.
+    #[must_use]
+    pub fn rounded(&self, value: f64) -> f64 {
+        match self {
+            Coordinates::F64 => value,
+            Coordinates::I32 { .. } => value.round(),
+        }
+    }
+
     /// Whether a stored value fits the encoding: a finite f64, or an integer that fits in i32.
     #[must_use]
     pub fn can_store(&self, value: f64) -> bool {

@@ -73,6 +73,15 @@ impl Scene {
         Network { vertices: used.iter().map(vertex).collect(), segments }
     }
 
+    /// Whether a place is on a segment of the network with elevations at both ends.
+    pub fn is_amid_hard(&self, place: [i64; 2], network: &Network) -> bool {
+        network.segments.iter().any(|segment| {
+            let ends = segment.ends.map(|end| &network.vertices[end as usize]);
+            ends.iter().all(|end| end.z.is_some())
+                && is_on(ends.map(|end| end.place.map(|c| c as i64)), place)
+        })
+    }
+
     /// The Delaunay triangulation of the first points as a stream: triangles in any order, in patches of any
     /// size.
     pub fn stream(&self, random: &mut Random) -> Vec<u8> {

@@ -116,9 +116,20 @@ fn compressed_meshes_are_read_and_written() {
 
 #[test]
 fn the_surface_along_a_hard_line_is_the_line() {
+    // Between points, and through points.
+    along_line(0.0);
+    along_line(0.5);
+}
+
+/// Checks the elevations of cells whose centres are on a line, among points that are moved from the corners of
+/// cells.
+fn along_line(moved: f64) {
     let folder = Folder::new();
-    let points: String =
-        (0..40).flat_map(|x| (0..40).map(move |y| format!("{x} {y} {}\n", x * y % 7))).collect();
+    let point = |x: u32, y: u32| {
+        let [east, north] = [x, y].map(|place| f64::from(place) + moved);
+        format!("{east} {north} {}\n", x * y % 7)
+    };
+    let points: String = (0..40).flat_map(|x| (0..40).map(move |y| point(x, y))).collect();
     folder.file("points.txt", points);
     folder.file("lines.txt", "line 3.5 3.5 100 35.5 19.5 140\n");
     let [points, lines] = ["points.txt", "lines.txt"].map(|name| folder.path(name));

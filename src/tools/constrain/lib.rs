@@ -78,8 +78,8 @@ pub struct Stats {
 /// `progress` with the number of vertices done.
 ///
 /// Vertices of the network that the mesh does not have are added to it, if they are inside of its triangles.
-/// Those without an elevation get that of the surface there. Vertices that the mesh has take the elevation of
-/// the line, if it states one.
+/// Those without an elevation get that of the surface there. Vertices that the mesh has on a line, also amid
+/// a segment, take the elevation of the line, if it states one.
 ///
 /// Memory: the network and its cells, about 60 bytes for a segment; live vertices; and triangles that wait.
 ///
@@ -190,12 +190,16 @@ impl<W: Write> Filter<'_, W> {
     /// Gives new vertices on lines the elevation of the line.
     fn raise(&mut self, patch: &mut Patch) {
         for point in &mut patch.new {
-            let Some(vertex) = self.lines.vertex_at([point[0], point[1]]) else { continue };
-            self.lines.find(vertex);
-            self.stats.found += 1;
-            if let Some(z) = self.lines.network.vertices[vertex as usize].z
-                && z != point[2]
-            {
+            let place = [point[0], point[1]];
+            let z = match self.lines.vertex_at(place) {
+                Some(vertex) => {
+                    self.lines.find(vertex);
+                    self.stats.found += 1;
+                    self.lines.network.vertices[vertex as usize].z
+                }
+                None => self.lines.elevation_amid(place).map(|z| self.coordinates.rounded(z)),
+            };
+            if let Some(z) = z.filter(|&z| z != point[2]) {
                 point[2] = z;
                 self.stats.raised += 1;
             }

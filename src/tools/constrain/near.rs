@@ -3,7 +3,7 @@
 use super::cells::{CellBox, Cells, Item};
 use super::circle::Circle;
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
-use spmesh_model::network::Network;
+use spmesh_model::network::{Network, elevation_between};
 use spmesh_model::points::Point2;
 use std::cmp::Ordering;
 
@@ -67,6 +67,33 @@ impl<'n> Lines<'n> {
             return None;
         }
         self.cells.vertex_at(place, self.network)
+    }
+
+    /// The elevation at a place amid a segment whose ends have one.
+    pub(super) fn elevation_amid(&mut self, place: Point2) -> Option<f64> {
+        let at = self.cells.local(place);
+        let bounds = CellBox { min: at, max: at };
+        if self.cells.is_free(&bounds) {
+            return None;
+        }
+        self.segments.clear();
+        let segments = &mut self.segments;
+        self.cells.for_each_in(
+            &bounds,
+            |_| true,
+            |item| match item {
+                Item::Segment(number) => segments.push(number),
+                Item::Vertex(_) => (),
+            },
+        );
+        // Segments have no more in common than their ends.
+        let segments = std::mem::take(&mut self.segments);
+        let number = segments.iter().copied().find(|&number| self.is_on(number, place));
+        self.segments = segments;
+        let number = number?;
+        let elevations = self.network.elevations(number)?;
+        let ends = self.network.places(&self.network.segments[number as usize]);
+        Some(elevation_between(ends, elevations, place))
     }
 
     /// Takes note of the box of a patch: whether all vertices around it were found. `places` are those of its

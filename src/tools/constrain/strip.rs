@@ -9,7 +9,7 @@ use spmesh_geometry::constrained2::{Host, Piece, Region};
 use spmesh_geometry::order::{Curve, SpatialOrder};
 use spmesh_geometry::predicates::{Extent, Point2, lexicographic};
 use spmesh_model::bounds::Point;
-use spmesh_model::network::{Network, NetworkSegment};
+use spmesh_model::network::{Network, NetworkSegment, elevation_between};
 use spmesh_stream::Coordinates;
 use std::cmp::Ordering;
 
@@ -200,8 +200,7 @@ impl Work {
         pairs.dedup();
         let parts = pairs.chunk_by(|a, b| a[0] == b[0]).map(|pairs| {
             let segment = pairs[0][0];
-            let ends = lines.network.segments[segment as usize].ends;
-            let is_hard = ends.iter().all(|&end| lines.network.vertices[end as usize].z.is_some());
+            let is_hard = lines.network.elevations(segment).is_some();
             Part { segment, on: pairs.iter().map(|pair| pair[1]).collect(), is_hard }
         });
         let mut parts: Vec<Part> = parts.collect();
@@ -228,28 +227,20 @@ impl Work {
             Host::Triangle(points) => points.to_vec(),
         };
         points.sort_by(|&a, &b| lexicographic(self.places[a as usize], self.places[b as usize]));
-        let z = match points[..] {
-            [a, b] => self.along([a, b], place),
+        coordinates.rounded(match points[..] {
+            [a, b] => {
+                let of = |values: &[f64]| [a, b].map(|point| values[point as usize]);
+                let ends = [a, b].map(|point| self.places[point as usize]);
+                elevation_between(ends, of(&self.elevations), place)
+            }
             [a, b, c] => self.within([a, b, c], place),
             _ => unreachable!("an edge or a triangle"),
-        };
-        match coordinates {
-            Coordinates::F64 => z,
-            Coordinates::I32 { .. } => z.round(),
-        }
+        })
     }
 
     fn difference(&self, from: u32, to: Point2) -> Point2 {
         let from = self.places[from as usize];
         [to[0] - from[0], to[1] - from[1]]
-    }
-
-    /// The elevation on an edge.
-    fn along(&self, [a, b]: [u32; 2], place: Point2) -> f64 {
-        let (whole, part) = (self.difference(a, self.places[b as usize]), self.difference(a, place));
-        let axis = usize::from(whole[1].abs() > whole[0].abs());
-        let [low, high] = [a, b].map(|point| self.elevations[point as usize]);
-        low + (high - low) * (part[axis] / whole[axis])
     }
 
     /// The elevation in a triangle.

@@ -96,13 +96,11 @@ impl HeightPoints {
 
     /// Writes points with heights in units of the ground.
     fn add(&mut self, batch: &[Point], heights: &[f64], per_unit: f64) -> Result<()> {
-        let is_grid = matches!(self.description.coordinates, Coordinates::I32 { .. });
         self.below += heights.iter().filter(|height| **height < 0.0).count() as u64;
         let known = batch.iter().zip(heights).filter(|(_, height)| !height.is_nan());
         let stored: Vec<Point> = known
             .map(|(&[x, y, _], height)| {
-                let height = (height * per_unit).max(0.0);
-                [x, y, if is_grid { height.round() } else { height }]
+                [x, y, self.description.coordinates.rounded((height * per_unit).max(0.0))]
             })
             .collect();
         self.greatest = stored.iter().map(|point| point[2]).fold(self.greatest, f64::max);
