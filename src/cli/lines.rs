@@ -7,6 +7,7 @@ use clap::Args;
 use super::parse_numbers;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
+use spmesh_core::system;
 use spmesh_lines::{Areas, ChangeKind, Changes, Levels, Options, Sources, Target, Water};
 use spmesh_model::network::Network;
 
@@ -63,6 +64,7 @@ impl LineFlags {
         }
         let options = Options { densify: self.densify, lists_changes: self.report.is_some() };
         let sources = Sources { lines: &self.files, water, ..Sources::default() };
+        system::give_back_large_blocks();
         spmesh_lines::read_with_water(&sources, target, &options).map(Some)
     }
 
@@ -77,11 +79,9 @@ impl LineFlags {
         target: &Target,
     ) -> Result<(Network, Areas, Changes)> {
         let options = Options { densify: self.densify, lists_changes: self.report.is_some() };
-        spmesh_lines::read_with_areas(
-            &Sources { lines: &self.files, hull, holes, water: &[] },
-            target,
-            &options,
-        )
+        let sources = Sources { lines: &self.files, hull, holes, water: &[] };
+        system::give_back_large_blocks();
+        spmesh_lines::read_with_areas(&sources, target, &options)
     }
 
     /// Creates the file for the report, if one is asked for.

@@ -50,7 +50,7 @@ makes these ways shorter than D. Points inside of holes stay vertices, without t
 triangles at edges of the border that are longer than a length, and goes on with those behind them, but \
 never across lines: a concave hull. Only triangles with such an edge wait for it.
 
-Triangles that no line changes pass at once. Memory is that of the lines, about 100 bytes a segment, and of the triangles \
+Triangles that no line changes pass at once. Memory is that of the lines, about 80 bytes a segment, and of the triangles \
 that a line changes, until the last of them has come.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \

@@ -22,11 +22,14 @@ pub(super) fn bend(
     let nodes = Nodes::of(places, elevations, &found.crossings);
     let touches = nodes.sorted(&found.touches);
     drop(found);
-    let count = nodes.places.len();
+    let mut amid: Vec<u32> = touches.iter().map(|&touch| touch as u32).collect();
+    amid.sort_unstable();
+    amid.dedup();
     let line = |vertex: u32| starts.partition_point(|&start| start <= vertex) as u32 - 1;
     let mut bends = Bends {
-        interpolated: vec![f64::NAN; if nodes.has_elevations() { count } else { 0 }],
-        bent: vec![u32::MAX; count],
+        interpolated: vec![f64::NAN; if nodes.has_elevations() { amid.len() } else { 0 }],
+        bent: vec![u32::MAX; amid.len()],
+        amid,
         conflicts: conflicts.iter().map(|&[place, vertex]| [nodes.of_place(place), line(vertex)]).collect(),
         pieces: Vec::with_capacity(segments.ends.len() + touches.len()),
         nodes,
@@ -55,9 +58,11 @@ struct Piece {
 
 struct Bends {
     nodes: Nodes,
-    /// Lowest elevation that was interpolated at each node; NaN if none was. Empty if lines state none.
+    /// The nodes that segments are bent to, in increasing order.
+    amid: Vec<u32>,
+    /// Lowest elevation that was interpolated at each of them; NaN if none was. Empty if lines state none.
     interpolated: Vec<f64>,
-    /// The least line that was bent to each node; `u32::MAX` if none was.
+    /// The least line that was bent to each of them; `u32::MAX` if none was.
     bent: Vec<u32>,
     /// Nodes with several elevations, and a line of each.
     conflicts: Vec<[u32; 2]>,
@@ -79,6 +84,11 @@ impl Bends {
         }
     }
 
+    /// The place of a node among those that segments are bent to.
+    fn place(&self, node: u32) -> usize {
+        self.amid.binary_search(&node).expect("a segment is bent to the node")
+    }
+
     /// Enters the pieces of a segment, and interpolates elevations.
     fn follow(&mut self, parts: &[Part], chain: &[u32], cover: &mut Cover) {
         cover.find(&self.nodes, chain, parts);
@@ -88,8 +98,8 @@ impl Bends {
         }
         for index in 1..chain.len() - 1 {
             if !cover.is_end[index] {
-                let bent = &mut self.bent[chain[index] as usize];
-                *bent = (*bent).min(cover.pieces[index].line);
+                let place = self.place(chain[index]);
+                self.bent[place] = self.bent[place].min(cover.pieces[index].line);
             }
         }
         if chain.len() > 2 && !self.interpolated.is_empty() {
@@ -124,7 +134,8 @@ impl Bends {
                     let part = between(a, self.nodes.places[node as usize]) / between(a, b);
                     let z = from + (to - from) * part;
                     let z = if self.options.round_elevations { z.round() } else { z };
-                    let known = &mut self.interpolated[node as usize];
+                    let place = self.place(node);
+                    let known = &mut self.interpolated[place];
                     if known.is_nan() {
                         *known = z;
                     } else if *known != z {
@@ -138,19 +149,9 @@ impl Bends {
     }
 
     fn finish(mut self, note: &mut dyn FnMut(NodingChange, u32, Place)) -> Noded {
-        let mut pieces = std::mem::take(&mut self.pieces);
-        pieces.sort_unstable();
-        let mut segments = Vec::with_capacity(pieces.len());
+        let segments = self.segments(note);
         let nodes = &self.nodes;
-        for same in pieces.chunk_by(|a, b| a.ends == b.ends) {
-            let Piece { ends, line, .. } = same[0];
-            segments.push(NetworkSegment { ends, line });
-            if same.len() > 1 || same[0].is_shared {
-                note(NodingChange::Overlap, line, nodes.places[ends[0] as usize]);
-            }
-        }
-        drop(pieces);
-        for (node, &line) in (0u32..).zip(&self.bent) {
+        for (&node, &line) in self.amid.iter().zip(&self.bent) {
             if line != u32::MAX {
                 let is_crossing = nodes.is_crossing(node);
                 let change = if is_crossing { NodingChange::Crossing } else { NodingChange::Touch };
@@ -162,13 +163,32 @@ impl Bends {
         for &[node, line] in &self.conflicts {
             note(NodingChange::ConflictingElevation, line, nodes.places[node as usize]);
         }
-        let z = |node: u32| {
-            let found =
-                [nodes.stated(node), self.interpolated.get(node as usize).copied().unwrap_or(f64::NAN)];
-            found.into_iter().find(|z| !z.is_nan())
-        };
-        let places = (0u32..).zip(&nodes.places);
-        let vertices = places.map(|(node, &place)| LineVertex { place, z: z(node) }).collect();
-        Noded { vertices, segments }
+        Noded { vertices: self.vertices(), segments }
+    }
+
+    /// The segments of the result. Frees the pieces.
+    fn segments(&mut self, note: &mut dyn FnMut(NodingChange, u32, Place)) -> Vec<NetworkSegment> {
+        let mut pieces = std::mem::take(&mut self.pieces);
+        pieces.sort_unstable();
+        let mut segments = Vec::with_capacity(pieces.len());
+        for same in pieces.chunk_by(|a, b| a.ends == b.ends) {
+            let Piece { ends, line, .. } = same[0];
+            segments.push(NetworkSegment { ends, line });
+            if same.len() > 1 || same[0].is_shared {
+                note(NodingChange::Overlap, line, self.nodes.places[ends[0] as usize]);
+            }
+        }
+        segments
+    }
+
+    /// The vertices of the result. Frees what they do not need before there is room for them.
+    fn vertices(self) -> Vec<LineVertex> {
+        let (places, mut elevations) = self.nodes.into_places();
+        for (&node, &z) in self.amid.iter().zip(&self.interpolated) {
+            let stated = &mut elevations[node as usize];
+            *stated = if stated.is_nan() { z } else { *stated };
+        }
+        let z = |node: usize| elevations.get(node).copied().filter(|z| !z.is_nan());
+        places.iter().enumerate().map(|(node, &place)| LineVertex { place, z: z(node) }).collect()
     }
 }

@@ -91,7 +91,7 @@ pub struct NodingOptions {
 /// interpolated between the next vertices before and behind that have one, along each segment with an
 /// elevation at both of its ends that passes; the lowest counts.
 ///
-/// Memory: about 80 bytes per vertex, in which the result has room. Vertices that are owned are freed early.
+/// Memory: about 75 bytes per vertex, in which the result has room. Vertices that are owned are freed early.
 ///
 /// # Errors
 /// Malformed, if there are more than `LINE_VERTICES_MAX` vertices, a coordinate exceeds [`COORDINATE_MAX`],

@@ -15,39 +15,52 @@ pub(super) struct Nodes {
 }
 
 impl Nodes {
-    /// Of places of lines, with the elevations that lines state or none, and crossings.
-    pub(super) fn of(places: Vec<Place>, elevations: Vec<f64>, crossings: &[Place]) -> Nodes {
+    /// Of places of lines, with the elevations that lines state or none, and crossings. Needs no second copy
+    /// of the places.
+    pub(super) fn of(mut places: Vec<Place>, mut stated: Vec<f64>, crossings: &[Place]) -> Nodes {
         if crossings.is_empty() {
-            return Nodes { places, numbers: Vec::new(), stated: elevations, is_crossing: Vec::new() };
+            return Nodes { places, numbers: Vec::new(), stated, is_crossing: Vec::new() };
         }
         let mut order: Vec<u32> = (0..crossings.len() as u32).collect();
         order.sort_unstable_by_key(|&crossing| crossings[crossing as usize]);
         let (old, total) = (places.len(), places.len() + crossings.len());
-        let mut nodes = Nodes {
-            places: Vec::with_capacity(total),
-            numbers: vec![0; total],
-            stated: Vec::with_capacity(if elevations.is_empty() { 0 } else { total }),
-            is_crossing: Vec::with_capacity(total),
-        };
-        let (mut place, mut crossing) = (0, 0);
-        while nodes.places.len() < total {
-            let next = order.get(crossing).map(|&crossing| crossings[crossing as usize]);
-            let is_crossing = place == old || next.is_some_and(|next| next < places[place]);
-            let number = if is_crossing { old + order[crossing] as usize } else { place };
-            nodes.numbers[number] = nodes.places.len() as u32;
-            nodes.is_crossing.push(is_crossing);
-            if !elevations.is_empty() {
-                nodes.stated.push(if is_crossing { f64::NAN } else { elevations[place] });
-            }
-            nodes.places.extend(if is_crossing { next } else { Some(places[place]) });
-            (place, crossing) = (place + usize::from(!is_crossing), crossing + usize::from(is_crossing));
+        let has_elevations = !stated.is_empty();
+        places.reserve_exact(crossings.len());
+        places.resize(total, Place::default());
+        if has_elevations {
+            stated.reserve_exact(crossings.len());
+            stated.resize(total, f64::NAN);
         }
-        nodes
+        let (mut numbers, mut is_crossing) = (vec![0; total], vec![false; total]);
+        // From the last to the first, each place moves up or stays.
+        let mut place = old;
+        for node in (0..total).rev() {
+            let next = order.last().map(|&crossing| crossings[crossing as usize]);
+            is_crossing[node] = next.is_some_and(|next| place == 0 || places[place - 1] < next);
+            if is_crossing[node] {
+                let crossing = order.pop().map_or(0, |crossing| crossing as usize);
+                places[node] = crossings[crossing];
+                numbers[old + crossing] = node as u32;
+            } else {
+                place -= 1;
+                places[node] = places[place];
+                numbers[place] = node as u32;
+            }
+            if has_elevations {
+                stated[node] = if is_crossing[node] { f64::NAN } else { stated[place] };
+            }
+        }
+        Nodes { places, numbers, stated, is_crossing }
     }
 
     /// The node of a place of lines, or beyond these, of a crossing.
     pub(super) fn of_place(&self, number: u32) -> u32 {
         self.numbers.get(number as usize).copied().unwrap_or(number)
+    }
+
+    /// Places, and the elevations that lines state, or none if they state none. Frees the rest.
+    pub(super) fn into_places(self) -> (Vec<Place>, Vec<f64>) {
+        (self.places, self.stated)
     }
 
     /// Whether lines state elevations.
