@@ -55,5 +55,6 @@ pub fn elevation_between([a, b]: [Point2; 2], [low, high]: [f64; 2], place: Poin
     let difference = |to: Point2| [to[0] - a[0], to[1] - a[1]];
     let (whole, part) = (difference(b), difference(place));
     let axis = usize::from(whole[1].abs() > whole[0].abs());
-    low + (high - low) * (part[axis] / whole[axis])
+    // Rounding must not lead beyond both ends: it could leave the box of the mesh.
+    (low + (high - low) * (part[axis] / whole[axis])).clamp(low.min(high), low.max(high))
 }

@@ -96,9 +96,10 @@ impl Bends {
             let ends = [ends[0].min(ends[1]), ends[0].max(ends[1])];
             self.pieces.push(Piece { ends, line: piece.line, is_shared: piece.is_shared });
         }
-        for index in 1..chain.len() - 1 {
+        let last = chain.len() - 1;
+        for (index, &node) in chain[..last].iter().enumerate().skip(1) {
             if !cover.is_end[index] {
-                let place = self.place(chain[index]);
+                let place = self.place(node);
                 self.bent[place] = self.bent[place].min(cover.pieces[index].line);
             }
         }

@@ -249,6 +249,7 @@ impl Work {
         let w = self.difference(a, place);
         let cross = |p: Point2, q: Point2| p[0] * q[1] - p[1] * q[0];
         let [low, second, third] = [a, b, c].map(|point| self.elevations[point as usize]);
-        low + ((second - low) * cross(w, v) + (third - low) * cross(u, w)) / cross(u, v)
+        let z = low + ((second - low) * cross(w, v) + (third - low) * cross(u, w)) / cross(u, v);
+        z.clamp(low.min(second).min(third), low.max(second).max(third))
     }
 }
