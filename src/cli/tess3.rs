@@ -98,11 +98,13 @@ pub struct Flags {
     #[arg(long, value_name = "N", requires = "out_dir", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Where the summary of a sweep goes, a line per mesh; - is stdout [default: summary.tsv in the folder]
+    /// Where the summary of a sweep goes, a line per mesh: a table, or JSON Lines if the name ends in .jsonl;
+    /// - is stdout [default: summary.tsv in the folder]
     #[arg(long, value_name = "FILE", requires = "out_dir")]
     summary: Option<PathBuf>,
 
-    /// Skip the files that an earlier sweep to the same folder has done with the same flags
+    /// Skip the files that an earlier sweep to the same folder has done with the same flags, and that are the
+    /// same still by size, and by time or content
     #[arg(long, requires = "out_dir")]
     resume: bool,
 
@@ -241,6 +243,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
         list: flags.lof.clone(),
         format: flags.from.map(Into::into),
         options_text: flags.options_text(),
+        version: env!("CARGO_PKG_VERSION").to_string(),
         options,
         folder: folder.to_path_buf(),
         summary: summary.clone(),

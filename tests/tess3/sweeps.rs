@@ -1,11 +1,14 @@
 //! Many input files: where their outputs go, and what happens if some files fail.
 
 use std::fs;
+use std::process::Stdio;
 use std::time::{Duration, SystemTime};
+
+use sha2::{Digest, Sha256};
 
 use super::meshes::Mesh;
 use super::molecules::{Rows, cloud, models, pdb};
-use crate::programs::{Folder, outcome, run};
+use crate::programs::{Folder, outcome, run, start};
 
 fn summary(folder: &Folder) -> Rows {
     Rows::new(&fs::read_to_string(folder.path("out/summary.tsv")).unwrap())
@@ -93,11 +96,16 @@ fn files_of_one_name_in_one_folder_keep_their_endings() {
 }
 
 #[test]
-fn a_file_that_is_given_twice_is_done_once() {
+fn a_file_that_is_given_twice_is_refused_before_the_work() {
     let (folder, files) = files();
-    assert_eq!(sweep(&folder, &[], &[files[0].clone(), files[0].clone()]).0, Some(0));
-    assert_eq!(folder.names("out"), ["1abc.spm", "summary.tsv"]);
-    assert_eq!(summary(&folder).len(), 1);
+    let list = folder.write("list", files.join("\n"));
+    let again = files[1].replace("/in/", "/in/./");
+    for twice in [&files[1], &again] {
+        let (code, message) = sweep(&folder, &["--lof", &list], &[twice.clone()]);
+        assert_eq!(code, Some(2), "{message}");
+        assert!(message.contains("2abc.ent") && message.contains("given twice"), "{message}");
+    }
+    assert!(!std::path::Path::new(&folder.path("out")).exists());
 }
 
 #[test]
@@ -171,7 +179,7 @@ fn what_is_done_is_not_done_again() {
     let bad = folder.write("in/bad.pdb", "ATOM  none\n");
     files.push(bad.clone());
     assert_eq!(sweep(&folder, &[], &files).0, Some(1));
-    // Old outputs of inputs that are older still.
+    // Files that have another time, but the same content.
     let past = |hours: u64| SystemTime::UNIX_EPOCH + Duration::from_secs(1_600_000_000 + 3600 * hours);
     files.iter().for_each(|file| set_modified(file, past(0)));
     let age = |folder: &Folder| {
@@ -187,10 +195,12 @@ fn what_is_done_is_not_done_again() {
     assert_eq!(times(&folder), before);
     assert_eq!(summary(&folder).len(), 4);
 
-    // The bad file is corrected, one file is new, one has changed, and one output is cut.
+    // The bad file is corrected, one file is new, one has other content and an older time, and one output is
+    // cut.
     folder.write("in/bad.pdb", pdb(&cloud(12, 9_000, 1)));
     files.push(folder.write("in/new.pdb", pdb(&cloud(13, 9_000, 1))));
-    set_modified(&files[0], past(9));
+    folder.write("in/1abc.pdb", pdb(&cloud(50, 9_000, 51)));
+    set_modified(&files[0], past(0) - Duration::from_secs(1));
     let cut = folder.path("out/more/1abc.pdb.spm");
     let whole = fs::read(&cut).unwrap();
     fs::write(&cut, &whole[..whole.len() - 8]).unwrap();
@@ -204,6 +214,8 @@ fn what_is_done_is_not_done_again() {
     assert_eq!(rows.number(rows.of_file("bad.pdb"), "atoms"), 12.0);
     assert_eq!(modified(&folder.path("out/2abc.spm")), past(5));
     assert!(modified(&folder.path("out/in/1abc.pdb.spm")) > past(9));
+    let alone = run("tess3", &[&files[0]], &[]);
+    assert!(fs::read(folder.path("out/in/1abc.pdb.spm")).unwrap() == alone.stdout);
 
     // With other flags, all outputs are outdated.
     let (code, message) = sweep(&folder, &["--resume", "--atoms", "ca"], &files);
@@ -259,6 +271,129 @@ fn models_are_meshes_of_their_own() {
     let mut atoms: Vec<f64> = (0..4).map(|row| rows.number(row, "atoms")).collect();
     atoms.sort_unstable_by(f64::total_cmp);
     assert_eq!(atoms, [20.0, 20.0, 30.0, 30.0]);
+}
+
+/// Replaces fields of the summary.
+fn edit(folder: &Folder, from: &str, to: &str) {
+    let path = folder.path("out/summary.tsv");
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.contains(from), "{text}");
+    fs::write(&path, text.replace(from, to)).unwrap();
+}
+
+#[test]
+fn the_summary_says_what_was_read_and_what_made_it() {
+    let (folder, files) = files();
+    assert_eq!(sweep(&folder, &[], &files).0, Some(0));
+    let rows = summary(&folder);
+    for file in &files {
+        let row = rows.of_file(file);
+        let content = fs::read(file).unwrap();
+        assert_eq!(rows.number(row, "input_bytes") as usize, content.len());
+        let sha256 = data_encoding::HEXLOWER.encode(&Sha256::digest(&content));
+        assert_eq!(rows.text(row, "input_sha256"), sha256);
+        let since = modified(file).duration_since(SystemTime::UNIX_EPOCH).unwrap();
+        let time = format!("{}.{:09}", since.as_secs(), since.subsec_nanos());
+        assert_eq!(rows.text(row, "input_modified"), time);
+        assert_eq!(rows.text(row, "version"), env!("CARGO_PKG_VERSION"));
+    }
+    // Outputs of another version are made again.
+    edit(&folder, concat!("\t", env!("CARGO_PKG_VERSION"), "\t"), "\t0.0.9\t");
+    assert!(sweep(&folder, &["--resume"], &files).1.contains("3 files done;"));
+    assert!(sweep(&folder, &["--resume"], &files).1.contains("0 files done, 3 had been done before"));
+    edit(&folder, "\tinput_sha256", "");
+    let (code, message) = sweep(&folder, &["--resume"], &files);
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("without --resume"), "{message}");
+}
+
+#[test]
+fn a_file_that_fails_now_leaves_no_earlier_output() {
+    for resume in [&["--resume"][..], &[]] {
+        let folder = Folder::new();
+        let text = models(&[cloud(20, 9_000, 1), cloud(30, 9_000, 2)]);
+        let nmr = folder.write("nmr.pdb", &text);
+        let one = folder.write("one.pdb", pdb(&cloud(15, 9_000, 3)));
+        let files = [nmr, one];
+        let flags: Vec<&str> = ["--model", "all"].iter().chain(resume).copied().collect();
+        assert_eq!(sweep(&folder, &flags, &files).0, Some(0));
+        assert_eq!(sweep(&folder, &["--contacts", "--summary", &folder.path("c.tsv")], &files).0, Some(0));
+        let tables = ["nmr.contacts.tsv", "one.contacts.tsv"];
+        let names = |rest: &[&str]| {
+            let mut names: Vec<&str> = tables.iter().chain(rest).copied().collect();
+            names.sort_unstable();
+            names.into_iter().map(str::to_string).collect::<Vec<_>>()
+        };
+        let all = ["nmr.model1.spm", "nmr.model2.spm", "one.model1.spm", "summary.tsv"];
+        assert_eq!(folder.names("out"), names(&all));
+        // One model less, and no atoms.
+        folder.write("nmr.pdb", &text[..text.find("ENDMDL").unwrap() + 7]);
+        folder.write("one.pdb", "ATOM  none\n");
+        let (code, message) = sweep(&folder, &flags, &files);
+        assert_eq!(code, Some(1), "{message}");
+        assert_eq!(folder.names("out"), names(&["nmr.model1.spm", "summary.tsv"]));
+    }
+}
+
+#[test]
+fn warnings_are_in_the_summary() {
+    let folder = Folder::new();
+    let flat = folder.write("flat.xyz", "0 0 0\n4 0 0\n0 4 0\n4 4 0\n4 4 0\n");
+    assert_eq!(sweep(&folder, &[], &[flat]).0, Some(0));
+    let rows = summary(&folder);
+    let expected =
+        "1 of 5 points coincides with an earlier one; no tetrahedra: all points in a plane (5 points)";
+    assert_eq!(rows.text(0, "warnings"), expected);
+}
+
+#[test]
+fn two_sweeps_keep_out_of_each_others_folder() {
+    let (folder, files) = files();
+    assert_eq!(sweep(&folder, &[], &files).0, Some(0));
+    let path = |name: &str| fs::File::open(folder.path(name)).unwrap();
+    for name in ["out", "out/summary.tsv"] {
+        let held = path(name);
+        rustix::fs::flock(&held, rustix::fs::FlockOperation::LockExclusive).unwrap();
+        let (code, message) = sweep(&folder, &["--resume"], &files);
+        assert_eq!(code, Some(2), "{message}");
+        assert!(message.contains("another sweep"), "{message}");
+        drop(held);
+        assert_eq!(sweep(&folder, &["--resume"], &files).0, Some(0));
+    }
+    // Many at the same time: those that are let in lose no row of each other.
+    let out = folder.path("many");
+    let starts: Vec<_> = (0..12)
+        .map(|_| start("tess3", &["--out-dir", &out, "--resume", &files[0], &files[1]], Stdio::null()))
+        .collect();
+    let ends: Vec<_> = starts.into_iter().map(|child| outcome(&child.wait_with_output().unwrap())).collect();
+    assert!(ends.iter().any(|(code, _)| *code == Some(0)), "{ends:?}");
+    assert!(ends.iter().all(|(code, _)| matches!(code, Some(0 | 2))), "{ends:?}");
+    let rows = Rows::new(&fs::read_to_string(folder.path("many/summary.tsv")).unwrap());
+    assert_eq!(rows.len(), 2);
+}
+
+#[test]
+fn summaries_are_json_lines_if_their_name_says_so() {
+    let (folder, files) = files();
+    let path = folder.path("s.jsonl");
+    let json = ["--summary", &path[..], "--resume"];
+    let bad = folder.write("in/bad.pdb", "ATOM  none\n");
+    let all: Vec<String> = files.iter().chain([&bad]).cloned().collect();
+    assert_eq!(sweep(&folder, &json, &all).0, Some(1));
+    let (code, message) = sweep(&folder, &json, &files);
+    assert_eq!(code, Some(0), "{message}");
+    assert!(message.contains("3 had been done before"), "{message}");
+    assert_eq!(sweep(&folder, &[], &files).0, Some(0));
+    let rows = summary(&folder);
+    let text = fs::read_to_string(&path).unwrap();
+    assert_eq!(text.lines().count(), 3);
+    for line in text.lines() {
+        let object: serde_json::Value = serde_json::from_str(line).unwrap();
+        let row = rows.of_file(object["file"].as_str().unwrap());
+        assert_eq!(object["tetrahedra"].as_f64().unwrap(), rows.number(row, "tetrahedra"));
+        assert_eq!(object["input_sha256"].as_str().unwrap(), rows.text(row, "input_sha256"));
+        assert!(object["error"].is_null() && object["seconds"].is_number());
+    }
 }
 
 #[test]

@@ -9,23 +9,7 @@ use spmesh_tess3::{Arithmetic, Method, Report, Stats};
 /// Notices about a model, usually none.
 pub(super) fn degeneracy(report: &Report, models: usize) -> Vec<String> {
     let which = if models > 1 { format!("model {}: ", report.model) } else { String::new() };
-    let mut texts = Vec::new();
-    let merged = report.atoms - report.vertices;
-    if merged > 0 {
-        let verb = if merged == 1 { "coincides" } else { "coincide" };
-        texts.push(format!("{which}{merged} of {} points {verb} with an earlier one", report.atoms));
-    }
-    let missing = report.rounding.missing;
-    if missing > 0 && report.hull_facets > 0 {
-        let message = "points are in no tetrahedron: rounding in floating-point arithmetic left them out";
-        texts.push(format!("{which}{missing} of {} {message}", report.vertices));
-    }
-    if report.hull_facets == 0 {
-        let reason =
-            if report.vertices < 4 { "fewer than four different points" } else { "all points in a plane" };
-        texts.push(format!("{which}no tetrahedra: {reason} ({} points)", report.atoms));
-    }
-    texts
+    report.warnings().into_iter().map(|text| format!("{which}{text}")).collect()
 }
 
 /// Prints what `--stats` asks for.

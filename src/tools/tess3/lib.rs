@@ -88,6 +88,28 @@ impl Report {
     fn new(model: i64, atoms: usize) -> Self {
         Report { model, atoms: atoms as u64, ..Report::default() }
     }
+
+    /// What a user may not expect of the model, in sentences; usually nothing.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let mut texts = Vec::new();
+        let merged = self.atoms - self.vertices;
+        if merged > 0 {
+            let verb = if merged == 1 { "coincides" } else { "coincide" };
+            texts.push(format!("{merged} of {} points {verb} with an earlier one", self.atoms));
+        }
+        let missing = self.rounding.missing;
+        if missing > 0 && self.hull_facets > 0 {
+            let message = "points are in no tetrahedron: rounding in floating-point arithmetic left them out";
+            texts.push(format!("{missing} of {} {message}", self.vertices));
+        }
+        if self.hull_facets == 0 {
+            let few = self.vertices < 4;
+            let reason = if few { "fewer than four different points" } else { "all points in a plane" };
+            texts.push(format!("no tetrahedra: {reason} ({} points)", self.atoms));
+        }
+        texts
+    }
 }
 
 /// Rounding errors in a triangulation in floating-point arithmetic.

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::Sweep;
-use super::summary::{DoneFile, Line, Written};
+use super::done::DoneFile;
+use super::input::Input;
+use super::summary::{Line, Written};
 use crate::heap::peak_during;
 use crate::{ModelName, Product, Report, job};
 use spmesh_core::error::{Error, ErrorKind, Result};
@@ -21,12 +23,15 @@ pub(super) struct Job<'f> {
     pub(super) file: &'f Path,
     /// Name of the output without its extension, relative to the folder of outputs.
     pub(super) stem: PathBuf,
+    /// Outputs of an earlier sweep of this file.
+    pub(super) outputs: Vec<PathBuf>,
 }
 
 /// The result of a job.
 #[derive(Debug)]
 pub(super) struct End {
     pub(super) result: Result<Vec<Model>>,
+    input: Option<Input>,
     time: Duration,
     peak_memory: Option<u64>,
 }
@@ -37,17 +42,20 @@ pub(super) struct Model {
     pub(super) report: Report,
     output: PathBuf,
     bytes: u64,
+    warnings: Vec<String>,
 }
 
 impl End {
     /// The lines of the summary: one per model, or one for the failure.
-    pub(super) fn lines<'l>(&'l self, file: &'l Path, options: &'l str) -> Vec<Line<'l>> {
-        let line = |time, result| Line { file, options, time, peak_memory: self.peak_memory, result };
+    pub(super) fn lines<'l>(&'l self, file: &'l Path, sweep: &'l Sweep) -> Vec<Line<'l>> {
+        let (options, version) = (&sweep.options_text[..], &sweep.version[..]);
+        let (peak_memory, input) = (self.peak_memory, self.input.as_ref());
+        let line = |time, result| Line { file, options, version, time, peak_memory, input, result };
         match &self.result {
             Err(error) => vec![line(self.time, Err(error))],
             Ok(models) => {
-                let written = models.iter().map(|Model { report, output, bytes }| {
-                    line(report.times.total(), Ok(Written { report, output, bytes: *bytes }))
+                let written = models.iter().map(|Model { report, output, bytes, warnings }| {
+                    line(report.times.total(), Ok(Written { report, output, bytes: *bytes, warnings }))
                 });
                 written.collect()
             }
@@ -69,15 +77,40 @@ fn check_free(output: &Path, taken: &Inputs) -> Result<()> {
     Err(Error::usage(message).of_input(output.display().to_string()))
 }
 
-/// Triangulates a file. A panic is an error of this file.
+/// Triangulates a file. A panic is an error of this file. Outputs of an earlier sweep are removed if they are
+/// not replaced.
 pub(super) fn run(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> End {
     let started = Instant::now();
+    let input = Input::of(job.file).ok().flatten();
     let (result, peak_memory) = peak_during(|| guarded(|| triangulate(job, sweep, taken)));
     let result = result.unwrap_or_else(|panic| {
         let message = format!("internal error: {panic}; please report it with the file");
         Err(Error::new(ErrorKind::Io, message).of_input(job.file.display().to_string()))
     });
-    End { result, time: started.elapsed(), peak_memory }
+    let result = remove_stale(job, sweep, taken, &result).and(result);
+    End { result, input, time: started.elapsed(), peak_memory }
+}
+
+/// Removes outputs of this kind that an earlier sweep made of a file and this one did not.
+fn remove_stale(job: &Job<'_>, sweep: &Sweep, taken: &Inputs, result: &Result<Vec<Model>>) -> Result<()> {
+    let made: Vec<&Path> = result.iter().flatten().map(|model| &*model.output).collect();
+    let product = sweep.options.product;
+    let usual = output_name(&job.stem, product, None);
+    let of_kind = |output: &&PathBuf| output.to_string_lossy().ends_with(ending(product));
+    for output in job.outputs.iter().chain(result.is_err().then_some(&usual)).filter(of_kind) {
+        let path = sweep.folder.join(output);
+        if made.contains(&&**output) || taken.at(&path).is_some() {
+            continue;
+        }
+        match fs::remove_file(&path) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                let name = path.display().to_string();
+                return Err(Error::io("removing the output of an earlier sweep", e).of_input(name));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model>> {
@@ -85,6 +118,7 @@ fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model
     let structure = read_structure(job.file, sweep.format)?;
     let read = started.elapsed();
     let has_distinct_numbers = has_distinct_numbers(&structure);
+    let mut of_file = structure.warnings.clone();
     let mut outputs: Vec<PathBuf> = Vec::new();
     let mut open = |model: Option<ModelName>| {
         let model = model.filter(|_| sweep.options.selection.models == Models::All);
@@ -106,7 +140,10 @@ fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model
         let length = fs::metadata(&path).map(|metadata| metadata.len());
         let bytes =
             length.map_err(|e| Error::io("looking at the output", e).of_input(path.display().to_string()))?;
-        models.push(Model { report, output, bytes });
+        // Those of the file are in the first row.
+        let mut warnings = std::mem::take(&mut of_file);
+        warnings.extend(report.warnings());
+        models.push(Model { report, output, bytes, warnings });
     }
     Ok(models)
 }
@@ -123,30 +160,31 @@ fn output_name(stem: &Path, product: Product, model: Option<i64>) -> PathBuf {
     if let Some(number) = model.filter(|_| product == Product::Mesh) {
         name.push(format!(".model{number}"));
     }
-    name.push(match product {
+    name.push(ending(product));
+    name.into()
+}
+
+fn ending(product: Product) -> &'static str {
+    match product {
         Product::Mesh => ".spm",
         Product::Tetrahedra => ".tetrahedra.tsv",
         Product::Contacts => ".contacts.tsv",
-    });
-    name.into()
+    }
 }
 
 fn create_folder_of(path: &Path) -> Result<()> {
     path.parent().map_or(Ok(()), create_folder)
 }
 
-/// Whether the outputs that an earlier run made of a file still exist, are complete, and are not older than
-/// the file.
+/// Whether the outputs that an earlier run made of a file still exist and are complete, and the file has not
+/// changed.
 pub(super) fn is_still_there(file: &Path, done: &DoneFile, folder: &Path) -> bool {
-    let changed = |path: &Path| fs::metadata(path).and_then(|metadata| metadata.modified()).ok();
-    let input_changed = changed(file);
-    done.outputs.iter().all(|(output, bytes)| {
+    let is_complete = |output: &Path, bytes: u64| -> std::io::Result<bool> {
         let path = folder.join(output);
-        let is_complete = || -> std::io::Result<bool> {
-            let mut output = File::open(&path)?;
-            let is_mesh = path.extension().is_some_and(|extension| extension == "spm");
-            Ok(output.metadata()?.len() == *bytes && (!is_mesh || ends_with_end(&mut output)?))
-        };
-        is_complete().unwrap_or(false) && input_changed <= changed(&path)
-    })
+        let mut file = File::open(&path)?;
+        let is_mesh = path.extension().is_some_and(|extension| extension == "spm");
+        Ok(file.metadata()?.len() == bytes && (!is_mesh || ends_with_end(&mut file)?))
+    };
+    done.outputs().all(|(output, bytes)| is_complete(&output, bytes).unwrap_or(false))
+        && done.input().is_some_and(|input| input.is_still(file))
 }

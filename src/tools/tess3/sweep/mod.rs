@@ -1,28 +1,33 @@
 //! Triangulates many files in parallel. Each file becomes an output and a line of the summary. A file that
 //! fails becomes a line too, and the others continue.
 
+mod done;
 mod file;
+mod input;
+mod lock;
 mod names;
+mod row;
 mod summary;
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use super::{Options, Stats};
+use done::{Done, DoneFile};
 use file::Job;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::{Output, create_folder};
 use spmesh_core::parallel;
 use spmesh_core::places::{Inputs, check_apart};
 use spmesh_io::source::structure::Format;
-use summary::{Done, Summary};
+use summary::Summary;
 
 /// Options of a sweep.
 #[derive(Debug, Clone)]
 pub struct Sweep {
-    /// The files; duplicates are done once.
+    /// The files, each of them once.
     pub files: Vec<PathBuf>,
     /// The file that lists them, if there is one; no output may replace it.
     pub list: Option<PathBuf>,
@@ -34,7 +39,10 @@ pub struct Sweep {
     pub options_text: String,
     /// Folder of the outputs.
     pub folder: PathBuf,
-    /// Where the summary goes; "-" is stdout.
+    /// The version of the program; outputs that another one made are made again.
+    pub version: String,
+    /// Where the summary goes; "-" is stdout. If its name ends in `.jsonl` or `.ndjson`, it is written as JSON
+    /// Lines.
     pub summary: PathBuf,
     /// Number of files in parallel.
     pub threads: usize,
@@ -70,39 +78,55 @@ pub enum News<'n> {
 
 /// Triangulates all files, the largest first, and reports each to `listener`.
 ///
+/// A file that fails leaves no output of an earlier sweep behind, nor does one that now has fewer models.
+///
 /// Memory: one file per thread, and the names of all.
 ///
 /// # Errors
-/// Usage, before any work, if an output would replace an input; if the folder or the summary cannot be
-/// written, or the summary to resume is malformed. With `strict`, the error of the first file that fails;
-/// otherwise failures are counted.
+/// Usage, before any work, if a file is given twice, an output would replace an input, or another sweep writes
+/// to the folder or the summary; if the folder or the summary cannot be written, or the summary to resume is
+/// malformed. With `strict`, the error of the first file that fails; otherwise failures are counted.
 pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcome> {
     let folder = &sweep.folder;
-    let inputs: Vec<&Path> = sweep.files.iter().chain(&sweep.list).map(PathBuf::as_path).collect();
+    let files: Vec<&Path> = sweep.files.iter().map(PathBuf::as_path).collect();
+    check_distinct(&files)?;
+    let inputs: Vec<&Path> = files.iter().copied().chain(sweep.list.as_deref()).collect();
     check_apart(inputs.iter().copied(), &[("--summary", &sweep.summary)])?;
     create_folder(folder)?;
-    let mut done = if sweep.resume { Done::read(&sweep.summary)? } else { Done::default() };
+    let _folder_lock = lock::lock(folder)?;
+    let summary_file = file_of(&sweep.summary);
+    let mut earlier = match summary_file.filter(|path| path.exists()) {
+        Some(path) => {
+            let _lock = lock::lock(path)?;
+            Done::read(path)
+        }
+        None => Ok(Done::default()),
+    };
+    let mut done =
+        if sweep.resume { std::mem::replace(&mut earlier, Ok(Done::default()))? } else { Done::default() };
+    // Without --resume, an earlier summary only says what is there, and any other file may be in its place.
+    let mut earlier = earlier.unwrap_or_default();
     let mut outcome = Outcome::default();
-    let mut seen = HashSet::new();
-    let files: Vec<&Path> =
-        sweep.files.iter().filter(|&file| seen.insert(file)).map(PathBuf::as_path).collect();
     listener(News::Files(files.len() as u64));
-    let files = left_to_do(files, &mut done, sweep, &mut |_| {
+    let files = left_to_do(files, &mut done, sweep, &mut || {
         outcome.skipped += 1;
         listener(News::Done);
     });
+    let files = files.into_iter().map(|(file, known)| (file, known.or_else(|| earlier.take(file)))).collect();
     let jobs = jobs(files, &done);
     // Not an input, but it must not be replaced either.
-    let taken = Inputs::of(inputs.into_iter().chain(file_of(&sweep.summary)));
+    let taken = Inputs::of(inputs.into_iter().chain(summary_file));
     jobs.iter().try_for_each(|job| file::check(job, sweep, &taken))?;
     check_folder(folder)?;
+    let replaced_lock = summary_file.map_or(Ok(None), lock::lock_or_create)?;
     let mut summary = Summary::create(&sweep.summary, &done)?;
+    drop(replaced_lock);
     let work = |job: &Job<'_>| match file::run(job, sweep, &taken) {
         end if sweep.strict && end.result.is_err() => ControlFlow::Break(end),
         end => ControlFlow::Continue(end),
     };
     parallel::for_each_result(sweep.threads, &jobs, work, |job, end| {
-        summary.add(end.lines(job.file, &sweep.options_text))?;
+        summary.add(&end.lines(job.file, sweep))?;
         match end.result {
             Ok(written) => {
                 outcome.done += 1;
@@ -121,6 +145,23 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     Ok(outcome)
 }
 
+/// # Errors
+/// Usage, if two names are those of one file, as far as the names alone tell.
+fn check_distinct(files: &[&Path]) -> Result<()> {
+    let mut places: HashMap<PathBuf, &Path> = HashMap::new();
+    for &file in files {
+        let place = if file == Path::new("-") { Ok(file.to_path_buf()) } else { std::path::absolute(file) };
+        let place = place.unwrap_or_else(|_| file.to_path_buf());
+        if let Some(other) = places.insert(place, file) {
+            let also = if other == file { String::new() } else { format!(", also as {}", other.display()) };
+            let message =
+                format!("the file is given twice{also}: leave one out (sort -u removes equal lines)");
+            return Err(Error::usage(message).of_input(file.display().to_string()));
+        }
+    }
+    Ok(())
+}
+
 /// The path, unless it is that of stdout.
 fn file_of(path: &Path) -> Option<&Path> {
     (path != Path::new("-")).then_some(path)
@@ -134,21 +175,20 @@ fn check_folder(folder: &Path) -> Result<()> {
 /// Estimated ratio of decompression.
 const GZIP_FACTOR: u64 = 4;
 
-/// The files that are not done yet; `skip` is called for the others.
+/// The files that are not done yet, with what is known of them; `skip` is called for the others.
 fn left_to_do<'f>(
     files: Vec<&'f Path>,
     done: &mut Done,
     sweep: &Sweep,
-    skip: &mut dyn FnMut(&Path),
-) -> Vec<&'f Path> {
+    skip: &mut dyn FnMut(),
+) -> Vec<(&'f Path, Option<DoneFile>)> {
     let mut left = Vec::new();
     for file in files {
-        let found = done.file(file, &sweep.options_text);
+        let found = done.file(file, &sweep.options_text, &sweep.version);
         if found.is_some_and(|found| file::is_still_there(file, found, &sweep.folder)) {
-            skip(file);
+            skip();
         } else {
-            done.forget(file);
-            left.push(file);
+            left.push((file, done.take(file)));
         }
     }
     left
@@ -156,10 +196,14 @@ fn left_to_do<'f>(
 
 /// The jobs, the largest file first: otherwise threads could idle while one works on the largest file at the
 /// end.
-fn jobs<'f>(files: Vec<&'f Path>, done: &Done) -> Vec<Job<'f>> {
-    let stems = names::stems(&files, &done.stems());
-    let mut jobs: Vec<(u64, Job<'f>)> =
-        files.into_iter().zip(stems).map(|(file, stem)| (work(file), Job { file, stem })).collect();
+fn jobs<'f>(files: Vec<(&'f Path, Option<DoneFile>)>, done: &Done) -> Vec<Job<'f>> {
+    let paths: Vec<&Path> = files.iter().map(|(file, _)| *file).collect();
+    let stems = names::stems(&paths, &done.stems());
+    let job = |((file, known), stem): ((&'f Path, Option<DoneFile>), PathBuf)| {
+        let outputs = known.iter().flat_map(DoneFile::outputs).map(|(output, _)| output);
+        (work(file), Job { file, stem, outputs: outputs.filter(|output| done::is_inside(output)).collect() })
+    };
+    let mut jobs: Vec<(u64, Job<'f>)> = files.into_iter().zip(stems).map(job).collect();
     jobs.sort_by_key(|(work, _)| std::cmp::Reverse(*work));
     jobs.into_iter().map(|(_, job)| job).collect()
 }

@@ -1,35 +1,30 @@
-//! The summary of a sweep: a line per mesh, or per file that failed. `--resume` reads it to find the files
+//! The summary of a sweep: a row per mesh, or per file that failed. `--resume` reads it to find the files
 //! that are done.
 
-use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
+use super::done::Done;
+use super::input::Input;
+use super::lock::{Lock, lock};
+use super::row::{Format, Row};
 use crate::Report;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 
-const COLUMNS: &str = "file\tmodel\tatoms\tunique_points\ttetrahedra\thull_facets\tseconds\tpeak_memory_bytes\t\
-                       output\toutput_bytes\toptions\terror";
-
-/// Number of columns, and indices of some of them.
-const WIDTH: usize = 12;
-const FILE: usize = 0;
-const OUTPUT: usize = 8;
-const OUTPUT_BYTES: usize = 9;
-const OPTIONS: usize = 10;
-const ERROR: usize = 11;
-
-/// The data of a line.
+/// The data of a row.
 #[derive(Debug)]
 pub(super) struct Line<'l> {
     pub(super) file: &'l Path,
     pub(super) options: &'l str,
+    pub(super) version: &'l str,
     pub(super) time: Duration,
     /// Peak memory for the file in bytes, if it was measured.
     pub(super) peak_memory: Option<u64>,
+    /// The file as it was read, if it is a regular one.
+    pub(super) input: Option<&'l Input>,
     pub(super) result: std::result::Result<Written<'l>, &'l Error>,
 }
 
@@ -40,158 +35,64 @@ pub(super) struct Written<'l> {
     /// Path of the output, relative to the folder of outputs.
     pub(super) output: &'l Path,
     pub(super) bytes: u64,
+    pub(super) warnings: &'l [String],
 }
 
 impl Line<'_> {
-    fn print(&self, text: &mut String) {
-        let peak_memory = self.peak_memory.map_or(String::new(), |bytes| bytes.to_string());
-        let seconds = format!("{:.6}", self.time.as_secs_f64());
-        let mut fields: [String; WIDTH] = Default::default();
-        fields[FILE] = escaped(&self.file.to_string_lossy());
-        fields[6..8].clone_from_slice(&[seconds, peak_memory]);
-        fields[OPTIONS] = escaped(self.options);
+    fn row(&self) -> Row {
+        let mut row = Row::default();
+        row.set("file", self.file.to_string_lossy());
+        row.set("options", self.options);
+        row.set("version", self.version);
+        row.set("seconds", format!("{:.6}", self.time.as_secs_f64()));
+        row.set("peak_memory_bytes", self.peak_memory.map_or(String::new(), |bytes| bytes.to_string()));
+        if let Some(Input { bytes, modified, sha256 }) = self.input {
+            row.set("input_bytes", bytes.to_string());
+            row.set("input_modified", modified);
+            row.set("input_sha256", sha256);
+        }
         match &self.result {
-            Ok(Written { report, output, bytes }) => {
+            Ok(Written { report, output, bytes, warnings }) => {
                 let Report { model, atoms, vertices, tetrahedra, hull_facets, .. } = report;
-                fields[1] = model.to_string();
-                for (field, count) in fields[2..6].iter_mut().zip([atoms, vertices, tetrahedra, hull_facets])
-                {
-                    *field = count.to_string();
-                }
-                fields[OUTPUT] = escaped(&output.to_string_lossy());
-                fields[OUTPUT_BYTES] = bytes.to_string();
+                row.set("model", model.to_string());
+                row.set("atoms", atoms.to_string());
+                row.set("unique_points", vertices.to_string());
+                row.set("tetrahedra", tetrahedra.to_string());
+                row.set("hull_facets", hull_facets.to_string());
+                row.set("output", output.to_string_lossy());
+                row.set("output_bytes", bytes.to_string());
+                row.set("warnings", warnings.join("; "));
             }
-            Err(error) => fields[ERROR] = escaped(&error.to_string()),
+            Err(error) => row.set("error", error.to_string()),
         }
-        *text += &fields.join("\t");
-        text.push('\n');
+        row
     }
 }
 
-/// Escapes tabs and line breaks, so that the text fits a field.
-fn escaped(text: &str) -> String {
-    text.replace('\\', "\\\\").replace('\t', "\\t").replace('\n', "\\n").replace('\r', "\\r")
-}
-
-/// The files that an earlier run has done, with their lines; files that failed are left out.
-#[derive(Debug, Default)]
-pub(super) struct Done {
-    by_file: HashMap<String, DoneFile>,
-}
-
-/// A file that is done.
-#[derive(Debug, Default)]
-pub(super) struct DoneFile {
-    lines: Vec<String>,
-    options: String,
-    /// Outputs with their lengths in bytes.
-    pub(super) outputs: Vec<(PathBuf, u64)>,
-}
-
-impl Done {
-    /// Reads the summary of an earlier run; empty if there is none. An incomplete last line is ignored.
-    ///
-    /// # Errors
-    /// If the file cannot be read, or is not a summary.
-    pub(super) fn read(path: &Path) -> Result<Done> {
-        let name = path.display();
-        let text = match fs::read(path) {
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Done::default()),
-            other => other.map_err(|e| Error::io("reading the summary", e).of_input(name.to_string()))?,
-        };
-        let text = String::from_utf8_lossy(&text);
-        let complete = text.rfind('\n').map_or("", |end| &text[..end]);
-        let mut lines = complete.lines();
-        if lines.next().is_some_and(|columns| columns != COLUMNS) {
-            let message = "not a summary of tess3: its first line has other columns";
-            return Err(Error::usage(message).of_input(name.to_string()));
-        }
-        let mut done = Done::default();
-        for line in lines {
-            done.add(line);
-        }
-        done.by_file.retain(|_, file| !file.outputs.is_empty());
-        Ok(done)
-    }
-
-    fn add(&mut self, line: &str) {
-        let fields: Vec<&str> = line.split('\t').collect();
-        if fields.len() != WIDTH {
-            return;
-        }
-        let file = self.by_file.entry(fields[FILE].to_string()).or_default();
-        let Ok(bytes) = fields[OUTPUT_BYTES].parse() else { return };
-        file.options = fields[OPTIONS].to_string();
-        file.outputs.push((unescaped(fields[OUTPUT]).into(), bytes));
-        file.lines.push(line.to_string());
-    }
-
-    /// The file, if it is done with the same options.
-    pub(super) fn file(&self, path: &Path, options: &str) -> Option<&DoneFile> {
-        let file = self.by_file.get(&escaped(&path.to_string_lossy()))?;
-        (file.options == escaped(options)).then_some(file)
-    }
-
-    /// Removes a file, which will be done again.
-    pub(super) fn forget(&mut self, path: &Path) {
-        self.by_file.remove(&escaped(&path.to_string_lossy()));
-    }
-
-    /// Names of all outputs, without one, two, ... of their extensions.
-    pub(super) fn stems(&self) -> HashSet<PathBuf> {
-        let outputs = self.by_file.values().flat_map(|file| &file.outputs);
-        let stems = outputs.flat_map(|(output, _)| {
-            std::iter::successors(Some(output.with_extension("")), |stem| {
-                stem.extension().map(|_| stem.with_extension(""))
-            })
-        });
-        stems.collect()
-    }
-
-    fn lines(&self) -> Vec<&str> {
-        let mut lines: Vec<&str> =
-            self.by_file.values().flat_map(|file| &file.lines).map(|line| &line[..]).collect();
-        lines.sort_unstable();
-        lines
-    }
-}
-
-fn unescaped(text: &str) -> String {
-    let mut plain = String::with_capacity(text.len());
-    let mut rest = text.chars();
-    while let Some(next) = rest.next() {
-        plain.push(match next {
-            '\\' => match rest.next() {
-                Some('t') => '\t',
-                Some('n') => '\n',
-                Some('r') => '\r',
-                other => other.unwrap_or('\\'),
-            },
-            other => other,
-        });
-    }
-    plain
-}
-
-/// The summary while it is written. Each file's lines are there as soon as the file is done.
+/// The summary while it is written. Each file's rows are there as soon as the file is done.
 pub(super) struct Summary {
     name: String,
+    format: Format,
     output: Box<dyn Write + Send>,
     text: String,
+    /// Keeps other sweeps out.
+    _lock: Option<Lock>,
 }
 
 impl Summary {
-    /// Begins a summary with the lines of what was done before; "-" is stdout.
+    /// Begins a summary with the rows of what was done before; "-" is stdout.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If it cannot be written, or another sweep writes it.
     pub(super) fn create(path: &Path, done: &Done) -> Result<Summary> {
+        let format = Format::of(path);
         let mut summary = Summary {
             name: path.display().to_string(),
+            format,
             output: Box::new(std::io::sink()),
-            text: String::new(),
+            text: std::iter::once(format.head()).chain(done.lines(format)).collect(),
+            _lock: None,
         };
-        summary.text = std::iter::once(COLUMNS).chain(done.lines()).flat_map(|line| [line, "\n"]).collect();
         if path == Path::new("-") {
             summary.output = Box::new(Output::create(path, false)?);
             summary.name = "stdout".into();
@@ -203,17 +104,19 @@ impl Summary {
             let file = fs::OpenOptions::new().append(true).open(path).map_err(|e| summary.failed(e))?;
             summary.output = Box::new(file);
             summary.text.clear();
+            // Another sweep may have locked the new file already: then it goes on, and this one does not.
+            summary._lock = lock(path)?;
         }
         summary.flush()?;
         Ok(summary)
     }
 
-    /// Adds the lines of a file, in one piece.
+    /// Adds the rows of a file, in one piece.
     ///
     /// # Errors
     /// If they cannot be written.
-    pub(super) fn add(&mut self, lines: Vec<Line<'_>>) -> Result<()> {
-        lines.iter().for_each(|line| line.print(&mut self.text));
+    pub(super) fn add(&mut self, lines: &[Line<'_>]) -> Result<()> {
+        lines.iter().for_each(|line| self.text += &self.format.line(&line.row()));
         self.flush()
     }
 
