@@ -372,3 +372,38 @@ fn points_on_shores_are_dropped_too() {
     let inside: Vec<i64> = found.iter().filter(is_in).map(|vertex| vertex[2]).collect();
     assert_eq!(inside, [3; 4]);
 }
+
+#[test]
+fn rings_across_a_shore_are_named_or_level_with_it() {
+    let folder = Folder::new();
+    let water = folder.write("water.geojson", WATER);
+    let ring = "[[5,40],[33,40],[33,66],[45,95],[5,95],[5,40]]";
+    let hull = folder.write("hull.geojson", format!(r#"{{"type":"Polygon","coordinates":[{ring}]}}"#));
+    let all = points();
+    let points = text(&all);
+    // The levels of the vertices that the hull adds to the shore, and the messages of spconstrain.
+    let run_with = |more: &[&str], densify: &[&str]| {
+        let flags = [&SCALE[..], &["--flatten", &water, "--quiet"], more, &["-"]].concat();
+        let stream = run("spfinalize", &flags, points.as_bytes()).stdout;
+        let mesh = run("spdelaunay2d", &[], &stream).stdout;
+        let arguments = [&["--lines", &water, "--hull", &hull], densify].concat();
+        let constrained = run("spconstrain", &arguments, &mesh);
+        let (code, messages) = outcome(&constrained);
+        assert_eq!(code, Some(0), "{messages}");
+        let places = vertices(&constrained.stdout);
+        let lake = at(&places, [2000, 6000]);
+        let is_point = |place: &[i64; 3]| all.iter().any(|point| point[..2] == place[..2]);
+        let is_shore = |place: &&[i64; 3]| {
+            distance(&LAKE, [place[0] as f64 / 100.0, place[1] as f64 / 100.0]) < 0.02 && !is_point(place)
+        };
+        let shore: Vec<i64> = places.iter().filter(is_shore).map(|place| place[2] - lake).collect();
+        (shore, messages)
+    };
+    let (shore, messages) = run_with(&[], &[]);
+    assert!(shore.len() > LAKE.len() && shore.iter().any(|&above| above != 0), "{shore:?}");
+    assert!(messages.contains("4 vertices that divide lines"), "{messages}");
+    assert!(run_with(&[], &["--densify", "3"]).1.contains("vertices that divide lines"));
+    let (shore, messages) = run_with(&["--lines", &hull], &[]);
+    assert!(shore.len() > LAKE.len() && shore.iter().all(|&above| above == 0), "{shore:?}");
+    assert!(!messages.contains("that divide lines"), "{messages}");
+}

@@ -73,7 +73,7 @@ pub struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// Keep only what is inside of these polygons, of any format of lines. May be given several times
+    /// Keep only what is inside of these polygons (GeoJSON, Shapefile or GeoPackage). May be given several times
     #[arg(long, value_name = "FILE")]
     hull: Vec<PathBuf>,
 
@@ -137,6 +137,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if stats.open_segments > 0 {
         flags.notice(&about_open(&stats));
     }
+    if stats.draped > 0 {
+        flags.notice(&about_draped(&stats));
+    }
     if stats.divided > 0 {
         flags.notice(&about_divided(&stats, flags.lines.densify));
     }
@@ -156,6 +159,16 @@ fn about_open(stats: &Stats) -> String {
     )
 }
 
+/// The notice about vertices that do not have the elevation of their line.
+fn about_draped(stats: &Stats) -> String {
+    format!(
+        "{} vertices that divide lines between vertices of the mesh took the elevation of the surface: shores \
+         of water are not level there. Give spfinalize the same lines and --densify, and the polygons of \
+         --hull and --holes as --lines",
+        stats.draped
+    )
+}
+
 /// The notice about triangles that rings divide.
 fn about_divided(stats: &Stats, densify: Option<f64>) -> String {
     let remedy = match densify {
@@ -169,7 +182,7 @@ fn about_divided(stats: &Stats, densify: Option<f64>) -> String {
     )
 }
 
-fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 17] {
+fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 18] {
     [
         ("triangles read", "triangles_read", stats.triangles[0]),
         ("triangles written", "triangles", stats.triangles[1]),
@@ -183,6 +196,7 @@ fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 17] 
         ("segments that were cut off", "cut_segments", stats.cut_segments),
         ("line vertices in the mesh", "vertices_found", stats.found),
         ("line vertices added", "vertices_added", stats.added),
+        ("line vertices off their line", "vertices_draped", stats.draped),
         ("line vertices outside", "vertices_outside", stats.outside),
         ("elevations taken from lines", "raised", stats.raised),
         ("input (bytes)", "input_bytes", input_bytes),

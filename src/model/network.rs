@@ -31,14 +31,16 @@ pub struct NetworkSegment {
     pub ends: [u32; 2],
     /// Number of the line in the file; the least of those that have this segment in common.
     pub line: u32,
+    /// Whether a line states elevations along it: at both ends of a part of which this segment is a piece.
+    pub is_hard: bool,
 }
 
 impl Network {
-    /// The elevations that lines state at the ends of a segment, if they do at both.
+    /// The elevations of the ends of a segment, if a line states elevations along it.
     #[must_use]
-    pub fn elevations(&self, segment: u32) -> Option<[f64; 2]> {
-        let [a, b] = self.segments[segment as usize].ends.map(|end| self.vertices[end as usize].z);
-        a.zip(b).map(<[f64; 2]>::from)
+    pub fn elevations(&self, segment: &NetworkSegment) -> Option<[f64; 2]> {
+        let [a, b] = segment.ends.map(|end| self.vertices[end as usize].z);
+        a.zip(b).map(<[f64; 2]>::from).filter(|_| segment.is_hard)
     }
 
     /// The places of the ends of a segment.
@@ -51,10 +53,16 @@ impl Network {
 /// The elevation at a place on an edge, between those of its ends. The lexicographically lesser end comes
 /// first, so that the direction does not matter.
 #[must_use]
-pub fn elevation_between([a, b]: [Point2; 2], [low, high]: [f64; 2], place: Point2) -> f64 {
+pub fn elevation_between([a, b]: [Point2; 2], elevations: [f64; 2], place: Point2) -> f64 {
     let difference = |to: Point2| [to[0] - a[0], to[1] - a[1]];
     let (whole, part) = (difference(b), difference(place));
     let axis = usize::from(whole[1].abs() > whole[0].abs());
+    elevation_at(part[axis] / whole[axis], elevations)
+}
+
+/// The elevation at a part of the way between two ends.
+#[must_use]
+pub fn elevation_at(part: f64, [low, high]: [f64; 2]) -> f64 {
     // Rounding must not lead beyond both ends: it could leave the box of the mesh.
-    (low + (high - low) * (part[axis] / whole[axis])).clamp(low.min(high), low.max(high))
+    (low + (high - low) * part).clamp(low.min(high), low.max(high))
 }

@@ -64,21 +64,24 @@ impl Scene {
         let mut segments: Vec<NetworkSegment> = (0..)
             .zip(&self.segments)
             .map(|(line, ends)| {
+                let is_hard = ends.iter().all(|&end| is_hard(end));
                 let mut ends = ends.map(number);
                 ends.sort_unstable();
-                NetworkSegment { ends, line }
+                NetworkSegment { ends, line, is_hard }
             })
             .collect();
         segments.sort_unstable_by_key(|segment| segment.ends);
         Network { vertices: used.iter().map(vertex).collect(), segments }
     }
 
-    /// Whether a place is on a segment of the network with elevations at both ends.
+    /// Whether a place is within three quarters of a step of a segment of the network with elevations.
     pub fn is_amid_hard(&self, place: [i64; 2], network: &Network) -> bool {
-        network.segments.iter().any(|segment| {
-            let ends = segment.ends.map(|end| &network.vertices[end as usize]);
-            ends.iter().all(|end| end.z.is_some())
-                && is_on(ends.map(|end| end.place.map(|c| c as i64)), place)
+        let hard = network.segments.iter().filter(|segment| segment.is_hard);
+        hard.map(|segment| network.places(segment).map(|end| end.map(|c| c as i128))).any(|[a, b]| {
+            let minus = |p: [i128; 2]| [p[0] - a[0], p[1] - a[1]];
+            let ([dx, dy], [x, y]) = (minus(b), minus(place.map(i128::from)));
+            let (square, along, across) = (dx * dx + dy * dy, dx * x + dy * y, dx * y - dy * x);
+            (0..=square).contains(&along) && 16 * across * across <= 9 * square
         })
     }
 

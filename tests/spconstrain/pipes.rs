@@ -151,6 +151,72 @@ fn along_line(moved: f64) {
     }
 }
 
+/// Elevations of points of a grid of 11 by 11 after lines, at 20 before. `unit` is the distance of points.
+fn elevations(unit: &str, lines: &str, flags: [&[&str]; 2], places: &[[u32; 2]]) -> Vec<f64> {
+    let folder = Folder::new();
+    let unit: f64 = unit.parse().unwrap();
+    let name = |[x, y]: [u32; 2]| format!("{} {}", f64::from(x) * unit, f64::from(y) * unit);
+    let grid = (0..11).flat_map(|x| (0..11).map(move |y| [x, y]));
+    folder.file("points.txt", grid.map(|place| name(place) + " 20\n").collect::<String>());
+    folder.file("lines.txt", lines);
+    let [points, lines] = ["points.txt", "lines.txt"].map(|name| folder.path(name));
+    let both = [&["--lines", &lines], flags[1]].concat();
+    let points = output("spfinalize", &[&[&points[..]], flags[0], &both].concat(), &[]);
+    let mesh = output("spconstrain", &both, &triangulated(&points));
+    audit(&mesh);
+    let text = String::from_utf8(output("spconvert", &["--to", "text"], &mesh)).unwrap();
+    let rows: Vec<[f64; 3]> = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("v "))
+        .map(|line| line.split(' ').take(3).map(|word| word.parse().unwrap()).collect::<Vec<f64>>())
+        .map(|row| [row[0], row[1], row[2]])
+        .collect();
+    let z_of = |&[x, y]: &[u32; 2]| {
+        let [x, y] = [x, y].map(|c| f64::from(c) * unit);
+        let row = rows.iter().find(|row| (row[0] - x).abs() < 1e-9 && (row[1] - y).abs() < 1e-9);
+        (row.unwrap_or_else(|| panic!("no vertex at {x} {y}: {text}"))[2] * 1e6).round() / 1e6
+    };
+    places.iter().map(z_of).collect()
+}
+
+#[test]
+fn lines_without_elevations_leave_points_alone() {
+    // Between crossings with hard lines, too, and up to an end without an elevation.
+    let lines = "line 2 0 100 2 10 100\nline 8 0 300 8 10 300\nsoft 0 5 10 5\n";
+    let on_soft = [[3, 5], [5, 5], [7, 5]];
+    let lines_to_nan = "line 2 0 100 2 10 nan\nline 0 8 300 9 8 300\n";
+    for scale in [&[][..], &["--scale", "0.1,0.1,0.1"]] {
+        assert_eq!(elevations("1", lines, [scale, &[]], &on_soft), [20.0; 3]);
+        assert_eq!(
+            elevations("1", lines_to_nan, [scale, &[]], &[[2, 1], [2, 5], [2, 7], [4, 8]])[..3],
+            [20.0; 3]
+        );
+    }
+}
+
+#[test]
+fn points_on_lines_take_their_elevation_in_spite_of_rounding() {
+    // Decimals that f64 does not represent.
+    let lines = "line 0.1 0.1 100 0.7 0.4 160\nline 0.1 0.9 300 0.9 0.5 300\n";
+    let places = [[3, 2], [5, 3], [3, 8], [5, 7], [7, 6], [4, 4]];
+    let expected = [120.0, 140.0, 300.0, 300.0, 300.0, 20.0];
+    for scale in [&[][..], &["--scale", "0.1,0.1,0.01"]] {
+        assert_eq!(elevations("0.1", lines, [scale, &[]], &places), expected);
+    }
+    // Crossings and divided parts are rounded, and bend the line.
+    let places = [[2, 2], [4, 3], [6, 4], [8, 5], [8, 6]];
+    let expected = [100.0, 100.0, 100.0, 100.0, 20.0];
+    let scale = &["--scale", "0.01,0.01,0.01"][..];
+    for scale in [&[][..], scale] {
+        let crossed = "line 0 1 100 10 6 100\nsoft 1 6 8 1\n";
+        assert_eq!(elevations("1", crossed, [scale, &[]], &places), expected);
+        for densify in ["0.7", "3"] {
+            let line = "line 0 1 100 10 6 100\n";
+            assert_eq!(elevations("1", line, [scale, &["--densify", densify]], &places), expected);
+        }
+    }
+}
+
 #[test]
 fn segments_that_leave_the_mesh_are_named() {
     let folder = Folder::new();

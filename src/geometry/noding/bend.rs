@@ -54,6 +54,7 @@ struct Piece {
     ends: [u32; 2],
     line: u32,
     is_shared: bool,
+    is_hard: bool,
 }
 
 struct Bends {
@@ -94,7 +95,8 @@ impl Bends {
         cover.find(&self.nodes, chain, parts);
         for (ends, piece) in chain.windows(2).zip(&cover.pieces) {
             let ends = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-            self.pieces.push(Piece { ends, line: piece.line, is_shared: piece.is_shared });
+            let &super::cover::Piece { line, is_shared, is_hard } = piece;
+            self.pieces.push(Piece { ends, line, is_shared, is_hard });
         }
         let last = chain.len() - 1;
         for (index, &node) in chain[..last].iter().enumerate().skip(1) {
@@ -174,7 +176,8 @@ impl Bends {
         let mut segments = Vec::with_capacity(pieces.len());
         for same in pieces.chunk_by(|a, b| a.ends == b.ends) {
             let Piece { ends, line, .. } = same[0];
-            segments.push(NetworkSegment { ends, line });
+            let is_hard = same.iter().any(|piece| piece.is_hard);
+            segments.push(NetworkSegment { ends, line, is_hard });
             if same.len() > 1 || same[0].is_shared {
                 note(NodingChange::Overlap, line, self.nodes.places[ends[0] as usize]);
             }

@@ -11,6 +11,7 @@ mod bits;
 mod cells;
 mod circle;
 mod cut;
+mod draped;
 mod held;
 mod leaving;
 mod near;
@@ -58,6 +59,9 @@ pub struct Stats {
     pub found: u64,
     /// Vertices of the network that were added to the mesh.
     pub added: u64,
+    /// Of these, vertices that took the elevation of the surface, though they divide a part of a line between
+    /// two vertices that the mesh had.
+    pub draped: u64,
     /// Vertices of the network outside of the mesh.
     pub outside: u64,
     /// Vertices of the mesh that took the elevation of a line.
@@ -102,7 +106,7 @@ pub fn constrain<R: Read, W: Write>(
     let compressed = options.compress;
     let header = Header { compressed, constrained, ..header_of(reader.header(), network) };
     let mut filter = Filter {
-        lines: Lines::new(network),
+        lines: Lines::new(network, &coordinates),
         rings: Rings::new(areas, network.segments.len()),
         holding: Holding::default(),
         live: LiveVertices::new(),
@@ -110,6 +114,7 @@ pub fn constrain<R: Read, W: Write>(
         coordinates,
         numbers: Vec::new(),
         open: Vec::new(),
+        soft: Vec::new(),
         stats: Stats { segments: network.segments.len() as u64, ..Stats::default() },
     };
     while let Some(event) = reader.next_event()? {
@@ -162,6 +167,8 @@ struct Filter<'n, W: Write> {
     numbers: Vec<Option<u32>>,
     /// Segments that are not wholly edges.
     open: Vec<u32>,
+    /// Vertices of the network that were added without an elevation of their own.
+    soft: Vec<u32>,
 }
 
 impl<W: Write> Filter<'_, W> {
@@ -197,7 +204,7 @@ impl<W: Write> Filter<'_, W> {
                     self.stats.found += 1;
                     self.lines.network.vertices[vertex as usize].z
                 }
-                None => self.lines.elevation_amid(place).map(|z| self.coordinates.rounded(z)),
+                None => self.lines.elevation_near(place).map(|z| self.coordinates.rounded(z)),
             };
             if let Some(z) = z.filter(|&z| z != point[2]) {
                 point[2] = z;
@@ -251,6 +258,9 @@ impl<W: Write> Filter<'_, W> {
         self.stats.strips += 1;
         self.stats.added += strip.new.len() as u64;
         self.open.extend(&strip.open);
+        let network = self.lines.network;
+        let is_soft = |vertex: &u32| network.vertices[*vertex as usize].z.is_none();
+        self.soft.extend(strip.new.iter().map(|(vertex, _)| *vertex).filter(is_soft));
         let ids: Vec<u64> = strip.corners.iter().map(|&corner| self.holding.vertex(corner).id).collect();
         let mut finalized = Vec::new();
         for corner in triangles.iter().flat_map(|held| held.corners) {
@@ -275,6 +285,7 @@ impl<W: Write> Filter<'_, W> {
         let is_open = |ends: [u32; 2]| is_empty || ends.into_iter().any(is_outside);
         let outside = (0..).zip(&network.segments).filter(|(_, segment)| is_open(segment.ends));
         self.open.extend(outside.map(|(number, _)| number));
+        self.stats.draped = draped::count(network, self.soft, &self.lines.found, self.lines.step);
         self.stats.outside = network.vertices.len() as u64 - self.stats.found - self.stats.added;
         self.stats.held_max = self.holding.triangles_max as u64;
         self.writing.end(self.open, points + self.stats.added, merged, self.stats)

@@ -200,7 +200,7 @@ impl Work {
         pairs.dedup();
         let parts = pairs.chunk_by(|a, b| a[0] == b[0]).map(|pairs| {
             let segment = pairs[0][0];
-            let is_hard = lines.network.elevations(segment).is_some();
+            let is_hard = lines.network.segments[segment as usize].is_hard;
             Part { segment, on: pairs.iter().map(|pair| pair[1]).collect(), is_hard }
         });
         let mut parts: Vec<Part> = parts.collect();
