@@ -67,6 +67,27 @@ fn lines(random: &mut Random) -> Vec<Vec<Place>> {
         .collect()
 }
 
+/// Checks along which segments lines state elevations, if they do so at some of their vertices.
+fn check_elevations(random: &mut Random, lines: &[Vec<Place>]) {
+    let mut vertex = |&place: &Place| LineVertex { place, z: (random.below(3) > 0).then_some(1.0) };
+    let stated: Vec<Vec<LineVertex>> =
+        lines.iter().map(|line| line.iter().map(&mut vertex).collect()).collect();
+    let (noded, _) = node_vertices(&stated, &OPTIONS);
+    let place = |end: u32| noded.vertices[end as usize].place;
+    let segments = noded.segments.iter().filter(|segment| segment.is_hard);
+    let found: BTreeSet<[Place; 2]> = segments.map(|segment| segment.ends.map(place)).collect();
+    // Each part as a line of its own: those with elevations at both ends have the least numbers.
+    let width = |line: &Vec<LineVertex>| line.len().min(2);
+    let windows = stated.iter().flat_map(|line| line.windows(width(line)));
+    let (hard, soft): (Vec<_>, Vec<_>) =
+        windows.partition(|part| part.len() == 2 && part.iter().all(|vertex| vertex.z.is_some()));
+    let places = |part: &&[LineVertex]| part.iter().map(|vertex| vertex.place).collect();
+    let parts: Vec<Vec<Place>> = hard.iter().chain(&soft).map(places).collect();
+    let (_, segments) = snap_round(&parts);
+    let expected = segments.into_iter().filter(|&(_, number)| number < hard.len()).map(|(ends, _)| ends);
+    assert_eq!(found, expected.collect(), "{stated:?}");
+}
+
 #[test]
 fn small_sets_are_noded_as_defined() {
     check_small_sets(20_261_125, 4_000);
@@ -90,6 +111,7 @@ fn check_small_sets(seed: u64, cases: u32) {
         for (index, &one) in all.iter().enumerate() {
             assert!(all[..index].iter().all(|&other| are_noded(one, other)), "case {case}: {lines:?}");
         }
+        check_elevations(&mut random, &lines);
     }
 }
 

@@ -101,7 +101,7 @@ fn a_file_that_is_given_twice_is_refused_before_the_work() {
     let list = folder.write("list", files.join("\n"));
     let again = files[1].replace("/in/", "/in/./");
     for twice in [&files[1], &again] {
-        let (code, message) = sweep(&folder, &["--lof", &list], &[twice.clone()]);
+        let (code, message) = sweep(&folder, &["--lof", &list], std::slice::from_ref(twice));
         assert_eq!(code, Some(2), "{message}");
         assert!(message.contains("2abc.ent") && message.contains("given twice"), "{message}");
     }

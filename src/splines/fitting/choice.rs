@@ -228,7 +228,9 @@ impl<S: FnMut(f64) -> Result<f64>> Walk<S> {
                 self.trials.push(Trial { lambda, score });
                 return score;
             }
-            Ok(_) => Error::usage("there are no more observations than effective coefficients"),
+            Ok(_) => Error::usage(
+                "there are no more observations than effective coefficients: give fewer knots, or a number as --lambda",
+            ),
             Err(error) => error,
         };
         self.failed.push(FailedTrial { lambda, reason: error.to_string() });

@@ -72,14 +72,17 @@ pub enum Smoothing {
 /// The default number of folds.
 const FOLDS: usize = 5;
 
+/// Folds at most: each of them takes the time and memory of a fit.
+const FOLDS_MAX: usize = 100;
+
 impl FromStr for Smoothing {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Smoothing, String> {
         match text.split_once(':') {
             Some(("cv", folds)) => match folds.parse() {
-                Ok(folds) if folds >= 2 => Ok(Smoothing::Folds(folds)),
-                _ => Err(format!("{folds:?} folds: expected an integer above one")),
+                Ok(folds) if (2..=FOLDS_MAX).contains(&folds) => Ok(Smoothing::Folds(folds)),
+                _ => Err(format!("{folds:?} folds: expected an integer from 2 to {FOLDS_MAX}")),
             },
             _ if text == "cv" => Ok(Smoothing::Folds(FOLDS)),
             _ if text == "reml" => Ok(Smoothing::Likelihood),
