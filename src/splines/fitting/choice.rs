@@ -229,7 +229,8 @@ impl<S: FnMut(f64) -> Result<f64>> Walk<S> {
                 return score;
             }
             Ok(_) => Error::usage(
-                "there are no more observations than effective coefficients: give fewer knots, or a number as --lambda",
+                "there are no more observations than effective coefficients: give fewer knots, or a \
+                 number as --lambda",
             ),
             Err(error) => error,
         };
