@@ -46,7 +46,7 @@ fn names_are_escaped() {
     assert!(code == Some(2) && !message.contains(is_obeyed), "{message}");
     let file = folder.write(HOSTILE, "1 2\n");
     let out = folder.path("out");
-    for arguments in [&["--out-dir", &out, &missing, &file][..], &["--out-dir", &out, "--stats", &file]] {
+    for arguments in [&["--out-dir", &out, &file][..], &["--out-dir", &out, "--stats", &file]] {
         let (code, message) = outcome(&run("tess3", arguments, &[]));
         assert!(code == Some(1) && message.contains(SHOWN) && !message.contains(is_obeyed), "{message}");
     }

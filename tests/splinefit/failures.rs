@@ -16,7 +16,7 @@ fn each_failure_has_its_exit_code() {
         (folder.write("line.txt", "0 0\n1 1\n2 2\n3 3\n"), folder.write("far.txt", "0 0\n1e6 0\n0 1e6\n"));
     let pairs = folder.write("pairs.txt", "1 2\n");
     let plane = points(500, 1, plane);
-    let cases: [(&[&str], &[u8], i32, &str); 29] = [
+    let cases: [(&[&str], &[u8], i32, &str); 30] = [
         (&["fit", "no/such/file"], b"", 1, "no/such/file"),
         (&["fit"], b"", 3, "stdin: empty"),
         (&["fit"], b"0 0 1\n1 x 2\n", 3, "stdin: line 2"),
@@ -28,7 +28,8 @@ fn each_failure_has_its_exit_code() {
         (&["fit", "--max-knots", "5"], plane.as_bytes(), 2, "5 knots: 29 are needed"),
         (&["fit", "--lambda", "-1"], b"", 2, "--lambda"),
         (&["fit", "--lambda=ml"], b"", 2, "expected a number that is not negative"),
-        (&["fit", "--lambda", "cv:1"], b"", 2, "above one"),
+        (&["fit", "--lambda", "cv:1"], b"", 2, "from 2 to 100"),
+        (&["fit", "--lambda", "cv:101"], b"", 2, "from 2 to 100"),
         (&["fit", "--tension", "-1"], b"", 2, "from zero on"),
         (&["fit", "--tension", "1", "--robust", "huber"], b"", 2, "--robust"),
         (&["fit", "--tension", "1", "--step", "9", "--lambda", "gcv"], plane.as_bytes(), 2, "lambda reml"),

@@ -20,7 +20,6 @@ pub(super) struct Lock {
 /// Usage, if another sweep has locked it; I/O, if it cannot be opened.
 pub(super) fn lock(path: &Path) -> Result<Option<Lock>> {
     let failed = |e| Error::io("locking it", e).of_input(path.display().to_string());
-    let is_device = |path: &Path| std::fs::metadata(path).is_ok_and(|it| !it.is_file() && !it.is_dir());
     if is_device(path) {
         return Ok(None);
     }
@@ -41,12 +40,20 @@ pub(super) fn lock(path: &Path) -> Result<Option<Lock>> {
     if is_there { Ok(Some(Lock { _file: file })) } else { Err(in_use()) }
 }
 
-/// Locks a file that may not exist yet: then it is created, without content.
+/// Locks a file that may not exist yet: then it is created, without content. `None` as for [`lock`].
 ///
 /// # Errors
 /// As [`lock`]; I/O, if it cannot be created.
 pub(super) fn lock_or_create(path: &Path) -> Result<Option<Lock>> {
+    // Opening a pipe and closing it would tell its reader that all is written.
+    if is_device(path) {
+        return Ok(None);
+    }
     let created = OpenOptions::new().append(true).create(true).open(path);
     created.map_err(|e| Error::io("creating it", e).of_input(path.display().to_string()))?;
     lock(path)
+}
+
+fn is_device(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|it| !it.is_file() && !it.is_dir())
 }

@@ -95,13 +95,10 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     create_folder(folder)?;
     let _folder_lock = lock::lock(folder)?;
     let summary_file = file_of(&sweep.summary);
-    let mut earlier = match summary_file.filter(|path| path.exists()) {
-        Some(path) => {
-            let _lock = lock::lock(path)?;
-            Done::read(path)
-        }
-        None => Ok(Done::default()),
-    };
+    // Devices and pipes have nothing of an earlier sweep.
+    let existing = summary_file.filter(|path| path.is_file());
+    let mut summary_lock = existing.map_or(Ok(None), lock::lock)?;
+    let mut earlier = existing.map_or_else(|| Ok(Done::default()), Done::read);
     let mut done =
         if sweep.resume { std::mem::replace(&mut earlier, Ok(Done::default()))? } else { Done::default() };
     // Without --resume, an earlier summary only says what is there, and any other file may be in its place.
@@ -118,9 +115,12 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     let taken = Inputs::of(inputs.into_iter().chain(summary_file));
     jobs.iter().try_for_each(|job| file::check(job, sweep, &taken))?;
     check_folder(folder)?;
-    let replaced_lock = summary_file.map_or(Ok(None), lock::lock_or_create)?;
+    if summary_lock.is_none() {
+        summary_lock = summary_file.map_or(Ok(None), lock::lock_or_create)?;
+    }
     let mut summary = Summary::create(&sweep.summary, &done)?;
-    drop(replaced_lock);
+    // The new summary has a lock of its own.
+    drop(summary_lock);
     let work = |job: &Job<'_>| match file::run(job, sweep, &taken) {
         end if sweep.strict && end.result.is_err() => ControlFlow::Break(end),
         end => ControlFlow::Continue(end),
