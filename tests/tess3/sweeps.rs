@@ -407,3 +407,16 @@ fn threads_change_nothing_of_what_is_written() {
     assert_eq!(outputs[0], outputs[1]);
     assert_eq!(outputs[0], outputs[2]);
 }
+
+#[test]
+fn named_pipes_are_read_once() {
+    let folder = Folder::new();
+    let pipe = folder.path("pipe.xyz");
+    rustix::fs::mkfifoat(rustix::fs::CWD, &pipe, rustix::fs::Mode::RUSR | rustix::fs::Mode::WUSR).unwrap();
+    let child = start("tess3", &["--out-dir", &folder.path("out"), &pipe], Stdio::null());
+    fs::write(&pipe, "0 0 0\n4 0 0\n0 4 0\n0 0 4\n").unwrap();
+    let (code, message) = outcome(&child.wait_with_output().unwrap());
+    assert_eq!(code, Some(0), "{message}");
+    let rows = summary(&folder);
+    assert_eq!((rows.number(0, "atoms"), rows.text(0, "input_sha256")), (4.0, ""));
+}

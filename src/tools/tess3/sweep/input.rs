@@ -23,12 +23,13 @@ pub(super) struct Input {
 impl Input {
     /// Reads a file. `None` if it is not a regular one.
     pub(super) fn of(path: &Path) -> io::Result<Option<Input>> {
-        let mut file = File::open(path)?;
-        // Before the content: what changes while it is read has another time later.
-        let metadata = file.metadata()?;
+        // Before the content: what changes while it is read has another time later. Before it is opened: a
+        // pipe can be opened once only.
+        let metadata = fs::metadata(path)?;
         if !metadata.is_file() {
             return Ok(None);
         }
+        let mut file = File::open(path)?;
         let mut hash = Sha256::new();
         let (mut bytes, mut buffer) = (0, vec![0; BUFFER_LEN]);
         loop {
