@@ -40,9 +40,10 @@ The result is the constrained Delaunay triangulation: segments of lines are chai
 those of the Delaunay triangulation as far as no line is in the way. It depends neither on the order of points and lines \
 nor on their directions. Lines that cross, touch or overlap get common vertices on the grid of the stream.
 
-Vertices of lines that the mesh does not have are added. Where a line states an elevation, it counts, and not that of a \
-point at the same place, also amid a segment; a vertex without one takes the elevation of the surface. Parts of lines outside of the mesh are \
-left out, with a notice. Lines with elevations extend the mesh if spfinalize has them, too.
+Vertices of lines that the mesh does not have are added. Where a line states an elevation, it counts, and \
+not that of a point at the same place, also amid a segment; a vertex without one takes the elevation of the \
+surface. Parts of lines outside of the mesh are left out, with a notice. Lines with elevations extend the \
+mesh if spfinalize has them, too.
 
 Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Where a ring leaves the \
 mesh, the triangles stay whole that it divides between its last vertex inside and the border; --densify D \
@@ -50,8 +51,8 @@ makes these ways shorter than D. Points inside of holes stay vertices, without t
 triangles at edges of the border that are longer than a length, and goes on with those behind them, but \
 never across lines: a concave hull. Only triangles with such an edge wait for it.
 
-Triangles that no line changes pass at once. Memory is that of the lines, about 80 bytes a segment, and of the triangles \
-that a line changes, until the last of them has come.
+Triangles that no line changes pass at once. Memory is that of the lines, about 80 bytes a segment, and of \
+the triangles that a line changes, until the last of them has come.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
 memory, 6 input of another version of spmesh, 141 output closed by its reader.";
@@ -73,7 +74,8 @@ pub struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// Keep only what is inside of these polygons (GeoJSON, Shapefile or GeoPackage). May be given several times
+    /// Keep only what is inside of these polygons (GeoJSON, Shapefile or GeoPackage). May be given several
+    /// times
     #[arg(long, value_name = "FILE")]
     hull: Vec<PathBuf>,
 
@@ -162,9 +164,9 @@ fn about_open(stats: &Stats) -> String {
 /// The notice about vertices that do not have the elevation of their line.
 fn about_draped(stats: &Stats) -> String {
     format!(
-        "{} vertices that divide lines between vertices of the mesh took the elevation of the surface: shores \
-         of water are not level there. Give spfinalize the same lines and --densify, and the polygons of \
-         --hull and --holes as --lines",
+        "{} vertices that divide lines between vertices of the mesh took the elevation of the surface: \
+         shores of water are not level there. Give spfinalize the same lines and --densify, and the \
+         polygons of --hull and --holes as --lines",
         stats.draped
     )
 }

@@ -46,7 +46,7 @@ impl Grid {
 
     /// What to say if a coordinate is so great that its steps move other vertices.
     pub(crate) fn notice(&self) -> Option<String> {
-        let (most, step) = (self.most?, scaled(1.0, -self.digits));
+        let (most, step) = (self.most?, self.step());
         (step > 2.0 * self.move_min).then(|| {
             format!(
                 "a coordinate of lines is as great as {most:?}: lines are rounded to steps of {step:?}. If \
@@ -93,6 +93,11 @@ impl Grid {
             changes.note(ChangeKind::Rounded, line, || world);
         }
         Ok(LineVertex { place, z: z.map(|_| stored[2]) })
+    }
+
+    /// The distance of neighbours, in stored units.
+    pub(crate) fn step(&self) -> f64 {
+        scaled(1.0, -self.digits)
     }
 
     /// Stored coordinates of a place of the grid: the numbers nearest to its decimals. So a vertex is at the

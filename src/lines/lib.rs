@@ -181,5 +181,6 @@ fn stored(
 
 fn network(noded: Noded, grid: &Grid) -> Network {
     let vertex = |vertex: LineVertex| NetworkVertex { place: grid.stored(vertex.place), z: vertex.z };
-    Network { vertices: noded.vertices.into_iter().map(vertex).collect(), segments: noded.segments }
+    let vertices = noded.vertices.into_iter().map(vertex).collect();
+    Network { vertices, segments: noded.segments, step: grid.step() }
 }

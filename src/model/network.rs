@@ -13,6 +13,8 @@ pub struct Network {
     pub vertices: Vec<NetworkVertex>,
     /// In increasing order of their ends.
     pub segments: Vec<NetworkSegment>,
+    /// The distance of neighbours on the grid that places are rounded to, in stored units.
+    pub step: f64,
 }
 
 /// A place that lines share or bend at.

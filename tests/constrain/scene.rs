@@ -71,7 +71,7 @@ impl Scene {
             })
             .collect();
         segments.sort_unstable_by_key(|segment| segment.ends);
-        Network { vertices: used.iter().map(vertex).collect(), segments }
+        Network { vertices: used.iter().map(vertex).collect(), segments, step: 1.0 }
     }
 
     /// Whether a place is within three quarters of a step of a segment of the network with elevations.

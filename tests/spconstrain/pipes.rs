@@ -121,8 +121,8 @@ fn the_surface_along_a_hard_line_is_the_line() {
     along_line(0.5);
 }
 
-/// Checks the elevations of cells whose centres are on a line, among points that are moved from the corners of
-/// cells.
+/// Checks the elevations of cells whose centres are on a line, among points that are moved from the corners
+/// of cells.
 fn along_line(moved: f64) {
     let folder = Folder::new();
     let point = |x: u32, y: u32| {

@@ -106,7 +106,7 @@ pub fn constrain<R: Read, W: Write>(
     let compressed = options.compress;
     let header = Header { compressed, constrained, ..header_of(reader.header(), network) };
     let mut filter = Filter {
-        lines: Lines::new(network, &coordinates),
+        lines: Lines::new(network),
         rings: Rings::new(areas, network.segments.len()),
         holding: Holding::default(),
         live: LiveVertices::new(),
@@ -285,7 +285,7 @@ impl<W: Write> Filter<'_, W> {
         let is_open = |ends: [u32; 2]| is_empty || ends.into_iter().any(is_outside);
         let outside = (0..).zip(&network.segments).filter(|(_, segment)| is_open(segment.ends));
         self.open.extend(outside.map(|(number, _)| number));
-        self.stats.draped = draped::count(network, self.soft, &self.lines.found, self.lines.step);
+        self.stats.draped = draped::count(network, self.soft, &self.lines.found);
         self.stats.outside = network.vertices.len() as u64 - self.stats.found - self.stats.added;
         self.stats.held_max = self.holding.triangles_max as u64;
         self.writing.end(self.open, points + self.stats.added, merged, self.stats)

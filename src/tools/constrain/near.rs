@@ -5,15 +5,11 @@ use super::circle::Circle;
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
 use spmesh_model::network::{Network, elevation_at};
 use spmesh_model::points::Point2;
-use spmesh_stream::Coordinates;
 use std::cmp::Ordering;
 
-/// Points that are not farther from a segment than so many steps of the grid of lines are on it: noding moves
-/// its ends by up to half a step along each axis.
+/// Points that are not farther from a segment than so many steps of the grid of lines are on it: noding
+/// moves its ends by up to half a step along each axis.
 const NEAR: f64 = 0.75;
-
-/// The step of the grid of lines for coordinates in f64 is at most this part of their greatest magnitude.
-const STEP_OF_F64: f64 = 2.5e-12;
 
 /// A network with its cells.
 #[derive(Debug)]
@@ -25,8 +21,6 @@ pub(super) struct Lines<'n> {
     predicates: FiniteFloatPredicates,
     /// Around the present patch, all vertices within twice this distance were found. In stored units.
     margin: f64,
-    /// The step of the grid of lines in stored units, or more.
-    pub(super) step: f64,
     /// A little less than the side of a cell, in stored units.
     reach: f64,
     segments: Vec<u32>,
@@ -56,18 +50,12 @@ impl Meeting {
 }
 
 impl<'n> Lines<'n> {
-    pub(super) fn new(network: &'n Network, coordinates: &Coordinates) -> Lines<'n> {
+    pub(super) fn new(network: &'n Network) -> Lines<'n> {
         let cells = Cells::new(network);
-        let values = network.vertices.iter().flat_map(|vertex| vertex.place);
-        let step = match coordinates {
-            Coordinates::I32 { .. } => 1.0,
-            Coordinates::F64 => STEP_OF_F64 * values.fold(0.0, |most: f64, value| most.max(value.abs())),
-        };
         Lines {
             network,
             reach: 0.99 / cells.scale(),
             cells,
-            step,
             found: vec![false; network.vertices.len()],
             predicates: FiniteFloatPredicates::default(),
             margin: 0.0,
@@ -87,20 +75,21 @@ impl<'n> Lines<'n> {
 
     /// The elevation at a place that is on a segment with elevations, up to the rounding of its ends. Where
     /// several segments meet, the lowest counts.
-    pub(super) fn elevation_near(&mut self, place: Point2) -> Option<f64> {
+    pub(super) fn elevation_near(&self, place: Point2) -> Option<f64> {
         let mut bounds = CellBox::of(&[self.cells.local(place)]);
-        let reach = NEAR * self.step * self.cells.scale();
+        let (network, near) = (self.network, NEAR * self.network.step);
+        let reach = near * self.cells.scale();
         bounds.min = bounds.min.map(|x| x - reach);
         bounds.max = bounds.max.map(|x| x + reach);
         if self.cells.is_free(&bounds) {
             return None;
         }
-        let (network, near) = (self.network, NEAR * self.step);
         let mut lowest: Option<f64> = None;
         let mut visit = |number: u32| {
             let segment = &network.segments[number as usize];
             let Some(elevations) = network.elevations(segment) else { return };
-            if let Some(z) = elevation_within(network.places(segment), elevations, place, near) {
+            let foot = foot(network.places(segment), place, near).filter(|part| (0.0..=1.0).contains(part));
+            if let Some(z) = foot.map(|part| elevation_at(part, elevations)) {
                 lowest = Some(lowest.map_or(z, |lowest| lowest.min(z)));
             }
         };
@@ -271,15 +260,15 @@ impl<'n> Lines<'n> {
     }
 }
 
-/// The elevation at the foot of a place on an edge, if it is not farther away than `near`.
-fn elevation_within([a, b]: [Point2; 2], [low, high]: [f64; 2], place: Point2, near: f64) -> Option<f64> {
+/// Where the foot of a place is on the straight line through two others, as a part of the way between them,
+/// if the place is not farther from it than `near`. `None` if the two are one place.
+pub(super) fn foot([a, b]: [Point2; 2], place: Point2, near: f64) -> Option<f64> {
     let minus = |p: Point2| [p[0] - a[0], p[1] - a[1]];
     let (along, to) = (minus(b), minus(place));
     let square = along[0] * along[0] + along[1] * along[1];
-    let part = (along[0] * to[0] + along[1] * to[1]) / square;
     let across = along[0] * to[1] - along[1] * to[0];
-    let is_near = across * across <= near * near * square && (0.0..=1.0).contains(&part);
-    is_near.then(|| elevation_at(part, [low, high]))
+    let is_near = square > 0.0 && across * across <= near * near * square;
+    is_near.then(|| (along[0] * to[0] + along[1] * to[1]) / square)
 }
 
 /// Whether the diameter of the circle of a triangle is less than a length. Its square is the product of the

@@ -55,7 +55,7 @@ pub(super) fn triangulate(
     }
     if !soft.is_empty() {
         let mut parts = work.parts(triangles, lines);
-        parts.retain(|part| part.is_hard);
+        parts.retain(|part| lines.network.segments[part.segment as usize].is_hard);
         work.constrain(&parts, lines, &mut region)?;
         let elevations: Vec<f64> =
             soft.iter().map(|new| work.elevation(new, lines, &region, coordinates)).collect();
@@ -99,7 +99,6 @@ fn along_curve(mut vertices: Vec<New>, network: &Network) -> Vec<New> {
 struct Part {
     segment: u32,
     on: Vec<u32>,
-    is_hard: bool,
 }
 
 /// The order of segments by their first ends, then around these: so the next one at a vertex is found soon.
@@ -198,11 +197,9 @@ impl Work {
         }
         pairs.sort_unstable();
         pairs.dedup();
-        let parts = pairs.chunk_by(|a, b| a[0] == b[0]).map(|pairs| {
-            let segment = pairs[0][0];
-            let is_hard = lines.network.segments[segment as usize].is_hard;
-            Part { segment, on: pairs.iter().map(|pair| pair[1]).collect(), is_hard }
-        });
+        let parts = pairs
+            .chunk_by(|a, b| a[0] == b[0])
+            .map(|pairs| Part { segment: pairs[0][0], on: pairs.iter().map(|pair| pair[1]).collect() });
         let mut parts: Vec<Part> = parts.collect();
         parts.sort_by(|a, b| around(lines.network, a.segment, b.segment));
         parts

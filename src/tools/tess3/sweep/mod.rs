@@ -41,8 +41,8 @@ pub struct Sweep {
     pub folder: PathBuf,
     /// The version of the program; outputs that another one made are made again.
     pub version: String,
-    /// Where the summary goes; "-" is stdout. If its name ends in `.jsonl` or `.ndjson`, it is written as JSON
-    /// Lines.
+    /// Where the summary goes; "-" is stdout. If its name ends in `.jsonl` or `.ndjson`, it is written as
+    /// JSON Lines.
     pub summary: PathBuf,
     /// Number of files in parallel.
     pub threads: usize,
@@ -83,9 +83,10 @@ pub enum News<'n> {
 /// Memory: one file per thread, and the names of all.
 ///
 /// # Errors
-/// Usage, before any work, if a file is given twice, an output would replace an input, or another sweep writes
-/// to the folder or the summary; if the folder or the summary cannot be written, or the summary to resume is
-/// malformed. With `strict`, the error of the first file that fails; otherwise failures are counted.
+/// Usage, before any work, if a file is given twice, an output would replace an input, or another sweep
+/// writes to the folder or the summary; if the folder or the summary cannot be written, or the summary to
+/// resume is malformed. With `strict`, the error of the first file that fails; otherwise failures are
+/// counted.
 pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcome> {
     let folder = &sweep.folder;
     let files: Vec<&Path> = sweep.files.iter().map(PathBuf::as_path).collect();
@@ -98,11 +99,10 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     // Devices and pipes have nothing of an earlier sweep.
     let existing = summary_file.filter(|path| path.is_file());
     let mut summary_lock = existing.map_or(Ok(None), lock::lock)?;
-    let mut earlier = existing.map_or_else(|| Ok(Done::default()), Done::read);
-    let mut done =
-        if sweep.resume { std::mem::replace(&mut earlier, Ok(Done::default()))? } else { Done::default() };
+    let found = existing.map_or_else(|| Ok(Done::default()), Done::read);
     // Without --resume, an earlier summary only says what is there, and any other file may be in its place.
-    let mut earlier = earlier.unwrap_or_default();
+    let (mut done, mut earlier) =
+        if sweep.resume { (found?, Done::default()) } else { (Done::default(), found.unwrap_or_default()) };
     let mut outcome = Outcome::default();
     listener(News::Files(files.len() as u64));
     let files = left_to_do(files, &mut done, sweep, &mut || {
