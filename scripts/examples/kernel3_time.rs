@@ -1,7 +1,8 @@
 //! Times the 3D kernel, on one thread.
 //!
 //! `kernel3_time POINTS` is our contestant in `scripts/bench`: one run with fresh buffers. With `--parts` it
-//! also times the parts of insertions, the columns of thesis table 3.3; this takes additional time.
+//! also times the parts of insertions, the columns of thesis table 3.3; this takes additional time. With
+//! `--weighted`, each point has a fourth number, its weight.
 //! `kernel3_time POINTS ROUNDS`, for tuning, runs several rounds with the same buffers. POINTS has triples of
 //! little-endian f64; `scripts/bench` keeps its files of points in its folder.
 
@@ -19,10 +20,11 @@ use spmesh_geometry::delaunay3::{Kernel, Stats, Tetrahedralization};
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     match &words[..] {
+        [points, flag] if flag == "--weighted" => compare_weighted(read_tuples(&mut File::open(points)?)?),
         [points] => compare(read_tuples(&mut File::open(points)?)?, false),
         [points, flag] if flag == "--parts" => compare(read_tuples(&mut File::open(points)?)?, true),
         [points, rounds] => tune(&read_tuples(&mut File::open(points)?)?, rounds.parse()?),
-        _ => Err("usage: kernel3_time POINTS [ROUNDS]".into()),
+        _ => Err("usage: kernel3_time POINTS [--parts|--weighted|ROUNDS]".into()),
     }
 }
 
@@ -34,16 +36,34 @@ fn compare(points: Vec<[f64; 3]>, is_timed: bool) -> Result<(), Box<dyn Error>> 
     kernel.is_timed = is_timed;
     let (result, seconds) = timed(|| kernel.triangulate(Cow::Owned(points), &mut mesh));
     result?;
+    report(&mesh, count, seconds);
+    Ok(())
+}
+
+/// One run with weights.
+fn compare_weighted(balls: Vec<[f64; 4]>) -> Result<(), Box<dyn Error>> {
+    let count = balls.len();
+    let points = balls.iter().map(|&[x, y, z, _]| [x, y, z]).collect();
+    let weights: Vec<f64> = balls.into_iter().map(|[.., weight]| weight).collect();
+    let mut mesh = Tetrahedralization::default();
+    let (result, seconds) =
+        timed(|| Kernel::new().triangulate_weighted(Cow::Owned(points), &weights, &mut mesh));
+    result?;
+    report(&mesh, count, seconds);
+    Ok(())
+}
+
+fn report(mesh: &Tetrahedralization, count: usize, seconds: f64) {
     let tetrahedra = mesh.tetrahedra().len();
     let Stats { created, insphere_tests, order, locate, cavity, update, .. } = mesh.stats;
     let mut facts = format!("\"points\": {count}, \"tetrahedra\": {tetrahedra}, \"seconds\": {seconds:.6}");
+    facts += &format!(", \"hidden\": {}", mesh.hidden.len());
     facts += &format!(", \"created\": {created}, \"in_sphere_tests\": {insphere_tests}");
     let parts = [("order", order), ("locate", locate), ("predicates", cavity), ("update", update)];
     for (name, part) in parts {
         facts += &format!(", \"{name}_seconds\": {:.6}", part.as_secs_f64());
     }
     println!("{{{facts}}}");
-    Ok(())
 }
 
 /// Many rounds.

@@ -3,6 +3,7 @@
 mod large;
 mod promises;
 mod small;
+mod weighted;
 
 use promises::prove;
 use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};

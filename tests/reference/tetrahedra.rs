@@ -8,7 +8,7 @@
 
 use num_bigint::BigInt;
 
-use super::exact::sign;
+use super::exact::{sign, times_2_1074};
 use super::exact3::{self, ExactPoint, orientation};
 
 /// The points as integers, scaled by the power of two that makes at least one coordinate odd.
@@ -35,27 +35,35 @@ fn volume([a, b, c, d]: [&ExactPoint; 4]) -> BigInt {
     dot(&minus(b, a), &cross(&minus(c, a), &minus(d, a)))
 }
 
-/// The sphere of a positive tetrahedron. A point is inside, on or outside the sphere if `side` is positive,
-/// zero or negative.
+/// A point with its weight.
+type Weighted<'a> = (&'a ExactPoint, &'a BigInt);
+
+/// The sphere of a positive tetrahedron, with weights the orthosphere. A point is inside, on or outside the sphere
+/// if `side` is positive, zero or negative.
 struct Sphere<'a> {
     origin: &'a ExactPoint,
+    weight: &'a BigInt,
     normal: ExactPoint,
     volume: BigInt,
 }
 
 impl<'a> Sphere<'a> {
-    /// `volume * |p - a|^2 = normal * (p - a)` holds for the four points, by Cramer's rule.
-    fn of([a, b, c, d]: [&'a ExactPoint; 4]) -> Self {
-        let [b, c, d] = [b, c, d].map(|p| minus(p, a));
+    /// `volume * lift = normal * (p - a)` holds for the four points, by Cramer's rule; the lift of p is |p - a|^2,
+    /// less what p is heavier than a.
+    fn of([(a, weight), b, c, d]: [Weighted<'a>; 4]) -> Self {
+        let [over_b, over_c, over_d] = [b, c, d].map(|(p, w)| {
+            let p = minus(p, a);
+            dot(&p, &p) - w + weight
+        });
+        let [b, c, d] = [b, c, d].map(|(p, _)| minus(p, a));
         let (bc, cd, db) = (cross(&b, &c), cross(&c, &d), cross(&d, &b));
-        let (over_b, over_c, over_d) = (dot(&b, &b), dot(&c, &c), dot(&d, &d));
         let normal = [0, 1, 2].map(|i| &over_b * &cd[i] + &over_c * &db[i] + &over_d * &bc[i]);
-        Sphere { origin: a, normal, volume: dot(&b, &cd) }
+        Sphere { origin: a, weight, normal, volume: dot(&b, &cd) }
     }
 
-    fn side(&self, p: &ExactPoint) -> i32 {
+    fn side(&self, (p, weight): Weighted<'_>) -> i32 {
         let p = minus(p, self.origin);
-        sign(&(dot(&self.normal, &p) - &self.volume * dot(&p, &p)))
+        sign(&(dot(&self.normal, &p) - &self.volume * (dot(&p, &p) - weight + self.weight)))
     }
 }
 
@@ -75,8 +83,18 @@ fn tie([a, b, c, d, e]: [&ExactPoint; 5]) -> i32 {
 /// Canonical Delaunay tetrahedra of distinct points, in the form of [`as_set`]. No tetrahedra if all points
 /// lie in a plane.
 pub fn tetrahedra(points: &[[f64; 3]]) -> Vec<[u32; 4]> {
-    let exact = exact_points(points);
-    let count = points.len();
+    by_definition(&exact_points(points), &vec![BigInt::ZERO; points.len()])
+}
+
+/// Canonical regular tetrahedra of distinct points with weights, in the form of [`as_set`].
+pub fn regular(points: &[[f64; 3]], weights: &[f64]) -> Vec<[u32; 4]> {
+    // 2^1074 squared.
+    let weights: Vec<BigInt> = weights.iter().map(|&weight| times_2_1074(weight) << 1074).collect();
+    by_definition(&exact3::exact_points(points), &weights)
+}
+
+fn by_definition(exact: &[ExactPoint], weights: &[BigInt]) -> Vec<[u32; 4]> {
+    let count = exact.len();
     let mut found = Vec::new();
     for a in 0..count {
         for b in a + 1..count {
@@ -87,7 +105,7 @@ pub fn tetrahedra(points: &[[f64; 3]]) -> Vec<[u32; 4]> {
                         1 => [a, b, c, d],
                         _ => [a, b, d, c],
                     };
-                    if is_empty(&exact, positive) {
+                    if is_empty(exact, weights, positive) {
                         found.push(positive.map(|v| v as u32));
                     }
                 }
@@ -97,10 +115,11 @@ pub fn tetrahedra(points: &[[f64; 3]]) -> Vec<[u32; 4]> {
     as_set(found)
 }
 
-fn is_empty(points: &[ExactPoint], tetrahedron: [usize; 4]) -> bool {
+fn is_empty(points: &[ExactPoint], weights: &[BigInt], tetrahedron: [usize; 4]) -> bool {
     let [a, b, c, d] = tetrahedron.map(|i| &points[i]);
-    let sphere = Sphere::of([a, b, c, d]);
-    (0..points.len()).filter(|e| !tetrahedron.contains(e)).all(|e| match sphere.side(&points[e]) {
+    let sphere = Sphere::of(tetrahedron.map(|i| (&points[i], &weights[i])));
+    let others = (0..points.len()).filter(|e| !tetrahedron.contains(e));
+    others.into_iter().all(|e| match sphere.side((&points[e], &weights[e])) {
         0 => {
             let side = tie([a, b, c, d, &points[e]]);
             assert_ne!(side, 0, "the perturbation decides");

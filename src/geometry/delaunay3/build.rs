@@ -7,13 +7,15 @@ use super::insertion::{Cavity, Insertion};
 use super::lanes::Lanes;
 use super::stats::{PhaseTimer, Stats};
 use super::tetrahedralization::{Tetrahedron, Vertex};
+use super::weights::Weights;
 use crate::order::Insertions;
 use crate::predicates::{Point3, Sign};
 
 /// Tetrahedralizes distinct points, all in one arithmetic.
-pub(super) struct Build<'a> {
+pub(super) struct Build<'a, W> {
     /// The vertices, that at infinity last.
     pub(super) vertices: Vec<Vertex>,
+    pub(super) weights: W,
     /// Memory for the tetrahedra.
     pub(super) tetrahedra: Vec<Tetrahedron>,
     pub(super) cavity: &'a mut Cavity,
@@ -40,7 +42,7 @@ pub(super) enum Built {
 /// Greatest number of tetrahedra. It leaves numbers for one more star of all vertices.
 pub(super) const TETRAHEDRA_MAX: usize = (1 << 29) - 2 * MAX_POINTS;
 
-impl Build<'_> {
+impl<W: Weights> Build<'_, W> {
     /// The complex.
     ///
     /// Inlined, like everything that it calls with lanes, into one function per kind of processor.
@@ -50,8 +52,9 @@ impl Build<'_> {
             return Built::Flat(self.vertices, self.tetrahedra);
         };
         self.cavity.clear();
-        let mut insertion = Insertion::<L> {
+        let mut insertion = Insertion::<L, W> {
             complex: Complex::new(self.vertices, self.tetrahedra, first),
+            weights: &self.weights,
             predicates,
             cavity: self.cavity,
             stats: self.stats,

@@ -3,11 +3,12 @@
 use super::build::{Build, Built};
 use super::exact::Exact;
 use super::lanes::Portable;
+use super::weights::Weights;
 #[cfg(target_arch = "x86_64")]
 use {super::avx2::Avx2, crate::processor::Avx2Fma};
 
 /// Runs `build` with the widest vectors of the processor, or with portable code if the build asks for it.
-pub(super) fn run(build: Build, predicates: &mut dyn Exact) -> Built {
+pub(super) fn run<W: Weights>(build: Build<W>, predicates: &mut dyn Exact) -> Built {
     #[cfg(target_arch = "x86_64")]
     if let Some(token) = Avx2Fma::detect()
         && !build.is_portable
@@ -20,6 +21,6 @@ pub(super) fn run(build: Build, predicates: &mut dyn Exact) -> Built {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn run_avx2(build: Build, predicates: &mut dyn Exact, token: Avx2Fma) -> Built {
+fn run_avx2<W: Weights>(build: Build<W>, predicates: &mut dyn Exact, token: Avx2Fma) -> Built {
     build.run::<Avx2>(predicates, token)
 }

@@ -9,6 +9,7 @@ pub(super) trait Exact {
     fn is_integer(&self) -> bool;
     fn orient3d(&mut self, a: Point3, b: Point3, c: Point3, d: Point3) -> Sign;
     fn insphere_perturbed(&mut self, a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign;
+    fn power_side_perturbed(&mut self, abcd: [Point3; 4], e: Point3, weights: [f64; 5]) -> Sign;
     fn counts_mut(&mut self) -> &mut PredicateCounts;
 }
 
@@ -23,6 +24,10 @@ impl<P: Predicates3> Exact for P {
 
     fn insphere_perturbed(&mut self, a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign {
         Predicates3::insphere_perturbed(self, a, b, c, d, e)
+    }
+
+    fn power_side_perturbed(&mut self, abcd: [Point3; 4], e: Point3, weights: [f64; 5]) -> Sign {
+        Predicates3::power_side_perturbed(self, abcd, e, weights)
     }
 
     fn counts_mut(&mut self) -> &mut PredicateCounts {

@@ -4,13 +4,14 @@
 use super::complex::{Complex, DELETED, Facet, tetrahedron_of};
 use super::exact::Exact;
 use super::lanes::Lanes;
-use super::locate::{is_in_conflict, walk, walk_exactly};
+use super::locate::{Site, is_in_conflict, walk, walk_exactly};
 use super::star::Star;
 use super::stats::{PhaseTimer, Stats};
 use super::tetrahedralization::Vertex;
 use super::tie::{EXACT, is_inside};
 use super::translated::{InSphere, TranslatedVertex};
-use crate::predicates::{INSPHERE_SQUARED_BOUND, Point3, TINY};
+use super::weights::Weights;
+use crate::predicates::{INSPHERE_SQUARED_BOUND, POWER_SQUARED_BOUND, TINY};
 use bytemuck::cast;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
@@ -46,8 +47,9 @@ impl Cavity {
 }
 
 /// The tetrahedralization of the points inserted so far, and what inserting needs.
-pub(super) struct Insertion<'a, L: Lanes> {
+pub(super) struct Insertion<'a, L: Lanes, W> {
     pub(super) complex: Complex,
+    pub(super) weights: &'a W,
     pub(super) predicates: &'a mut dyn Exact,
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
@@ -61,21 +63,24 @@ pub(super) struct Insertion<'a, L: Lanes> {
     pub(super) token: L::Token,
 }
 
-impl<L: Lanes> Insertion<'_, L> {
+impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
     /// The complex. Adds the decisions made here to the counts of the predicates.
     pub(super) fn finish(self) -> Complex {
         self.predicates.counts_mut().filter += self.stats.insphere_tests - self.unfiltered;
         self.complex
     }
 
-    /// Inserts vertex `q`, which is not in the mesh yet; returns where to start the walk to a point nearby.
+    /// Inserts vertex `q`, which is not in the mesh yet, unless others hide it; returns where to start the walk to
+    /// a point nearby.
     ///
     /// The test of a tetrahedron is computed when its facet is queued, and used when the facet is taken from
     /// the queue, so that no test waits for the branch before it.
     #[inline(always)]
     pub(super) fn insert(&mut self, q: u32, start: u32) -> u32 {
-        let at = self.complex.point(q);
-        self.open_cavity(at, start);
+        let at = Site { at: self.complex.point(q), weight: self.weights.of(q) };
+        if let Err(hiding) = self.open_cavity(at, start) {
+            return hiding;
+        }
         let mut next = 0;
         while next < self.cavity.end {
             let facet = self.cavity.pending[next];
@@ -102,14 +107,16 @@ impl<L: Lanes> Insertion<'_, L> {
         start
     }
 
-    /// Makes a tetrahedron in conflict the whole cavity.
+    /// Makes a tetrahedron in conflict the whole cavity; returns the tetrahedron that hides the point if there is
+    /// no conflict.
     #[inline(always)]
-    fn open_cavity(&mut self, at: Point3, start: u32) {
-        let (t, translated) = self.find_conflict(at, start);
+    fn open_cavity(&mut self, at: Site, start: u32) -> Result<(), u32> {
+        let found = self.find_conflict(at, start);
         self.timer.end_phase(&mut self.stats.locate);
+        let (t, translated) = found?;
         // So that differences to it vanish.
         let infinite = self.complex.infinite();
-        self.complex.vertices[infinite as usize].at = at;
+        self.complex.vertices[infinite as usize].at = at.at;
         let corners = self.complex.corners(t);
         self.cavity.star.open(t, corners, &mut self.complex.vertices);
         self.cavity.end = 0;
@@ -127,11 +134,12 @@ impl<L: Lanes> Insertion<'_, L> {
                 Pending { value, corners, neighbour: neighbours[side], apex: apexes[side] };
         }
         self.cavity.end = 4;
+        Ok(())
     }
 
     /// Adds the tetrahedron beyond a facet to the cavity.
     #[inline(always)]
-    fn take(&mut self, at: Point3, facet: &Pending) {
+    fn take(&mut self, at: Site, facet: &Pending) {
         let [a, b, c] = facet.corners;
         let neighbours = self.complex.neighbours_behind(facet.neighbour, self.cavity.star.vertex(a));
         let apexes = neighbours.map(|facet| self.complex.opposite(facet));
@@ -169,8 +177,8 @@ impl<L: Lanes> Insertion<'_, L> {
     }
 
     #[inline(always)]
-    fn translate(&self, vertex: u32, from: Point3) -> TranslatedVertex {
-        TranslatedVertex::new(&self.complex, vertex, from, self.infinite_lift)
+    fn translate(&self, vertex: u32, from: Site) -> TranslatedVertex {
+        TranslatedVertex::new(&self.complex, self.weights, vertex, from, self.infinite_lift)
     }
 
     /// The in-sphere tests of the three tetrahedra beyond the facets dbc, adc, abd of a tetrahedron, in this
@@ -182,7 +190,7 @@ impl<L: Lanes> Insertion<'_, L> {
     /// infinity has the row (0, 0, 0, lift), which makes it the sign of a volume. The bound of the filter
     /// holds all the more.
     #[inline(always)]
-    fn values(&self, at: Point3, abc: [[f64; 4]; 3], d: [f64; 4], apexes: [u32; 3]) -> L {
+    fn values(&self, at: Site, abc: [[f64; 4]; 3], d: [f64; 4], apexes: [u32; 3]) -> L {
         let [a, b, c] = abc;
         let [px, py, pz, lift] =
             L::columns([L::new(self.token, a), L::new(self.token, b), L::new(self.token, c)]);
@@ -198,21 +206,34 @@ impl<L: Lanes> Insertion<'_, L> {
         let (n_lift, m_lift) = (lift.next(), lift.previous());
         let plus = m_lift.times_plus(dot(e, next(dp)), d_lift * dot(e, nm));
         let value = plus - n_lift.times_plus(dot(e, previous(dp)), e_lift * dot(d, nm));
-        let greatest = n_lift.greater(m_lift).greater(d_lift.greater(e_lift));
+        let p_greatest = self.greatest(p, lift);
+        let (n_greatest, m_greatest) = (p_greatest.next(), p_greatest.previous());
+        let others = self.greatest(d, d_lift).greater(self.greatest(e, e_lift));
+        let greatest = n_greatest.greater(m_greatest).greater(others);
         let square = greatest * greatest;
         let fifth = square * square * greatest;
-        let bound =
-            fifth.times_plus(L::splat(self.token, INSPHERE_SQUARED_BOUND), L::splat(self.token, TINY));
+        let bound = if W::ARE_EQUAL { INSPHERE_SQUARED_BOUND } else { POWER_SQUARED_BOUND };
+        let bound = fifth.times_plus(L::splat(self.token, bound), L::splat(self.token, TINY));
         value.where_greater(value * value, bound)
+    }
+
+    /// The greatest magnitude of a square and a lift, for the bound of the filter.
+    #[inline(always)]
+    fn greatest(&self, p: [L; 3], lift: L) -> L {
+        if W::ARE_EQUAL {
+            return lift;
+        }
+        let opposite = L::splat(self.token, 0.0) - lift;
+        dot(p, p).greater(lift.greater(opposite))
     }
 
     /// The translations of three vertices, column by column; arbitrary values for vertices of deleted
     /// tetrahedra.
     #[inline(always)]
-    fn apexes(&self, at: Point3, apexes: [u32; 3]) -> [L; 4] {
-        let infinite = self.complex.infinite();
-        let [u, v, w] =
-            apexes.map(|apex| cast::<Vertex, [f64; 4]>(self.complex.vertices[apex.min(infinite) as usize]));
+    fn apexes(&self, from: Site, apexes: [u32; 3]) -> [L; 4] {
+        let (infinite, at) = (self.complex.infinite(), from.at);
+        let apexes = apexes.map(|apex| apex.min(infinite));
+        let [u, v, w] = apexes.map(|apex| cast::<Vertex, [f64; 4]>(self.complex.vertices[apex as usize]));
         let [x, y, z, _] = L::columns([L::new(self.token, u), L::new(self.token, v), L::new(self.token, w)]);
         let (x, y, z) = (
             x - L::splat(self.token, at[0]),
@@ -220,6 +241,10 @@ impl<L: Lanes> Insertion<'_, L> {
             z - L::splat(self.token, at[2]),
         );
         let mut lift = dot([x, y, z], [x, y, z]);
+        if !W::ARE_EQUAL {
+            let [k, l, m] = apexes.map(|apex| self.weights.of(apex));
+            lift = lift - (L::new(self.token, [k, l, m, 0.0]) - L::splat(self.token, from.weight));
+        }
         if apexes.contains(&infinite) {
             let mut lifts = lift.array();
             for (lift, apex) in lifts.iter_mut().zip(apexes) {
@@ -232,15 +257,15 @@ impl<L: Lanes> Insertion<'_, L> {
 
     /// Whether the tetrahedron beyond a facet is in conflict, if the filter did not tell.
     #[inline(never)]
-    fn decide(&mut self, at: Point3, facet: &Pending) -> bool {
+    fn decide(&mut self, at: Site, facet: &Pending) -> bool {
         let vertices = facet.corners.map(|number| self.cavity.star.vertex(number));
         let [a, b, c] = vertices.map(|v| self.translate(v, at));
-        let test = InSphere::new([self.translate(facet.apex, at), a, c, b]);
-        if test.is_certain() {
+        let test = InSphere::new::<W>([self.translate(facet.apex, at), a, c, b]);
+        if test.is_certain::<W>() {
             return test.value > 0.0;
         }
         self.unfiltered += 1;
-        if self.predicates.is_integer() && test.greatest < EXACT {
+        if self.predicates.is_integer() && self.weights.are_integers() && test.greatest < EXACT {
             let infinite = self.complex.infinite();
             let is_finite = !vertices.contains(&infinite) && facet.apex != infinite;
             let counts = self.predicates.counts_mut();
@@ -254,19 +279,23 @@ impl<L: Lanes> Insertion<'_, L> {
                 return is_inside(&test);
             }
         }
-        is_in_conflict(&self.complex, tetrahedron_of(facet.neighbour), at, self.predicates)
+        is_in_conflict(&self.complex, self.weights, tetrahedron_of(facet.neighbour), at, self.predicates)
     }
 
-    /// A tetrahedron in conflict with a point, and its corners relative to the point.
+    /// A tetrahedron in conflict with a point, and its corners relative to the point; the tetrahedron that
+    /// contains the point if weights hide it.
     #[inline(always)]
-    fn find_conflict(&mut self, at: Point3, start: u32) -> (u32, [TranslatedVertex; 4]) {
-        let t = walk(&self.complex, start, at);
-        let test = InSphere::new(self.complex.corners(t).map(|v| self.translate(v, at)));
-        if test.value > 0.0 && test.is_certain() {
-            return (t, test.corners);
+    fn find_conflict(&mut self, at: Site, start: u32) -> Result<(u32, [TranslatedVertex; 4]), u32> {
+        let t = walk(&self.complex, start, at.at);
+        let test = InSphere::new::<W>(self.complex.corners(t).map(|v| self.translate(v, at)));
+        if test.value > 0.0 && test.is_certain::<W>() {
+            return Ok((t, test.corners));
         }
-        let t = walk_exactly(&self.complex, start, at, self.predicates);
-        (t, self.complex.corners(t).map(|v| self.translate(v, at)))
+        let t = walk_exactly(&self.complex, self.weights, t, at, self.predicates);
+        if !W::ARE_EQUAL && !is_in_conflict(&self.complex, self.weights, t, at, self.predicates) {
+            return Err(t);
+        }
+        Ok((t, self.complex.corners(t).map(|v| self.translate(v, at))))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::complex::{Complex, DELETED, Facet, corner, tetrahedron_of};
 use super::exact::Exact;
 use super::translated::{difference, volume};
+use super::weights::Weights;
 use crate::predicates::{Point3, Sign};
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
@@ -45,17 +46,32 @@ pub(super) fn walk(complex: &Complex, start: u32, q: Point3) -> u32 {
     tetrahedron_of(facet)
 }
 
-/// Walks from `t` to a tetrahedron in conflict with `q`, exactly. In a Delaunay tetrahedralization this walk
-/// ends.
+/// A point to be inserted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Site {
+    pub(super) at: Point3,
+    pub(super) weight: f64,
+}
+
+/// Walks from `t` to the tetrahedron that contains `q`, exactly: finite, or infinite and in conflict with it. A
+/// finite one is in conflict, too, unless weights hide the point. In a Delaunay or regular tetrahedralization
+/// this walk ends.
 #[cold]
 #[inline(never)]
-pub(super) fn walk_exactly(complex: &Complex, mut t: u32, q: Point3, predicates: &mut dyn Exact) -> u32 {
+pub(super) fn walk_exactly<W: Weights>(
+    complex: &Complex,
+    weights: &W,
+    mut t: u32,
+    q: Site,
+    predicates: &mut dyn Exact,
+) -> u32 {
     if let Some(side) = complex.hull_facet(t) {
-        if is_in_conflict(complex, t, q, predicates) {
+        if is_in_conflict(complex, weights, t, q, predicates) {
             return t;
         }
         t = tetrahedron_of(complex.neighbour(side));
     }
+    let q = q.at;
     loop {
         let vertices = complex.corners(t);
         if vertices.contains(&complex.infinite()) {
@@ -72,26 +88,40 @@ pub(super) fn walk_exactly(complex: &Complex, mut t: u32, q: Point3, predicates:
     }
 }
 
-/// Whether `q`, which is no vertex, lies in the sphere of tetrahedron `t`, ties broken by the canonical
-/// perturbation. It does if `t` is no longer there: it gave way to `q`.
+/// Whether `q`, which is no vertex, lies in the sphere of tetrahedron `t`, or with weights is in conflict with its
+/// orthosphere, ties broken by the canonical perturbation. It does if `t` is no longer there: it gave way to `q`.
 ///
 /// The sphere of an infinite tetrahedron is the open half-space beyond its facet of the hull, and what the
 /// sphere of the tetrahedron on the other side has in common with the plane between them (thesis 4.4).
 #[cold]
 #[inline(never)]
-pub(super) fn is_in_conflict(complex: &Complex, t: u32, q: Point3, predicates: &mut dyn Exact) -> bool {
+pub(super) fn is_in_conflict<W: Weights>(
+    complex: &Complex,
+    weights: &W,
+    t: u32,
+    q: Site,
+    predicates: &mut dyn Exact,
+) -> bool {
     let vertices = complex.corners(t);
     if vertices[0] == DELETED {
         return true;
     }
     let Some(side) = complex.hull_facet(t) else {
-        let [a, b, c, d] = vertices.map(|v| complex.point(v));
-        return predicates.insphere_perturbed(a, b, c, d, q) == Sign::Positive;
+        let abcd @ [a, b, c, d] = vertices.map(|v| complex.point(v));
+        let sign = if W::ARE_EQUAL {
+            predicates.insphere_perturbed(a, b, c, d, q.at)
+        } else {
+            let [k, l, m, n] = vertices.map(|v| weights.of(v));
+            predicates.power_side_perturbed(abcd, q.at, [k, l, m, n, q.weight])
+        };
+        return sign == Sign::Positive;
     };
     let [a, b, c] = TETRAHEDRON_FACETS[corner(side)].map(|i| complex.point(vertices[i]));
-    match predicates.orient3d(q, a, b, c) {
+    match predicates.orient3d(q.at, a, b, c) {
         Sign::Positive => true,
         Sign::Negative => false,
-        Sign::Zero => is_in_conflict(complex, tetrahedron_of(complex.neighbour(side)), q, predicates),
+        Sign::Zero => {
+            is_in_conflict(complex, weights, tetrahedron_of(complex.neighbour(side)), q, predicates)
+        }
     }
 }

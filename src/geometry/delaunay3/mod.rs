@@ -3,7 +3,8 @@
 //! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that
 //! each go along the curve ([`Rounds`](crate::order::Rounds)), so that the next point is near and finds small
 //! tetrahedra around it. `complex` is the data structure, `locate` the walk to the next point, `insertion`
-//! the search of the cavity, `star` what takes its place, `extract` what comes out.
+//! the search of the cavity, `star` what takes its place, `extract` what comes out. With weights the same kernel
+//! makes the regular tetrahedralization, dual to the power diagram.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -24,6 +25,7 @@ mod tests;
 mod tetrahedralization;
 mod tie;
 mod translated;
+mod weights;
 
 pub use corners::{CornerParts, Corners};
 pub use stats::Stats;
@@ -37,6 +39,7 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use std::borrow::Cow;
 use std::time::Instant;
 use tie::EXACT;
+use weights::{Equal, PerVertex, Weights};
 
 /// Greatest number of points: the words of tetrahedra, 8 for each of about 8 per point, are numbered in 32
 /// bits.
@@ -81,28 +84,67 @@ impl Kernel {
     ///
     /// Cost: O(n) for points that are spread evenly in space. Memory: about 250 bytes per point.
     pub fn triangulate(&mut self, points: Cow<[Point3]>, mesh: &mut Tetrahedralization) -> Result<()> {
-        if points.len() > MAX_POINTS {
-            let message =
-                format!("{} points in one piece, the kernel takes at most {MAX_POINTS}", points.len());
-            return Err(Error::usage(message));
-        }
-        let extent = Extent::of(&points);
-        if !extent.finite {
-            let bad = points.iter().position(|p| !p.iter().all(|c| c.is_finite())).unwrap_or_default();
-            return Err(Error::malformed(format!("coordinate is not finite: {:?}", points[bad]))
-                .at(format!("point {bad}")));
+        let extent = checked_extent(&points)?;
+        mesh.clear();
+        let started = Instant::now();
+        self.take_sorted(points, &extent, mesh);
+        self.build(&extent, Equal, started, mesh)
+    }
+
+    /// The regular tetrahedralization of `points` with `weights`, one for each: dual to the power diagram, in
+    /// which the distance of a point x from p is |x - p|^2 less the weight of p. For balls, weights are the squares
+    /// of radii.
+    ///
+    /// Points whose cell is empty are in no tetrahedron: [`Tetrahedralization::hidden`]. Of equal points the one
+    /// of greatest weight is the vertex, of these the one of least index. Ties are broken as without weights;
+    /// with equal weights the result is that of [`Kernel::triangulate`].
+    ///
+    /// # Errors
+    /// As [`Kernel::triangulate`]; also if a weight is not finite.
+    ///
+    /// Cost and memory: as without weights, and 8 bytes per point.
+    ///
+    /// # Panics
+    /// If there are more or fewer weights than points.
+    pub fn triangulate_weighted(
+        &mut self,
+        points: Cow<[Point3]>,
+        weights: &[f64],
+        mesh: &mut Tetrahedralization,
+    ) -> Result<()> {
+        assert_eq!(points.len(), weights.len(), "a weight for each point");
+        let extent = checked_extent(&points)?;
+        if let Some(bad) = weights.iter().position(|weight| !weight.is_finite()) {
+            let message = format!("weight is not finite: {}", weights[bad]);
+            return Err(Error::malformed(message).at(format!("point {bad}")));
         }
         mesh.clear();
         let started = Instant::now();
         self.take_sorted(points, &extent, mesh);
+        self.take_heaviest(weights, mesh);
+        let of_vertices = mesh.vertices.iter().map(|vertex| weights[vertex.index as usize]).collect();
+        self.build(&extent, PerVertex::new(of_vertices), started, mesh)?;
+        mesh.hidden = hidden(mesh);
+        Ok(())
+    }
+
+    /// Tetrahedralizes the vertices, which are in order.
+    fn build(
+        &mut self,
+        extent: &Extent<3>,
+        weights: impl Weights,
+        started: Instant,
+        mesh: &mut Tetrahedralization,
+    ) -> Result<()> {
         let insertions = self.insertions(&mesh.vertices);
         mesh.stats.order = started.elapsed();
         let started = Instant::now();
         // The vertex at infinity.
         mesh.vertices.push(Vertex::default());
         let build = Build {
-            infinite_lift: infinite_lift(&extent, mesh.vertices.len()),
+            infinite_lift: infinite_lift(extent, mesh.vertices.len()),
             vertices: std::mem::take(&mut mesh.vertices),
+            weights,
             tetrahedra: std::mem::take(&mut mesh.tetrahedra),
             cavity: &mut self.cavity,
             stats: &mut mesh.stats,
@@ -110,7 +152,7 @@ impl Kernel {
             is_portable: self.is_portable,
             insertions,
         };
-        (mesh.vertices, mesh.tetrahedra) = match Arithmetic3::of(&extent).run(build, &mut self.counts) {
+        (mesh.vertices, mesh.tetrahedra) = match Arithmetic3::of(extent).run(build, &mut self.counts) {
             Built::Complex(mut complex) => {
                 mesh.hull_facets = extract::extract(&mut complex);
                 (complex.vertices, complex.tetrahedra)
@@ -141,6 +183,24 @@ impl Kernel {
             match mesh.vertices.last() {
                 Some(last) if last.at == at => mesh.duplicates.push([index, last.index]),
                 _ => mesh.vertices.push(Vertex { at, index, local: 0 }),
+            }
+        }
+    }
+
+    /// Makes of equal points the heaviest the vertex.
+    fn take_heaviest(&self, weights: &[f64], mesh: &mut Tetrahedralization) {
+        // Duplicates are in the order of the vertices that stand for them.
+        let mut vertices = mesh.vertices.iter_mut();
+        for group in mesh.duplicates.chunk_by_mut(|[_, of], [_, next_of]| of == next_of) {
+            let first = group[0][1];
+            let vertex = vertices.find(|vertex| vertex.index == first).expect("a vertex for each group");
+            let heaviest = group.iter().fold(first, |heaviest, &[index, _]| {
+                if weights[index as usize] > weights[heaviest as usize] { index } else { heaviest }
+            });
+            vertex.index = heaviest;
+            for duplicate in group.iter_mut() {
+                let index = if duplicate[0] == heaviest { first } else { duplicate[0] };
+                *duplicate = [index, heaviest];
             }
         }
     }
@@ -191,7 +251,60 @@ pub fn triangulate(points: &[Point3]) -> Result<Tetrahedralization> {
     Ok(mesh)
 }
 
-impl WithPredicates3 for Build<'_> {
+/// The regular tetrahedralization of `points` with `weights`.
+///
+/// # Errors
+/// As [`Kernel::triangulate_weighted`].
+///
+/// # Panics
+/// If there are more or fewer weights than points.
+///
+/// ```
+/// use spmesh_geometry::delaunay3::triangulate_weighted;
+///
+/// let points = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0], [1.0, 1.0, 1.0]];
+/// assert_eq!(triangulate_weighted(&points, &[0.0; 5])?.simplices().count(), 4);
+/// let mesh = triangulate_weighted(&points, &[9.0, 9.0, 9.0, 9.0, 0.0])?;
+/// assert_eq!((mesh.simplices().count(), &mesh.hidden[..]), (1, &[4][..]));
+/// # Ok::<(), spmesh_core::error::Error>(())
+/// ```
+pub fn triangulate_weighted(points: &[Point3], weights: &[f64]) -> Result<Tetrahedralization> {
+    let mut mesh = Tetrahedralization::default();
+    Kernel::new().triangulate_weighted(Cow::Borrowed(points), weights, &mut mesh)?;
+    Ok(mesh)
+}
+
+/// The extent of the points.
+///
+/// # Errors
+/// If they are too many, or a coordinate is not finite.
+fn checked_extent(points: &[Point3]) -> Result<Extent<3>> {
+    if points.len() > MAX_POINTS {
+        let message = format!("{} points in one piece, the kernel takes at most {MAX_POINTS}", points.len());
+        return Err(Error::usage(message));
+    }
+    let extent = Extent::of(points);
+    if !extent.finite {
+        let bad = points.iter().position(|p| !p.iter().all(|c| c.is_finite())).unwrap_or_default();
+        return Err(Error::malformed(format!("coordinate is not finite: {:?}", points[bad]))
+            .at(format!("point {bad}")));
+    }
+    Ok(extent)
+}
+
+/// The input points of the vertices that are in no tetrahedron, if there are any tetrahedra.
+fn hidden(mesh: &Tetrahedralization) -> Vec<u32> {
+    if mesh.tetrahedra.is_empty() {
+        return Vec::new();
+    }
+    let mut is_visible = vec![false; mesh.vertices.len()];
+    let corners = mesh.tetrahedra.iter().flat_map(|tetrahedron| tetrahedron.vertices);
+    corners.for_each(|v| is_visible[v as usize] = true);
+    let hidden = mesh.vertices.iter().zip(is_visible).filter(|(_, is_visible)| !is_visible);
+    hidden.map(|(vertex, _)| vertex.index).collect()
+}
+
+impl<W: Weights> WithPredicates3 for Build<'_, W> {
     type Output = Built;
 
     fn with(self, predicates: &mut impl Predicates3) -> Built {

@@ -82,6 +82,9 @@ pub struct Tetrahedralization {
     pub(super) tetrahedra: Vec<Tetrahedron>,
     /// Input points left out because an equal one of lesser index is there: `[duplicate, the other]`.
     pub duplicates: Vec<[u32; 2]>,
+    /// Input points whose cell in the power diagram is empty, so that they are in no tetrahedron: with weights only,
+    /// and unknown if there are no tetrahedra. They are vertices still.
+    pub hidden: Vec<u32>,
     /// Number of facets of the hull.
     pub hull_facets: usize,
     /// Work and time that it took.
@@ -98,7 +101,14 @@ impl Tetrahedralization {
     ) -> Tetrahedralization {
         let sides = tetrahedra.iter().flat_map(|tetrahedron| tetrahedron.neighbours);
         let hull_facets = sides.filter(|&neighbour| neighbour == NONE).count();
-        Tetrahedralization { vertices, tetrahedra, duplicates, hull_facets, stats: Stats::default() }
+        Tetrahedralization {
+            vertices,
+            tetrahedra,
+            duplicates,
+            hidden: Vec::new(),
+            hull_facets,
+            stats: Stats::default(),
+        }
     }
 
     /// The vertices, which are the distinct points, in order along a curve.
@@ -120,6 +130,7 @@ impl Tetrahedralization {
         self.vertices.clear();
         self.tetrahedra.clear();
         self.duplicates.clear();
+        self.hidden.clear();
         self.hull_facets = 0;
         self.stats = Stats::default();
     }

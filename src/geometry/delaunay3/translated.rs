@@ -1,7 +1,9 @@
 //! Vertices in coordinates relative to the new point.
 
 use super::complex::Complex;
-use crate::predicates::{Point3, insphere_is_certain};
+use super::locate::Site;
+use super::weights::Weights;
+use crate::predicates::{Point3, insphere_is_certain, power_is_certain};
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
 /// A vertex relative to the new point.
@@ -9,19 +11,33 @@ use spmesh_model::simplex::TETRAHEDRON_FACETS;
 pub(super) struct TranslatedVertex {
     /// Difference to the new point.
     pub(super) at: Point3,
-    /// Square of the distance.
+    /// Square of the distance, less what its weight exceeds that of the new point.
     pub(super) lift: f64,
 }
 
 impl TranslatedVertex {
     /// The vertex at infinity, lifted, is the direction upwards: (0, 0, 0; any positive number).
     #[inline(always)]
-    pub(super) fn new(complex: &Complex, vertex: u32, from: Point3, infinite_lift: f64) -> TranslatedVertex {
+    pub(super) fn new<W: Weights>(
+        complex: &Complex,
+        weights: &W,
+        vertex: u32,
+        from: Site,
+        infinite_lift: f64,
+    ) -> TranslatedVertex {
         if vertex == complex.infinite() {
             return TranslatedVertex { at: [0.0; 3], lift: infinite_lift };
         }
-        let at = difference(complex.point(vertex), from);
-        TranslatedVertex { at, lift: dot(at, at) }
+        let at = difference(complex.point(vertex), from.at);
+        let square = dot(at, at);
+        let lift = if W::ARE_EQUAL { square } else { square - (weights.of(vertex) - from.weight) };
+        TranslatedVertex { at, lift }
+    }
+
+    /// The greatest magnitude of the square of the distance and the lift.
+    #[inline(always)]
+    pub(super) fn greatest<W: Weights>(&self) -> f64 {
+        if W::ARE_EQUAL { self.lift } else { dot(self.at, self.at).max(self.lift.abs()) }
     }
 }
 
@@ -53,23 +69,28 @@ pub(super) struct InSphere {
     pub(super) volumes: [f64; 4],
     /// Positive if the new point is in the sphere.
     pub(super) value: f64,
-    /// The greatest of the lifts.
+    /// The greatest magnitude of the lifts, and of the squares of distances.
     pub(super) greatest: f64,
 }
 
 impl InSphere {
     #[inline(always)]
-    pub(super) fn new(corners: [TranslatedVertex; 4]) -> InSphere {
+    pub(super) fn new<W: Weights>(corners: [TranslatedVertex; 4]) -> InSphere {
         let volumes = TETRAHEDRON_FACETS.map(|[i, j, k]| volume(corners[i].at, corners[j].at, corners[k].at));
         let terms: [f64; 4] = std::array::from_fn(|i| corners[i].lift * volumes[i]);
         let value = (terms[0] + terms[1]) + (terms[2] + terms[3]);
-        let greatest = corners.iter().fold(0.0, |g, corner| if corner.lift > g { corner.lift } else { g });
+        let larger = |g: f64, reach: f64| if reach > g { reach } else { g };
+        let greatest = corners.iter().fold(0.0, |g, corner| larger(g, corner.greatest::<W>()));
         InSphere { corners, volumes, value, greatest }
     }
 
     /// The sign of the value is that of the exact one.
     #[inline(always)]
-    pub(super) fn is_certain(&self) -> bool {
-        insphere_is_certain(self.value, self.greatest)
+    pub(super) fn is_certain<W: Weights>(&self) -> bool {
+        if W::ARE_EQUAL {
+            insphere_is_certain(self.value, self.greatest)
+        } else {
+            power_is_certain(self.value, self.greatest)
+        }
     }
 }

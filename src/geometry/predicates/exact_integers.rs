@@ -29,24 +29,25 @@ pub fn integers<const N: usize, const D: usize>(points: [[f64; D]; N]) -> [[BigI
 /// [`integers`], and the exponent of that power of two.
 #[must_use]
 pub fn integers_and_unit<const N: usize, const D: usize>(points: [[f64; D]; N]) -> ([[BigInt; D]; N], i32) {
-    let unit = unit(&points);
-    (points.map(|point| scaled(point, unit)), unit)
+    let unit = unit_of(&points);
+    (points.map(|point| integers_in(point, unit)), unit)
 }
 
 /// [`integers`] for any number of points.
 #[must_use]
 pub fn integers_of<const D: usize>(points: &[[f64; D]]) -> Vec<[BigInt; D]> {
-    let unit = unit(points);
-    points.iter().map(|&point| scaled(point, unit)).collect()
+    let unit = unit_of(points);
+    points.iter().map(|&point| integers_in(point, unit)).collect()
 }
 
-/// The least exponent of a coordinate that is not zero.
-fn unit<const D: usize>(points: &[[f64; D]]) -> i32 {
+/// The least exponent of a coordinate that is not zero; 0 if all are.
+pub(crate) fn unit_of<const D: usize>(points: &[[f64; D]]) -> i32 {
     let parts = points.iter().flatten().map(|&coordinate| decompose(coordinate));
     parts.filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0)
 }
 
-fn scaled<const D: usize>(point: [f64; D], unit: i32) -> [BigInt; D] {
+/// The coordinates in the power of two with this exponent, which is at most that of any of them.
+pub(crate) fn integers_in<const D: usize>(point: [f64; D], unit: i32) -> [BigInt; D] {
     point.map(decompose).map(|(significand, exponent)| match significand {
         0 => BigInt::ZERO,
         _ => BigInt::from(significand) << (exponent - unit) as usize,

@@ -53,7 +53,7 @@ pub(super) fn cocircular<P: Predicates2 + ?Sized>(
 /// As in the plane, the point of largest rank dominates, but a vertex does not decide if the tetrahedron with
 /// that vertex replaced by e is flat: the next rank does. It always decides. If e lay in the planes of two
 /// facets it would be on the line of the edge that these share, and on the sphere, so equal to an end of the
-/// edge.
+/// edge. With weights it may be there; then the ends of that edge decide, as it is in no third plane.
 #[inline(never)]
 pub(super) fn cospherical<P: Predicates3 + ?Sized>(
     predicates: &mut P,

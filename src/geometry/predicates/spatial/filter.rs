@@ -33,6 +33,15 @@
 //! constants are rounded up by one part in 10^4, which covers these 100 u and the roundings of both sides of
 //! the comparison.
 //!
+//! ## With weights
+//!
+//! The lift of a point is then its square less a difference w of weights. Let G be the greatest magnitude of a
+//! square or a lift; then |w| <= 2 G. A lift is off by 5 u of the square, by u |w|, and by u of itself: by at
+//! most 8 u G. Each of the four products of a lift and a determinant is off by 8 u + 8 u, and with the product
+//! itself and the 3 sums the value is off by at most 20 u * 8/sqrt(3) G^2.5. The bound has 22 instead. What is
+//! said of overflow and underflow holds with G in place of m: differences of weights do not underflow, and with
+//! integers nothing is rounded below the same limit.
+//!
 //! ## Overflow and underflow
 //!
 //! * Overflow. If the right side is infinite or a NaN, or `value` is a NaN, the comparison is false. If it is
@@ -66,6 +75,10 @@ pub(crate) const ORIENT3D_SQUARED_BOUND: f64 = 64.0 * 4.0 / 3.0 * 1.0001 * UNIT_
 /// square.
 pub(crate) const INSPHERE_SQUARED_BOUND: f64 = 289.0 * 64.0 / 3.0 * 1.0001 * UNIT_ROUNDOFF * UNIT_ROUNDOFF;
 
+/// [`power_is_certain`] if the square of the value is more than this times the fifth power of the greatest
+/// magnitude.
+pub(crate) const POWER_SQUARED_BOUND: f64 = 484.0 * 64.0 / 3.0 * 1.0001 * UNIT_ROUNDOFF * UNIT_ROUNDOFF;
+
 /// 2^-1000: added to the right side, makes the comparison false where products underflow.
 pub(crate) const TINY: f64 = f64::from_bits((1023 - 1000) << 52);
 
@@ -86,8 +99,19 @@ pub(crate) fn orient3d_is_certain(value: f64, squares: f64) -> bool {
 /// Domain: any; false where a coordinate is a NaN.
 #[inline(always)]
 pub(crate) fn insphere_is_certain(value: f64, greatest_square: f64) -> bool {
-    let square = greatest_square * greatest_square;
-    value * value > INSPHERE_SQUARED_BOUND * (square * square * greatest_square) + TINY
+    is_above(value, INSPHERE_SQUARED_BOUND, greatest_square)
+}
+
+/// The same with weights, given the greatest magnitude of a square or a lift.
+#[inline(always)]
+pub(crate) fn power_is_certain(value: f64, greatest: f64) -> bool {
+    is_above(value, POWER_SQUARED_BOUND, greatest)
+}
+
+#[inline(always)]
+fn is_above(value: f64, bound: f64, greatest: f64) -> bool {
+    let square = greatest * greatest;
+    value * value > bound * (square * square * greatest) + TINY
 }
 
 /// Square of the length.

@@ -6,6 +6,7 @@
 pub(crate) mod filter;
 mod float;
 mod integer;
+mod power;
 
 pub use float::{BoundedFloatPredicates3, FiniteFloatPredicates3};
 pub use integer::{IntegerPredicates3, SmallIntegerPredicates3, Width3};
@@ -39,6 +40,18 @@ pub trait Predicates3 {
     fn insphere_perturbed(&mut self, a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign {
         match self.insphere(a, b, c, d, e) {
             Sign::Zero => perturbation::cospherical(self, [a, b, c, d], e),
+            sign => sign,
+        }
+    }
+
+    /// Side of e against the orthosphere of a, b, c, d, given the weights of all five in this order: positive if
+    /// e is in conflict, which means that its power distance is below its weight. Ties as in
+    /// [`Predicates3::insphere_perturbed`]: never zero in its domain.
+    ///
+    /// Domain: abcd positively oriented, all five points distinct, weights finite.
+    fn power_side_perturbed(&mut self, abcd: [Point3; 4], e: Point3, weights: [f64; 5]) -> Sign {
+        match power::power_side(abcd, e, weights, self.counts_mut()) {
+            Sign::Zero => perturbation::cospherical(self, abcd, e),
             sign => sign,
         }
     }

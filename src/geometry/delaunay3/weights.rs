@@ -1,0 +1,60 @@
+//! The weights of vertices: without them the tetrahedralization is the Delaunay one, with them the regular one,
+//! dual to the power diagram.
+
+/// The weight of each vertex.
+pub(super) trait Weights {
+    /// Weights make no difference, and cost nothing.
+    const ARE_EQUAL: bool;
+
+    fn of(&self, vertex: u32) -> f64;
+
+    fn are_integers(&self) -> bool;
+}
+
+/// No weights.
+#[derive(Debug)]
+pub(super) struct Equal;
+
+impl Weights for Equal {
+    const ARE_EQUAL: bool = true;
+
+    #[inline(always)]
+    fn of(&self, _: u32) -> f64 {
+        0.0
+    }
+
+    #[inline(always)]
+    fn are_integers(&self) -> bool {
+        true
+    }
+}
+
+/// Weights by vertex, in an array of their own: that of the vertices stays as dense as without them.
+#[derive(Debug)]
+pub(super) struct PerVertex {
+    weights: Vec<f64>,
+    are_integers: bool,
+}
+
+impl PerVertex {
+    /// The weights of all vertices, that at infinity included, which has none of its own.
+    pub(super) fn new(mut weights: Vec<f64>) -> PerVertex {
+        weights.push(0.0);
+        let are_integers = weights.iter().all(|weight| weight.fract() == 0.0);
+        PerVertex { weights, are_integers }
+    }
+}
+
+impl Weights for PerVertex {
+    const ARE_EQUAL: bool = false;
+
+    #[inline(always)]
+    fn of(&self, vertex: u32) -> f64 {
+        self.weights[vertex as usize]
+    }
+
+    #[inline(always)]
+    fn are_integers(&self) -> bool {
+        self.are_integers
+    }
+}
