@@ -1,6 +1,7 @@
 //! Exact predicates, orders of insertion, and the Delaunay kernels of the plane, of space and of four
 //! dimensions.
 
+pub mod balls;
 pub mod cell_lists;
 pub mod cell_walk;
 pub mod configurations;

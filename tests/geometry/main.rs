@@ -1,5 +1,6 @@
 //! Predicates, orders and kernels against slow and plain references.
 
+mod balls;
 mod circle;
 mod configurations;
 mod constrained;

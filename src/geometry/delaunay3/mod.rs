@@ -12,6 +12,7 @@ mod build;
 mod complex;
 mod corners;
 mod dispatch;
+mod edges;
 mod exact;
 mod extract;
 mod insertion;
@@ -28,6 +29,7 @@ mod translated;
 mod weights;
 
 pub use corners::{CornerParts, Corners};
+pub use edges::Ring;
 pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
 

@@ -11,12 +11,11 @@
 //!
 //! Source: Edelsbrunner and Mücke, "Three-dimensional alpha shapes", 1994.
 
-use super::edges::Ring;
 use super::radius::Radius;
 use super::spheres::{
     edge_fits, is_in_sphere_of_edge, is_in_sphere_of_triangle, tetrahedron_fits, triangle_fits,
 };
-use spmesh_geometry::delaunay3::Tetrahedralization;
+use spmesh_geometry::delaunay3::{Ring, Tetrahedralization};
 use spmesh_geometry::predicates::Point3;
 
 /// An alpha complex of a tetrahedralization.

@@ -4,7 +4,6 @@
 //! [`run`] turns one structure into one output; [`sweep::sweep`] does so for a list of files in parallel.
 
 mod alpha;
-mod edges;
 mod exact;
 pub mod heap;
 mod job;

@@ -6,7 +6,6 @@
 use std::io::Write;
 
 use super::alpha::AlphaComplex;
-use super::edges::for_each_edge;
 use super::names::AtomNames;
 use super::number::write_number;
 use super::spheres::measure;
@@ -69,14 +68,17 @@ impl<'s> Rows<'s> {
     /// If writing fails.
     pub(super) fn write_contacts(&self, output: &mut impl Write) -> Result<()> {
         let mut rows: Vec<([u32; 2], u32)> = Vec::new();
-        for_each_edge(self.mesh, |ring| -> Result<()> {
-            if self.alpha.is_none_or(|alpha| alpha.has_edge(ring)) {
-                let is_kept = |t: u32| self.alpha.is_none_or(|alpha| alpha.has_tetrahedron(t as usize));
-                let tetrahedra = ring.tetrahedra.iter().filter(|&&t| is_kept(t)).count();
-                rows.push((self.in_order_of_input(ring.ends), tetrahedra as u32));
-            }
-            Ok(())
-        })?;
+        self.mesh.for_each_edge(
+            |_| true,
+            |ring| -> Result<()> {
+                if self.alpha.is_none_or(|alpha| alpha.has_edge(ring)) {
+                    let is_kept = |t: u32| self.alpha.is_none_or(|alpha| alpha.has_tetrahedron(t as usize));
+                    let tetrahedra = ring.tetrahedra.iter().filter(|&&t| is_kept(t)).count();
+                    rows.push((self.in_order_of_input(ring.ends), tetrahedra as u32));
+                }
+                Ok(())
+            },
+        )?;
         rows.sort_unstable();
         let mut table = Table::new(output, self);
         for (row, tetrahedra) in rows {

@@ -1,46 +1,59 @@
 //! The edges of a tetrahedralization, each once, with the tetrahedra around it.
 
-use spmesh_geometry::delaunay3::{Corner, Tetrahedralization, Tetrahedron};
+use super::tetrahedralization::{Corner, Tetrahedralization, Tetrahedron};
+use std::collections::VecDeque;
 
-/// The corners of the six edges of a tetrahedron, and the two other corners.
+/// The corners of the six edges of a tetrahedron, and the two other corners: the way from the first of them to the
+/// second turns right-handed around the edge.
 const EDGES: [([usize; 2], [usize; 2]); 6] = [
     ([0, 1], [2, 3]),
-    ([0, 2], [1, 3]),
+    ([0, 2], [3, 1]),
     ([0, 3], [1, 2]),
     ([1, 2], [0, 3]),
-    ([1, 3], [0, 2]),
+    ([1, 3], [2, 0]),
     ([2, 3], [0, 1]),
 ];
 
 /// The surroundings of an edge; reused for each edge.
 #[derive(Debug, Default)]
-pub(super) struct Ring {
+pub struct Ring {
     /// The ends: vertices of the mesh.
-    pub(super) ends: [u32; 2],
-    /// The tetrahedra around the edge.
-    pub(super) tetrahedra: Vec<u32>,
-    /// The vertices that make a triangle with the edge.
-    pub(super) link: Vec<u32>,
+    pub ends: [u32; 2],
+    /// The tetrahedra around the edge, right-handed about the way from its first end to its second. Their numbers
+    /// are those of [`Tetrahedralization::tetrahedra`].
+    pub tetrahedra: VecDeque<u32>,
+    /// The vertices that make a triangle with the edge. Tetrahedron `i` lies between vertices `i` and `i + 1`; the
+    /// first vertex follows the last unless the edge is on the hull, where there is one vertex more than
+    /// tetrahedra.
+    pub link: VecDeque<u32>,
 }
 
-/// Calls `visit` for each edge of the mesh.
-///
-/// Each tetrahedron at an edge finds it; the tetrahedron with the lowest number reports it. The search for a
-/// lower number walks in both directions alternately, so that all searches around one edge of k tetrahedra
-/// take O(k log k) steps together, whatever the numbering.
-pub(super) fn for_each_edge<E>(
-    mesh: &Tetrahedralization,
-    mut visit: impl FnMut(&Ring) -> Result<(), E>,
-) -> Result<(), E> {
-    let mut ring = Ring::default();
-    for t in 0..mesh.tetrahedra().len() as u32 {
-        for edge in &EDGES {
-            if ring.fill(mesh.tetrahedra(), t, edge) {
-                visit(&ring)?;
+impl Tetrahedralization {
+    /// Calls `visit` for each edge whose ends (vertices of the mesh) `is_wanted` accepts; the test may be asked
+    /// several times for each edge.
+    ///
+    /// Each tetrahedron at an edge finds it; the tetrahedron with the lowest number reports it. The search for a
+    /// lower number walks in both directions alternately, so that all searches around one edge of k tetrahedra
+    /// take O(k log k) steps together, whatever the numbering.
+    ///
+    /// # Errors
+    /// The first of `visit`.
+    pub fn for_each_edge<E>(
+        &self,
+        is_wanted: impl Fn([u32; 2]) -> bool,
+        mut visit: impl FnMut(&Ring) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut ring = Ring::default();
+        for (t, tetrahedron) in (0..).zip(&self.tetrahedra) {
+            for edge in &EDGES {
+                let ends = edge.0.map(|corner| tetrahedron.vertices[corner]);
+                if is_wanted(ends) && ring.fill(&self.tetrahedra, t, edge) {
+                    visit(&ring)?;
+                }
             }
         }
+        Ok(())
     }
-    Ok(())
 }
 
 impl Ring {
@@ -55,7 +68,7 @@ impl Ring {
         let vertices = tetrahedra[start as usize].vertices;
         self.ends = ends.map(|corner| vertices[corner]);
         self.tetrahedra.clear();
-        self.tetrahedra.push(start);
+        self.tetrahedra.push_back(start);
         self.link.clear();
         self.link.extend(others.map(|corner| vertices[corner]));
         let [first, second] = others;
@@ -65,16 +78,22 @@ impl Ring {
             let mut moved = false;
             for turn in 0..2 {
                 let Some(vertex) = walkers[turn].step(tetrahedra) else { continue };
-                if walkers[turn].tetrahedron < start {
+                let t = walkers[turn].tetrahedron;
+                if t < start {
                     return false;
                 }
-                if walkers[turn].tetrahedron == walkers[1 - turn].tetrahedron {
-                    // Both walks met at the last vertex.
-                    self.link.pop();
+                if t == walkers[1 - turn].tetrahedron {
+                    // Both walks met: the link ends with the vertex that it starts with.
+                    self.link.pop_back();
                     return true;
                 }
-                self.tetrahedra.push(walkers[turn].tetrahedron);
-                self.link.push(vertex);
+                if turn == 0 {
+                    self.tetrahedra.push_back(t);
+                    self.link.push_back(vertex);
+                } else {
+                    self.tetrahedra.push_front(t);
+                    self.link.push_front(vertex);
+                }
                 moved = true;
             }
             if !moved {

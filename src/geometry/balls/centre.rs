@@ -1,0 +1,90 @@
+//! Orthocentres of tetrahedra: the vertices of the power diagram.
+
+use crate::predicates::Point3;
+use crate::predicates::exact_integers::{decompose, integers_in, unit_of};
+use num_bigint::BigInt;
+use num_traits::Signed;
+
+/// A determinant below this share of the product of the lengths of its rows has lost too many digits.
+const THIN: f64 = 1e-7;
+
+/// The point that has the same power distance from four balls, relative to the first, and its power distance.
+/// `weights` are squares of radii.
+///
+/// Domain: the centres are not in a plane. Accurate to about nine digits of the distance from the first centre,
+/// however thin the tetrahedron is.
+pub(super) fn orthocentre(points: [Point3; 4], weights: [f64; 4]) -> (Point3, f64) {
+    let [b, c, d] = [1, 2, 3].map(|i| difference(points[i], points[0]));
+    let [over_b, over_c, over_d] =
+        [(b, 1), (c, 2), (d, 3)].map(|(p, i)| dot(p, p) - (weights[i] - weights[0]));
+    let (bc, cd, db) = (cross(b, c), cross(c, d), cross(d, b));
+    let volume = dot(b, cd);
+    let lengths = dot(b, b) * dot(c, c) * dot(d, d);
+    let centre = if volume * volume > THIN * THIN * lengths {
+        let half = 0.5 / volume;
+        [0, 1, 2].map(|axis| (over_b * cd[axis] + over_c * db[axis] + over_d * bc[axis]) * half)
+    } else {
+        exactly(points, weights)
+    };
+    (centre, dot(centre, centre) - weights[0])
+}
+
+/// The same in arbitrary precision.
+#[cold]
+#[inline(never)]
+fn exactly(points: [Point3; 4], weights: [f64; 4]) -> Point3 {
+    let of_weights = weights.map(|weight| [weight]);
+    let unit = unit_of(&points).min(unit_of(&of_weights).div_euclid(2));
+    let [a, b, c, d] = points.map(|point| integers_in(point, unit));
+    let weights = weights.map(|weight| {
+        let (significand, exponent) = decompose(weight);
+        if significand == 0 {
+            BigInt::ZERO
+        } else {
+            BigInt::from(significand) << (exponent - 2 * unit) as usize
+        }
+    });
+    let minus = |p: &[BigInt; 3]| -> [BigInt; 3] { std::array::from_fn(|axis| &p[axis] - &a[axis]) };
+    let product = |p: &[BigInt; 3], q: &[BigInt; 3]| &p[0] * &q[0] + &p[1] * &q[1] + &p[2] * &q[2];
+    let minor = |p: &[BigInt; 3], q: &[BigInt; 3], i: usize, j: usize| &p[i] * &q[j] - &p[j] * &q[i];
+    let cross = |p: &[BigInt; 3], q: &[BigInt; 3]| [minor(p, q, 1, 2), minor(p, q, 2, 0), minor(p, q, 0, 1)];
+    let (b, c, d) = (minus(&b), minus(&c), minus(&d));
+    let lift = |p: &[BigInt; 3], i: usize| product(p, p) - (&weights[i] - &weights[0]);
+    let (over_b, over_c, over_d) = (lift(&b, 1), lift(&c, 2), lift(&d, 3));
+    let (bc, cd, db) = (cross(&b, &c), cross(&c, &d), cross(&d, &b));
+    let divisor = product(&b, &cd) * 2;
+    let numerators: [BigInt; 3] =
+        std::array::from_fn(|axis| &over_b * &cd[axis] + &over_c * &db[axis] + &over_d * &bc[axis]);
+    numerators.map(|numerator| quotient(&numerator, &divisor) * 2f64.powi(unit))
+}
+
+/// The quotient of two integers, rounded; infinite if it is out of range or the divisor is zero.
+fn quotient(dividend: &BigInt, divisor: &BigInt) -> f64 {
+    if divisor == &BigInt::ZERO {
+        return f64::INFINITY;
+    }
+    // 64 bits of the quotient.
+    let shift = 64 - (dividend.bits() as i64 - divisor.bits() as i64);
+    let digits = match usize::try_from(shift) {
+        Ok(shift) => (dividend.abs() << shift) / divisor.abs(),
+        Err(_) => dividend.abs() / (divisor.abs() << shift.unsigned_abs() as usize),
+    };
+    let magnitude = u128::try_from(digits).expect("about 64 bits") as f64;
+    let value = magnitude * 2f64.powi((-shift).clamp(-1100, 1100) as i32);
+    if dividend.is_negative() == divisor.is_negative() { value } else { -value }
+}
+
+#[inline(always)]
+pub(super) fn difference(p: Point3, q: Point3) -> Point3 {
+    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
+}
+
+#[inline(always)]
+pub(super) fn cross(p: Point3, q: Point3) -> Point3 {
+    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+}
+
+#[inline(always)]
+pub(super) fn dot(p: Point3, q: Point3) -> f64 {
+    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+}

@@ -1,0 +1,165 @@
+//! The cells of the balls of one tile.
+
+use super::centre::{difference, orthocentre};
+use super::face::{Face, Pair};
+use super::tiles::Members;
+use super::{Balls, Cell, Cells, Contact};
+use crate::delaunay3::{Kernel, Ring, Tetrahedralization};
+use crate::predicates::Point3;
+use spmesh_core::error::Result;
+use std::borrow::Cow;
+use std::convert::Infallible;
+use std::f64::consts::PI;
+
+/// Corners of a large tetrahedron, in directions from the middle of the balls.
+const OUTPOSTS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+
+/// The tetrahedralization of a tile.
+///
+/// Four points far away are added, the *outposts*: then no ball is on the hull, so that all cells are bounded, and
+/// few balls or balls in a plane are no special case. Outposts take nothing of the balls, as their own weight is
+/// zero.
+pub(super) struct Tile<'t> {
+    balls: Balls<'t>,
+    members: &'t Members,
+    mesh: Tetrahedralization,
+    /// For each vertex of the mesh the place of its ball among the members; outposts are the last.
+    places: Vec<u32>,
+    /// For each tetrahedron its orthocentre.
+    centres: Vec<Point3>,
+    /// For each vertex: a corner of its cell in the diagram is outside of the ball, so that part of the sphere may
+    /// be exposed.
+    may_be_exposed: Vec<bool>,
+}
+
+impl<'t> Tile<'t> {
+    /// Triangulates the members.
+    pub(super) fn new(balls: Balls<'t>, members: &'t Members) -> Result<Tile<'t>> {
+        let all = || members.core.iter().chain(&members.around).map(|&ball| ball as usize);
+        let mut points: Vec<Point3> = all().map(|ball| balls.centres[ball]).collect();
+        let mut weights: Vec<f64> = all().map(|ball| balls.radii[ball] * balls.radii[ball]).collect();
+        let radius = all().map(|ball| balls.radii[ball]).fold(0.0, f64::max);
+        points.extend(outposts(&points, radius));
+        weights.extend([0.0; 4]);
+        let mut mesh = Tetrahedralization::default();
+        Kernel::new().triangulate_weighted(Cow::Owned(points), &weights, &mut mesh)?;
+        let places = mesh.vertices().iter().map(|vertex| vertex.index).collect();
+        let mut tile = Tile { balls, members, mesh, places, centres: Vec::new(), may_be_exposed: Vec::new() };
+        tile.find_centres();
+        Ok(tile)
+    }
+
+    fn find_centres(&mut self) {
+        let mut may_be_exposed = vec![false; self.places.len()];
+        let mut centres = Vec::with_capacity(self.mesh.tetrahedra().len());
+        for tetrahedron in self.mesh.tetrahedra() {
+            let points = tetrahedron.vertices.map(|v| self.point(v));
+            let weights = tetrahedron.vertices.map(|v| self.radius(v).powi(2));
+            let (centre, power) = orthocentre(points, weights);
+            // Rounding may make a ball exposed that is not, which costs time only.
+            if power > -1e-6 * weights[0] {
+                tetrahedron.vertices.iter().for_each(|&v| may_be_exposed[v as usize] = true);
+            }
+            centres.push([0, 1, 2].map(|axis| points[0][axis] + centre[axis]));
+        }
+        (self.centres, self.may_be_exposed) = (centres, may_be_exposed);
+    }
+
+    fn point(&self, vertex: u32) -> Point3 {
+        self.mesh.vertices()[vertex as usize].at
+    }
+
+    /// The ball of a vertex; `None` for an outpost.
+    fn ball(&self, vertex: u32) -> Option<u32> {
+        let place = self.places[vertex as usize] as usize;
+        let Members { core, around } = self.members;
+        core.get(place).or_else(|| around.get(place - core.len())).copied()
+    }
+
+    fn radius(&self, vertex: u32) -> f64 {
+        self.ball(vertex).map_or(0.0, |ball| self.balls.radii[ball as usize])
+    }
+
+    fn is_core(&self, vertex: u32) -> bool {
+        (self.places[vertex as usize] as usize) < self.members.core.len()
+    }
+
+    /// The cells of the core, and their contacts with greater balls.
+    pub(super) fn measure(&self, contacts_above: Option<f64>) -> Cells {
+        let mut cells = vec![Cell::default(); self.members.core.len()];
+        // Solid angles of what is exposed.
+        let mut angles = vec![0.0; self.places.len()];
+        let mut is_outside = vec![false; self.places.len()];
+        let mut contacts = Vec::new();
+        let wanted = |ends: [u32; 2]| ends.iter().any(|&v| self.is_core(v));
+        let Ok(()) = self.mesh.for_each_edge(wanted, |ring| -> std::result::Result<(), Infallible> {
+            let [Some(first), Some(second)] = ring.ends.map(|v| self.ball(v)) else { return Ok(()) };
+            let pair = Pair::new(ring.ends.map(|v| self.point(v)), ring.ends.map(|v| self.radius(v)));
+            for (&v, height) in ring.ends.iter().zip(pair.heights) {
+                is_outside[v as usize] |= height < 0.0;
+            }
+            if !pair.has_disk() {
+                return Ok(());
+            }
+            let face = self.face(ring, &pair);
+            for ((&v, height), angle) in ring.ends.iter().zip(pair.heights).zip(face.angles) {
+                if self.is_core(v) {
+                    cells[self.places[v as usize] as usize].volume += height * face.area / 3.0;
+                    angles[v as usize] -= angle;
+                }
+            }
+            let ends = if first < second { ring.ends } else { [ring.ends[1], ring.ends[0]] };
+            if contacts_above.is_some_and(|least| face.area > least) && self.is_core(ends[0]) {
+                contacts.push(Contact { balls: [first.min(second), first.max(second)], area: face.area });
+            }
+            Ok(())
+        });
+        for v in (0..self.places.len() as u32).filter(|&v| self.is_core(v)) {
+            let radius = self.radius(v);
+            let i = v as usize;
+            if self.may_be_exposed[i] {
+                let angle = if is_outside[i] { angles[i] } else { angles[i] + 4.0 * PI };
+                let cell = &mut cells[self.places[i] as usize];
+                cell.area = angle.max(0.0) * radius * radius;
+                cell.volume += cell.area * radius / 3.0;
+            }
+        }
+        cells.iter_mut().for_each(|cell| cell.volume = cell.volume.max(0.0));
+        Cells { cells, contacts }
+    }
+
+    /// The face at an edge whose ends are balls.
+    fn face(&self, ring: &Ring, pair: &Pair) -> Face {
+        let [first, second] = ring.ends;
+        let origin = self.point(first);
+        let weight = self.radius(first).powi(2);
+        let with_angles = self.may_be_exposed[first as usize] || self.may_be_exposed[second as usize];
+        let mut face = Face::default();
+        let relative = |t: u32| difference(self.centres[t as usize], origin);
+        let last = ring.tetrahedra.len() - 1;
+        let mut from = relative(ring.tetrahedra[last]);
+        for (&t, &third) in ring.tetrahedra.iter().zip(&ring.link) {
+            let to = relative(t);
+            let heavier = self.radius(third).powi(2) - weight;
+            if let Some(side) = pair.side(difference(self.point(third), origin), heavier, [from, to]) {
+                pair.add(side, with_angles, &mut face);
+            }
+            from = to;
+        }
+        face
+    }
+}
+
+/// Points so far away that no ball of the tile is on the hull, on the grid of the coordinates.
+fn outposts(points: &[Point3], radius: f64) -> [Point3; 4] {
+    let fold =
+        |axis: usize, of: fn(f64, f64) -> f64, start: f64| points.iter().map(|p| p[axis]).fold(start, of);
+    let min = [0, 1, 2].map(|axis| fold(axis, f64::min, f64::INFINITY));
+    let max = [0, 1, 2].map(|axis| fold(axis, f64::max, f64::NEG_INFINITY));
+    let side = (0..3).map(|axis| max[axis] - min[axis]).fold(radius, f64::max);
+    // Twice would do; with four times the side even corners of the diagram outside are far from all balls.
+    let distance = (4.0 * (side + radius)).ceil().max(1.0);
+    OUTPOSTS.map(|direction| {
+        [0, 1, 2].map(|axis| ((min[axis] + max[axis]) / 2.0).round() + direction[axis] * distance)
+    })
+}

@@ -1,0 +1,89 @@
+//! Cuts balls into tiles that fit into little memory, each with the balls around it.
+
+use super::Balls;
+
+/// Greatest number of balls of a tile, without those around it. Larger tiles have fewer of these, but need more
+/// memory.
+pub(super) const TILE_MAX: usize = 100_000;
+
+/// The balls of a tile, as indices of all balls.
+#[derive(Debug, Default)]
+pub(super) struct Members {
+    /// Those of the tile.
+    pub(super) core: Vec<u32>,
+    /// Those that reach a ball of the tile.
+    pub(super) around: Vec<u32>,
+}
+
+/// Halves the balls at the median, along the longest side of their box, until tiles have at most `most`. Tiles depend on
+/// the balls only.
+pub(super) fn cut(balls: Balls<'_>, most: usize) -> Vec<Members> {
+    let mut tiles = Vec::new();
+    let all = Members { core: (0..balls.centres.len() as u32).collect(), around: Vec::new() };
+    let mut open = vec![all];
+    while let Some(members) = open.pop() {
+        if members.core.is_empty() {
+            continue;
+        }
+        if members.core.len() <= most {
+            tiles.push(members);
+        } else {
+            open.extend(halve(balls, members));
+        }
+    }
+    tiles
+}
+
+fn halve(balls: Balls<'_>, members: Members) -> [Members; 2] {
+    let Members { mut core, around } = members;
+    let sides = Box3::around(balls, &core);
+    let axis = sides.longest_axis();
+    let key = |&ball: &u32| (balls.centres[ball as usize][axis], ball);
+    let middle = core.len() / 2;
+    core.select_nth_unstable_by(middle, |p, q| {
+        let ((x, i), (y, j)) = (key(p), key(q));
+        x.total_cmp(&y).then(i.cmp(&j))
+    });
+    let mut upper = core.split_off(middle);
+    // The order of the input is that of the contacts.
+    core.sort_unstable();
+    upper.sort_unstable();
+    let reaching = |half: &[u32], other: &[u32]| -> Vec<u32> {
+        let sides = Box3::around(balls, half);
+        other.iter().chain(&around).copied().filter(|&ball| sides.is_reached(balls, ball)).collect()
+    };
+    let (around_lower, around_upper) = (reaching(&core, &upper), reaching(&upper, &core));
+    [Members { core, around: around_lower }, Members { core: upper, around: around_upper }]
+}
+
+/// The box of some balls.
+struct Box3 {
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+impl Box3 {
+    fn around(balls: Balls<'_>, members: &[u32]) -> Box3 {
+        let mut sides = Box3 { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
+        for &ball in members {
+            let (centre, radius) = (balls.centres[ball as usize], balls.radii[ball as usize]);
+            for axis in 0..3 {
+                sides.min[axis] = sides.min[axis].min(centre[axis] - radius);
+                sides.max[axis] = sides.max[axis].max(centre[axis] + radius);
+            }
+        }
+        sides
+    }
+
+    fn longest_axis(&self) -> usize {
+        let side = |axis: usize| self.max[axis] - self.min[axis];
+        (1..3).fold(0, |longest, axis| if side(axis) > side(longest) { axis } else { longest })
+    }
+
+    fn is_reached(&self, balls: Balls<'_>, ball: u32) -> bool {
+        let (centre, radius) = (balls.centres[ball as usize], balls.radii[ball as usize]);
+        // Rounding must not lose a ball that touches; 1e-9 is far more, and costs nothing.
+        let reach = radius * (1.0 + 1e-9);
+        (0..3).all(|axis| centre[axis] + reach >= self.min[axis] && centre[axis] - reach <= self.max[axis])
+    }
+}
