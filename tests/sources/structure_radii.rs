@@ -68,6 +68,7 @@ fn an_element_not_stated_is_that_of_the_name() {
     let cases = [
         ("ATOM      1  CA  ALA A   1", "C"),
         ("ATOM      1 CA   ALA A   1", "C"),
+        ("HETATM    1 CA   PCA A   1", "C"),
         ("HETATM    1 CA    CA A   1", "CA"),
         ("HETATM    1  CA   CA A   1", "CA"),
         ("HETATM    1 CL   CLA A   1", "CL"),

@@ -25,7 +25,7 @@ impl Element {
 
     /// The element of an atomic number.
     pub(super) fn of_number(number: usize) -> Option<Element> {
-        (1..=SYMBOLS.len()).contains(&number).then(|| Element(number as u8))
+        (1..=SYMBOLS.len()).contains(&number).then_some(Element(number as u8))
     }
 
     /// Its symbol.

@@ -29,6 +29,10 @@ const IONS: [(&str, &str); 9] = [
     ("IOD", "I"),
 ];
 
+/// Names of atoms of modified amino acids that are also symbols. Some programs write them where symbols of two
+/// letters start; these elements, with these names, hardly occur in residues of several atoms.
+const NO_SYMBOLS: [&str; 5] = ["CA", "CD", "CE", "ND", "NE"];
+
 impl Labels<'_> {
     /// Whether the atom has the name of its residue: it is an ion or another single atom.
     pub(super) fn is_single(&self) -> bool {
@@ -54,6 +58,7 @@ impl Labels<'_> {
         }
         match self.symbol_len {
             1 => of_start(name, 1),
+            2 if NO_SYMBOLS.contains(&self.atom) => of_start(name, 1),
             2 => of_start(name, 2).or_else(|| of_start(name, 1)),
             // Names that fill their columns are mostly those of hydrogens and of atoms of large ligands.
             _ if name.starts_with(['H', 'C', 'N', 'O', 'P', 'S', 'D']) && !name.starts_with("CL") => {

@@ -154,6 +154,8 @@ pub(super) const UNITED: &[Group] = &[
     Group { residues: &["THR"], atoms: &[(ALIPHATIC, "CG2")] },
     Group { residues: &["TRP"], atoms: &[(TRIGONAL, "CG CD1 CD2 CE2 CE3 CZ2 CZ3 CH2"), (AMIDE, "NE1")] },
     Group { residues: &["VAL"], atoms: &[(ALIPHATIC, "CG1 CG2")] },
+    Group { residues: &["ACE"], atoms: &[(TRIGONAL, "C"), (ALIPHATIC, "CH3")] },
+    Group { residues: &["NH2 NME"], atoms: &[(AMIDE, "N"), (ALIPHATIC, "C CH3")] },
 ];
 
 /// Radii of united atoms elsewhere: those of nucleotides, in steps of 0.001 Å.
