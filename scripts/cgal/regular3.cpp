@@ -1,8 +1,8 @@
 // Regular triangulations by CGAL, for comparison. On stdin each set of points is its size as u32 and four f64
 // per point: x, y, z and the weight, a squared radius. On stdout go the numbers of tetrahedra and of hull
 // facets as u32, and per tetrahedron four u32: indices of points with the coordinates and weights of its
-// vertices, positively oriented. Then goes the number of points that are no vertices as u32, and their indices,
-// ascending: hidden points, and all but one of several equal points.
+// vertices, positively oriented. Then goes the number of points that are no vertices as u32, and their
+// indices, ascending: hidden points, and all but one of several equal points.
 //
 // The kernel has exact predicates. Where five points are orthogonal to one sphere, CGAL raises each point on
 // the lifting paraboloid by an infinitesimal amount, by far the most the last in the order of x, y, z. So a

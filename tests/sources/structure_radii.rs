@@ -115,7 +115,8 @@ fn an_atom_without_radius_is_named_with_a_remedy() {
 #[test]
 fn lines_of_a_file_count_from_the_particular_to_the_general() {
     let file = of_file(
-        "# mine\n* * 1\nO 1.3\nala cb 1.234 # side chain\n* CA 1.5\nANY CB 1.6\nHOH ANY 1.45\nlys,*,1.55\nD 0.9\n",
+        "# mine\n* * 1\nO 1.3\nala cb 1.234 # side chain\n* CA 1.5\nANY CB 1.6\nHOH ANY 1.45\nlys,*,1.55\n\
+        D 0.9\n",
     );
     let cases = [
         ("ATOM      1  CB  ALA A   1", "C", 1234),

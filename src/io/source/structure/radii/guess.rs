@@ -29,8 +29,8 @@ const IONS: [(&str, &str); 9] = [
     ("IOD", "I"),
 ];
 
-/// Names of atoms of modified amino acids that are also symbols. Some programs write them where symbols of two
-/// letters start; these elements, with these names, hardly occur in residues of several atoms.
+/// Names of atoms of modified amino acids that are also symbols. Some programs write them where symbols of
+/// two letters start; these elements, with these names, hardly occur in residues of several atoms.
 const NO_SYMBOLS: [&str; 5] = ["CA", "CD", "CE", "ND", "NE"];
 
 impl Labels<'_> {

@@ -58,8 +58,8 @@ impl Radii {
     ///
     /// * `protor`: by residue and atom for amino acids, nucleotides and water (Tsai, Taylor, Chothia and
     ///   Gerstein 1999); other atoms, and hydrogens, as in `bondi`.
-    /// * `bondi`: by element, including hydrogen (Bondi 1964, Mantina and others 2009; metals that neither has
-    ///   from Hu, Zhou and Robertson 2009).
+    /// * `bondi`: by element, including hydrogen (Bondi 1964, Mantina and others 2009; metals that neither
+    ///   has from Hu, Zhou and Robertson 2009).
     /// * `united`: by residue and atom for amino acids, by element for other heavy atoms (Chothia 1976, as in
     ///   the program NACCESS); other elements, and hydrogens, as in `bondi`.
     ///
@@ -101,9 +101,9 @@ impl Radii {
     /// case are the same.
     ///
     /// # Errors
-    /// If the file cannot be read; [`spmesh_core::error::ErrorKind::Malformed`], with file and line, if a line
-    /// has another form, a radius has more than three decimal places, is negative or above 100 Å, or two lines
-    /// give different radii to the same atoms.
+    /// If the file cannot be read; [`spmesh_core::error::ErrorKind::Malformed`], with file and line, if a
+    /// line has another form, a radius has more than three decimal places, is negative or above 100 Å, or two
+    /// lines give different radii to the same atoms.
     pub fn read(path: &Path) -> Result<Radii> {
         let name = path.display().to_string();
         let (input, _) = open_file(path).map_err(|e| e.of_input(&name))?;
@@ -142,8 +142,8 @@ impl Radii {
     }
 }
 
-/// A name of a residue or an atom as it is looked up: in upper case, and with the prime of atoms of sugars that
-/// older files write as an asterisk.
+/// A name of a residue or an atom as it is looked up: in upper case, and with the prime of atoms of sugars
+/// that older files write as an asterisk.
 fn looked_up(name: &str) -> String {
     name.to_ascii_uppercase().replace('*', "'")
 }

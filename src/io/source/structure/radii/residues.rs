@@ -1,5 +1,5 @@
-//! Radii of the atoms of amino acids, nucleotides and water, without their hydrogens: each is the radius of an
-//! atom together with the hydrogens bound to it.
+//! Radii of the atoms of amino acids, nucleotides and water, without their hydrogens: each is the radius of
+//! an atom together with the hydrogens bound to it.
 
 /// Atoms that some residues have with the same radii.
 pub(super) struct Group {
@@ -27,9 +27,9 @@ pub(super) fn is_known(residue: &str) -> bool {
 }
 
 // Residues by their names in the Protein Data Bank, followed by names that AMBER, CHARMM and GROMACS give to
-// residues with other hydrogens or at the ends of chains. The first line lacks residues listed below it.
-const PEPTIDE: &str = "ALA ARG ASN ASP CYS GLN GLU GLY HIS ILE LEU LYS MET PHE PRO SER THR TRP TYR VAL ASX GLX \
-    PYL SEC MSE ARN ASH CYX CYM GLH HID HIE HIP HSD HSE HSP LYN";
+// residues with other hydrogens or at the ends of chains.
+const PEPTIDE: &str = "ALA ARG ASN ASP CYS GLN GLU GLY HIS ILE LEU LYS MET PHE PRO SER THR TRP TYR VAL \
+    ASX GLX PYL SEC MSE ARN ASH CYX CYM GLH HID HIE HIP HSD HSE HSP LYN";
 const ARGININE: &str = "ARG ARN";
 const ASPARTATE: &str = "ASP ASH";
 const CYSTEINE: &str = "CYS CYX CYM";
