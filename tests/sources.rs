@@ -13,6 +13,7 @@ mod structure;
 mod structure_cif;
 mod structure_damage;
 mod structure_pdb;
+mod structure_radii;
 mod structure_selection;
 mod text;
 mod vtk_file;

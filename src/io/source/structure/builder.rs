@@ -21,6 +21,7 @@ pub(super) struct Record<'a> {
     pub(super) insertion_code: &'a str,
     pub(super) occupancy: f32,
     pub(super) is_hetatm: bool,
+    pub(super) symbol_len: u8,
     pub(super) place: [Number; 3],
 }
 
@@ -126,6 +127,7 @@ impl StructureBuilder {
             altloc: self.names.intern(record.altloc),
             occupancy: record.occupancy,
             is_hetatm: record.is_hetatm,
+            symbol_len: record.symbol_len,
         };
         model.points.push(point);
         model.atoms.push(atom);

@@ -315,6 +315,7 @@ impl Row {
             insertion_code: self.text([Item::Insertion; 2])?,
             occupancy: share.unwrap_or(1.0),
             is_hetatm: self.value(Item::Group).is_some_and(|group| group.eq_ignore_ascii_case(b"HETATM")),
+            symbol_len: 0,
             place: [x, y, z],
         })
     }

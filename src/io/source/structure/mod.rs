@@ -15,6 +15,7 @@ mod names;
 mod off;
 mod pdb;
 mod points;
+mod radii;
 mod selection;
 mod serial;
 mod xyz;
@@ -24,6 +25,7 @@ use std::path::Path;
 
 pub use model::{Atom, AtomView, Model, Residue, Structure};
 pub use names::{Name, Names};
+pub use radii::{Radii, RadiusFinder};
 pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
 
 use self::builder::StructureBuilder;

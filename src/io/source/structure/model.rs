@@ -52,6 +52,9 @@ pub struct Atom {
     pub occupancy: f32,
     /// Whether the record is HETATM: ligands, ions, water, modified residues.
     pub is_hetatm: bool,
+    /// Letters of the element's symbol at the start of the name, as the columns of the name in a PDB record
+    /// tell; 0 if they do not, and in other formats.
+    pub symbol_len: u8,
 }
 
 /// A residue: the data that the atoms of a monomer, ligand or water molecule share.

@@ -124,6 +124,7 @@ impl PdbReader<'_> {
             insertion_code,
             occupancy: share.unwrap_or(1.0),
             is_hetatm,
+            symbol_len: symbol_len(text),
             place,
         })
     }
@@ -203,6 +204,16 @@ fn ascii(line: &[u8]) -> Result<&str> {
 fn columns(line: &str, start: usize, end: usize) -> &str {
     let end = end.min(line.len());
     line.get(start..end).unwrap_or_default().trim_ascii()
+}
+
+/// Letters of the element's symbol in the name, columns 13 to 16: symbols of two letters start in column 13,
+/// others in column 14, after a blank or a number. Names of four characters fill all columns and do not tell.
+fn symbol_len(line: &str) -> u8 {
+    match line.as_bytes()[12..16] {
+        [b' ' | b'0'..=b'9', ..] => 1,
+        [_, .., b' '] => 2,
+        _ => 0,
+    }
 }
 
 /// The text of the serial number: columns 7 to 11, and the adjacent columns into which numbers overflow.

@@ -65,6 +65,7 @@ fn read_atom(text: &[u8], [serial, line]: [u64; 2], builder: &mut StructureBuild
         insertion_code: "",
         occupancy: 1.0,
         is_hetatm: false,
+        symbol_len: 0,
         place,
     })
 }
