@@ -1,11 +1,13 @@
 //! `tess3`: flags.
 
+mod balls;
 mod method;
 mod report;
 mod selection;
 
 pub use spmesh_tess3::heap::CountingHeap;
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -14,6 +16,7 @@ use clap::{Parser, ValueEnum};
 use super::compression::Compression;
 use super::{Common, StatsFormat, notice, progress::Progress, read_list, refuse_terminal};
 use crate::endings;
+use balls::BallFlags;
 use method::MethodFlags;
 use selection::SelectionFlags;
 use spmesh_core::error::{Error, ErrorKind, Result};
@@ -94,8 +97,9 @@ pub struct Flags {
     #[arg(long, value_name = "FILE", requires = "out_dir")]
     lof: Option<PathBuf>,
 
-    /// Number of files of a sweep in parallel [default: one per core]
-    #[arg(long, value_name = "N", requires = "out_dir", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    /// Number of files of a sweep in parallel, or of threads that measure the balls of one structure [default: one
+    /// per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
     /// Where the summary of a sweep goes, a line per mesh: a table, or JSON Lines if the name ends in .jsonl;
@@ -125,6 +129,9 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
+
+    #[command(flatten)]
+    balls: BallFlags,
 
     // The last, as its heading holds for all flags after it.
     #[command(flatten)]
@@ -198,7 +205,8 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     }
     let options = flags.options()?;
     let is_binary = options.product == Product::Mesh;
-    check_apart([input.as_path()], &[("--output", &flags.output)])?;
+    let inputs = std::iter::once(input.as_path()).chain(flags.balls.file());
+    check_apart(inputs, &[("--output", &flags.output)])?;
     endings::check(&flags.output, &[if is_binary { endings::STREAM } else { endings::TABLE }])?;
     // Fail before the work if the output cannot be created.
     let mut output = Some(Output::create(&flags.output, is_binary)?);
@@ -236,18 +244,17 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
             "--resume reads the summary of the earlier run: give it a file with --summary",
         ));
     }
-    let cores = available_threads().get();
     let options = flags.options()?;
     let wanted = Sweep {
         files: flags.files()?,
         list: flags.lof.clone(),
         format: flags.from.map(Into::into),
-        options_text: flags.options_text(),
+        options_text: flags.options_text(&options),
         version: env!("CARGO_PKG_VERSION").to_string(),
         options,
         folder: folder.to_path_buf(),
         summary: summary.clone(),
-        threads: flags.threads.map_or(cores, usize::from),
+        threads: flags.threads(),
         resume: flags.resume,
         strict: flags.strict,
     };
@@ -282,22 +289,31 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
 
 impl Flags {
     fn options(&self) -> Result<Options> {
-        let product = match (self.table, self.contacts) {
-            (true, _) => Product::Tetrahedra,
-            (_, true) => Product::Contacts,
+        let product = match (self.balls.product(), self.table, self.contacts) {
+            (Some(product), ..) => product,
+            (_, true, _) => Product::Tetrahedra,
+            (_, _, true) => Product::Contacts,
             _ => Product::Mesh,
         };
+        // A sweep has threads for its files.
+        let threads = if self.out_dir.is_some() { 1 } else { self.threads() };
+        let balls = self.balls.options(NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN))?;
         Ok(Options {
             selection: self.selection.selection(),
             alpha: self.alpha.clone(),
             method: self.method.method()?,
             compress: self.compression.of_output(product == Product::Mesh)?,
             product,
+            balls,
         })
     }
 
+    fn threads(&self) -> usize {
+        self.threads.map_or_else(|| available_threads().get(), usize::from)
+    }
+
     /// The options that determine the content of the outputs, as text.
-    fn options_text(&self) -> String {
+    fn options_text(&self, options: &Options) -> String {
         let mut text = self.selection.to_string();
         if let Some(radius) = &self.alpha {
             text += &format!(" --alpha {radius}");
@@ -309,7 +325,7 @@ impl Flags {
         {
             text += if flag { name } else { "" };
         }
-        text
+        text + options.balls.as_ref().map_or("", |balls| &balls.text)
     }
 
     /// The files of the command line, then those of `--lof`.

@@ -51,6 +51,12 @@ impl Pair {
         self.square > 0.0
     }
 
+    /// Square of the radius of the disk.
+    #[inline(always)]
+    pub(super) fn disk(&self) -> f64 {
+        self.square
+    }
+
     /// Adds the part of the face under one side of the polygon.
     #[inline(always)]
     pub(super) fn add(&self, side: Side, with_angles: bool, face: &mut Face) {

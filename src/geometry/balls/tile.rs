@@ -14,6 +14,9 @@ use std::f64::consts::PI;
 /// Corners of a large tetrahedron, in directions from the middle of the balls.
 const OUTPOSTS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
 
+/// Share of its disk below which a face is taken as empty.
+const NOISE: f64 = 1e-12;
+
 /// The tetrahedralization of a tile.
 ///
 /// Four points far away are added, the *outposts*: then no ball is on the hull, so that all cells are bounded, and
@@ -108,8 +111,10 @@ impl<'t> Tile<'t> {
                     angles[v as usize] -= angle;
                 }
             }
+            // Where faces are empty, rounding leaves something.
+            let least = contacts_above.map(|least| least.max(NOISE * pair.disk()));
             let ends = if first < second { ring.ends } else { [ring.ends[1], ring.ends[0]] };
-            if contacts_above.is_some_and(|least| face.area > least) && self.is_core(ends[0]) {
+            if least.is_some_and(|least| face.area > least) && self.is_core(ends[0]) {
                 contacts.push(Contact { balls: [first.min(second), first.max(second)], area: face.area });
             }
             Ok(())

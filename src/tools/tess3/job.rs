@@ -5,6 +5,7 @@ use std::io::Write;
 use std::time::Instant;
 
 use super::alpha::AlphaComplex;
+use super::balls::{BallOptions, Molecule};
 use super::mesh::write_mesh;
 use super::tables::{CONTACTS, Rows, TETRAHEDRA, write_error};
 use super::{Arithmetic, Options, Product, Report, selection};
@@ -83,6 +84,10 @@ impl Job<'_> {
         let selected =
             plain.is_none().then(|| selection::select(structure, &self.options.selection)).transpose()?;
         let selected = selected.as_ref();
+        if let (Some(balls), Some(selected)) = (self.options.balls.clone(), selected) {
+            let molecule = Molecule { number: name.number, selected, scale: scale(structure.coordinates) };
+            return self.write_balls(&balls, &molecule, started);
+        }
         let points = match (plain, selected) {
             (Some(points), _) => Cow::Owned(points),
             (None, selected) => Cow::Borrowed(selected.map_or(&[][..], Selected::points)),
@@ -129,10 +134,39 @@ impl Job<'_> {
         if is_contacts { rows.write_contacts(table) } else { rows.write_tetrahedra(table) }
     }
 
+    /// Measures atoms as balls, and writes rows of their cells or contacts.
+    fn write_balls(
+        &mut self,
+        balls: &BallOptions,
+        molecule: &Molecule<'_>,
+        started: Instant,
+    ) -> Result<Report> {
+        let mut report = Report::new(molecule.number, molecule.selected.points().len());
+        let is_contacts = self.options.product == Product::ContactAreas;
+        let table = self.table()?;
+        if is_contacts {
+            molecule.write_contacts(balls, &mut report, table)?;
+        } else {
+            molecule.write_cells(balls, &mut report, table)?;
+        }
+        report.times.triangulate = started.elapsed();
+        Ok(report)
+    }
+
+    /// The line with the names of the columns.
+    fn columns(&self) -> String {
+        match (self.options.product, &self.options.balls) {
+            (Product::ContactAreas, Some(balls)) => balls.contact_columns(),
+            (Product::Cells, Some(balls)) => balls.cell_columns(),
+            (Product::Contacts, _) => CONTACTS.to_string(),
+            _ => TETRAHEDRA.to_string(),
+        }
+    }
+
     /// The table, which begins with the names of the columns.
     fn table(&mut self) -> Result<&mut Output> {
         if self.table.is_none() {
-            let columns = if self.options.product == Product::Contacts { CONTACTS } else { TETRAHEDRA };
+            let columns = self.columns();
             let mut table = (self.open)(None)?;
             table.write_all(columns.as_bytes()).map_err(write_error)?;
             self.table = Some(table);
@@ -192,12 +226,17 @@ struct Model<'s> {
 }
 
 impl Model<'_> {
-    /// World units per stored unit, which is the same for all axes of structures.
+    /// World units per stored unit.
     fn scale(&self) -> f64 {
-        match self.coordinates {
-            Coordinates::F64 => 1.0,
-            Coordinates::I32 { scale, .. } => scale[0],
-        }
+        scale(self.coordinates)
+    }
+}
+
+/// World units per stored unit, which is the same for all axes of structures.
+fn scale(coordinates: Coordinates) -> f64 {
+    match coordinates {
+        Coordinates::F64 => 1.0,
+        Coordinates::I32 { scale, .. } => scale[0],
     }
 }
 

@@ -4,6 +4,7 @@
 //! [`run`] turns one structure into one output; [`sweep::sweep`] does so for a list of files in parallel.
 
 mod alpha;
+mod balls;
 mod exact;
 pub mod heap;
 mod job;
@@ -18,6 +19,7 @@ pub mod sweep;
 mod tables;
 
 pub use alpha::AlphaComplex;
+pub use balls::{BallOptions, ContactFilter, Level, NamedRadii};
 pub use job::{ModelName, run};
 pub use mesh::write_mesh;
 pub use method::{Arithmetic, Method, NO_EXPERIMENTS};
@@ -38,6 +40,10 @@ pub enum Product {
     Tetrahedra,
     /// A table of the edges.
     Contacts,
+    /// A table of the cells of atoms as balls ([`Options::balls`]): areas and volumes.
+    Cells,
+    /// A table of the faces between them.
+    ContactAreas,
 }
 
 /// What to triangulate, and what to write of it.
@@ -53,6 +59,8 @@ pub struct Options {
     pub method: Method,
     /// Whether the blocks of meshes are compressed.
     pub compress: bool,
+    /// How atoms become balls, for [`Product::Cells`] and [`Product::ContactAreas`].
+    pub balls: Option<BallOptions>,
 }
 
 /// Counts and times of one model.
@@ -68,6 +76,12 @@ pub struct Report {
     pub tetrahedra: u64,
     /// Facets of the convex hull.
     pub hull_facets: u64,
+    /// Cells were measured instead of a triangulation of the whole.
+    pub is_of_cells: bool,
+    /// Atoms that have no cell, as others cover them.
+    pub without_cell: u64,
+    /// Hydrogens among the atoms that were measured.
+    pub hydrogens: u64,
     /// Tetrahedra that the kernel created, infinite ones included; most were replaced later.
     pub created: u64,
     /// In-sphere tests of the search for cavities.
@@ -92,6 +106,15 @@ impl Report {
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut texts = Vec::new();
+        if self.is_of_cells {
+            if self.without_cell > 0 {
+                texts.push(format!(
+                    "{} of {} atoms have no cell: others cover them",
+                    self.without_cell, self.atoms
+                ));
+            }
+            return texts;
+        }
         let merged = self.atoms - self.vertices;
         if merged > 0 {
             let verb = if merged == 1 { "coincides" } else { "coincide" };

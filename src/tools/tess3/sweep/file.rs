@@ -169,6 +169,8 @@ fn ending(product: Product) -> &'static str {
         Product::Mesh => ".spm",
         Product::Tetrahedra => ".tetrahedra.tsv",
         Product::Contacts => ".contacts.tsv",
+        Product::Cells => ".cells.tsv",
+        Product::ContactAreas => ".contact-areas.tsv",
     }
 }
 

@@ -1,0 +1,195 @@
+//! Flags that make balls of atoms, and measure them.
+
+use std::fmt::Write;
+use std::num::NonZeroUsize;
+use std::path::Path;
+
+use clap::{Args, ValueEnum};
+
+use spmesh_core::error::{Error, Result};
+use spmesh_io::source::structure::Radii;
+use spmesh_tess3::{BallOptions, ContactFilter, Level, NamedRadii, Product};
+
+/// Steps of a probe in 1 Å.
+const STEPS: f64 = 1000.0;
+
+/// Greatest radius of a probe, in Å.
+const PROBE_MAX: f64 = 100.0;
+
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Atoms as balls")]
+pub(super) struct BallFlags {
+    /// Write a table of areas: the part of each sphere that no other ball covers (Å²); with --probe the
+    /// solvent-accessible surface
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha"])]
+    sasa: bool,
+
+    /// Write a table of volumes: the part of each ball that is nearest to its atom by power distance (Å³);
+    /// together they are the volume of the union. With --sasa, one table has both
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha"])]
+    volumes: bool,
+
+    /// Write a table of contacts: the area of the face between two cells, inside of both balls (Å²)
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "sasa", "volumes"])]
+    contact_areas: bool,
+
+    /// Radii of atoms: protor (united atoms, Tsai et al. 1999), bondi (by element), united (Chothia 1976), or a file
+    /// with lines RESIDUE ATOM RADIUS or ELEMENT RADIUS [default: protor]
+    #[arg(long, value_name = "NAME|FILE")]
+    radii: Option<String>,
+
+    /// Radius of a probe that is added to each radius (Å), to three decimals; 0 for the van der Waals surface
+    /// [default: 1.4]
+    #[arg(long, value_name = "RADIUS", value_parser = parse_probe)]
+    probe: Option<u32>,
+
+    /// What a row is about [default: atom]
+    #[arg(long, value_enum, value_name = "LEVEL")]
+    per: Option<LevelFlag>,
+
+    /// Only contacts of at least this area (Å²)
+    #[arg(long, value_name = "AREA", requires = "contact_areas", value_parser = parse_positive)]
+    min_area: Option<f64>,
+
+    /// Only contacts of atoms at most this far apart (Å)
+    #[arg(long, value_name = "DISTANCE", requires = "contact_areas", value_parser = parse_positive)]
+    within: Option<f64>,
+
+    /// Only contacts between different residues or chains
+    #[arg(
+        long,
+        value_enum,
+        value_name = "residues|chains",
+        requires = "contact_areas",
+        hide_possible_values = true
+    )]
+    between: Option<BetweenFlag>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum LevelFlag {
+    /// Each atom
+    Atom,
+    /// Each residue
+    Residue,
+    /// Each chain
+    Chain,
+    /// All atoms together
+    Molecule,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum BetweenFlag {
+    Residues,
+    Chains,
+}
+
+impl BallFlags {
+    /// The table that is asked for, if it is one of balls.
+    pub(super) fn product(&self) -> Option<Product> {
+        if self.contact_areas {
+            Some(Product::ContactAreas)
+        } else {
+            (self.sasa || self.volumes).then_some(Product::Cells)
+        }
+    }
+
+    /// The file of radii, if there is one.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.radii.as_deref().filter(|name| Radii::named(name).is_none()).map(Path::new)
+    }
+
+    /// The options.
+    ///
+    /// # Errors
+    /// Those of reading radii; usage, if there is nothing to measure.
+    pub(super) fn options(&self, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
+        if self.product().is_none() {
+            let idle = [
+                ("--radii", self.radii.is_some()),
+                ("--probe", self.probe.is_some()),
+                ("--per", self.per.is_some()),
+            ];
+            return match idle.into_iter().find(|(_, is_given)| *is_given) {
+                Some((flag, _)) => {
+                    let remedy = "goes with --sasa, --volumes or --contact-areas";
+                    Err(Error::usage(format!("{flag} {remedy}")))
+                }
+                None => Ok(None),
+            };
+        }
+        let level = self.level();
+        if self.contact_areas && level == Level::Molecule {
+            return Err(Error::usage(
+                "--contact-areas needs --per atom, residue or chain: a molecule has no pairs",
+            ));
+        }
+        let NamedRadii { radii, text } = NamedRadii::load(self.radii.as_deref().unwrap_or("protor"))?;
+        let probe = self.probe.unwrap_or(1_400);
+        let mut options = BallOptions {
+            radii,
+            probe,
+            level,
+            areas: self.sasa,
+            volumes: self.volumes,
+            contacts: ContactFilter {
+                min_area: self.min_area.unwrap_or(0.0),
+                within: self.within,
+                between: self.between.map(|between| match between {
+                    BetweenFlag::Residues => Level::Residue,
+                    BetweenFlag::Chains => Level::Chain,
+                }),
+            },
+            threads,
+            text: String::new(),
+        };
+        options.text = self.text(&options, &text);
+        Ok(Some(options))
+    }
+
+    fn level(&self) -> Level {
+        match self.per {
+            None | Some(LevelFlag::Atom) => Level::Atom,
+            Some(LevelFlag::Residue) => Level::Residue,
+            Some(LevelFlag::Chain) => Level::Chain,
+            Some(LevelFlag::Molecule) => Level::Molecule,
+        }
+    }
+
+    fn text(&self, options: &BallOptions, radii: &str) -> String {
+        let mut text = String::new();
+        for (name, is_given) in
+            [("sasa", self.sasa), ("volumes", self.volumes), ("contact-areas", self.contact_areas)]
+        {
+            text += &if is_given { format!(" --{name}") } else { String::new() };
+        }
+        let probe = f64::from(options.probe) / STEPS;
+        let _ = write!(text, " --radii {radii} --probe {probe} --per {}", options.level.name());
+        for (name, value) in [("min-area", self.min_area), ("within", self.within)] {
+            text += &value.map_or(String::new(), |value| format!(" --{name} {value}"));
+        }
+        if let Some(between) = options.contacts.between {
+            let _ = write!(text, " --between {}s", between.name());
+        }
+        text
+    }
+}
+
+/// Steps of 0.001 Å.
+fn parse_probe(text: &str) -> std::result::Result<u32, String> {
+    let radius: f64 = text.parse().map_err(|_| format!("{text:?} is not a number"))?;
+    let steps = (radius * STEPS).round();
+    let is_exact = (steps / STEPS - radius).abs() < 1e-9;
+    if (0.0..=PROBE_MAX).contains(&radius) && is_exact {
+        Ok(steps as u32)
+    } else {
+        Err(format!("{text:?} is not a radius of 0 to {PROBE_MAX} Å with at most three decimals"))
+    }
+}
+
+fn parse_positive(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err(format!("{text:?} is not a number of 0 or more")),
+    }
+}

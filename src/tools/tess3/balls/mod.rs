@@ -1,0 +1,161 @@
+//! Atoms as balls: exposed areas, volumes and contacts of their cells, as tables.
+
+mod groups;
+mod radii;
+mod tables;
+
+pub use radii::NamedRadii;
+
+use std::io::Write;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+use super::Report;
+use groups::Groups;
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::balls::{Balls, Cells, measure};
+use spmesh_io::source::structure::{Radii, Selected};
+use tables::{CellTable, ContactTable};
+
+/// Steps of a radius in 1 Å.
+const STEPS: f64 = 1000.0;
+
+/// How atoms become balls, and what is measured of these.
+#[derive(Debug, Clone)]
+pub struct BallOptions {
+    /// Radii of atoms.
+    pub radii: Arc<Radii>,
+    /// Added to each radius, in steps of 0.001 Å: that of the probe that rolls over the molecule.
+    pub probe: u32,
+    /// What a row is about.
+    pub level: Level,
+    /// Whether rows of cells have the area of the surface.
+    pub areas: bool,
+    /// Whether they have the volume.
+    pub volumes: bool,
+    /// Which contacts have rows.
+    pub contacts: ContactFilter,
+    /// Threads that measure a structure.
+    pub threads: NonZeroUsize,
+    /// The flags that asked for all this, for the summary of a sweep.
+    pub text: String,
+}
+
+/// Which contacts have rows.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ContactFilter {
+    /// Least area of a row, in Å².
+    pub min_area: f64,
+    /// Greatest distance of the centres of two atoms, in Å.
+    pub within: Option<f64>,
+    /// What must differ between the two atoms.
+    pub between: Option<Level>,
+}
+
+/// What a row of a table is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Level {
+    /// Each atom.
+    #[default]
+    Atom,
+    /// Each residue.
+    Residue,
+    /// Each chain.
+    Chain,
+    /// All atoms together.
+    Molecule,
+}
+
+impl Level {
+    /// Its name, which heads the column of names.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Level::Atom => "atom",
+            Level::Residue => "residue",
+            Level::Chain => "chain",
+            Level::Molecule => "molecule",
+        }
+    }
+}
+
+/// Selected atoms as balls.
+pub(super) struct Molecule<'s> {
+    pub(super) number: i64,
+    pub(super) selected: &'s Selected<'s>,
+    /// World units per stored unit.
+    pub(super) scale: f64,
+}
+
+impl Molecule<'_> {
+    /// Radii of all atoms with the probe, in stored units: integers where coordinates are.
+    fn radii(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
+        let Some(first) = self.selected.atom(0) else {
+            let message = "points have no elements, and so no radii: give a structure (PDB, mmCIF, XYZ)";
+            return Err(Error::usage(message));
+        };
+        let mut finder = options.radii.finder(first.structure);
+        // Steps of structures are 0.001 Å or a lesser power of ten, so this is an integer for them.
+        let units = if self.scale == 1.0 { 1.0 / STEPS } else { (1.0 / (STEPS * self.scale)).round() };
+        let atoms = (0..self.selected.points().len()).filter_map(|index| self.selected.atom(index));
+        atoms
+            .map(|atom| {
+                report.hydrogens += u64::from(matches!(atom.element(), "H" | "D"));
+                let steps = finder.steps_of(&atom)? + options.probe;
+                Ok(if self.scale == 1.0 { f64::from(steps) / STEPS } else { f64::from(steps) * units })
+            })
+            .collect()
+    }
+
+    fn measure(&self, options: &BallOptions, wants_contacts: bool, report: &mut Report) -> Result<Cells> {
+        let radii = self.radii(options, report)?;
+        let balls = Balls { centres: self.selected.points(), radii: &radii };
+        let cells = measure(balls, wants_contacts.then_some(0.0), options.threads)?;
+        report.is_of_cells = true;
+        report.vertices = report.atoms;
+        report.without_cell = cells.cells.iter().filter(|cell| cell.volume == 0.0).count() as u64;
+        Ok(cells)
+    }
+
+    /// Writes a row for each atom, residue or chain: the area and the volume of its cells.
+    ///
+    /// # Errors
+    /// If an atom has no radius; those of writing.
+    pub(super) fn write_cells(
+        &self,
+        options: &BallOptions,
+        report: &mut Report,
+        output: &mut impl Write,
+    ) -> Result<()> {
+        let cells = self.measure(options, false, report)?;
+        let groups = Groups::new(self.selected, options.level);
+        CellTable { molecule: self, options, groups: &groups }.write(&cells.cells, output)
+    }
+
+    /// Writes a row for each pair that shares a face.
+    ///
+    /// # Errors
+    /// As [`Molecule::write_cells`].
+    pub(super) fn write_contacts(
+        &self,
+        options: &BallOptions,
+        report: &mut Report,
+        output: &mut impl Write,
+    ) -> Result<()> {
+        let cells = self.measure(options, true, report)?;
+        let groups = Groups::new(self.selected, options.level);
+        ContactTable { molecule: self, options, groups: &groups }.write(&cells.contacts, output)
+    }
+}
+
+impl BallOptions {
+    /// The line with the names of the columns of cells.
+    pub(super) fn cell_columns(&self) -> String {
+        tables::cell_columns(self)
+    }
+
+    /// The line with the names of the columns of contacts.
+    pub(super) fn contact_columns(&self) -> String {
+        tables::contact_columns(self)
+    }
+}

@@ -1,0 +1,186 @@
+//! Rows of cells and of contacts.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use super::groups::{Groups, Key, key};
+use super::{BallOptions, Level, Molecule};
+use crate::number::write_number;
+use crate::tables::write_error;
+use spmesh_core::error::Result;
+use spmesh_geometry::balls::{Cell, Contact};
+
+/// Bytes of rows that are buffered before they are written.
+const ROWS_LEN: usize = 1 << 16;
+
+pub(super) fn cell_columns(options: &BallOptions) -> String {
+    let mut columns = vec!["model", options.level.name()];
+    columns.push(if options.level == Level::Atom { "serial" } else { "atoms" });
+    columns.extend(options.areas.then_some("area"));
+    columns.extend(options.volumes.then_some("volume"));
+    columns.join("\t") + "\n"
+}
+
+pub(super) fn contact_columns(options: &BallOptions) -> String {
+    let name = options.level.name();
+    let rest =
+        if options.level == Level::Atom { "serial1\tserial2\tdistance\tarea" } else { "contacts\tarea" };
+    format!("model\t{name}1\t{name}2\t{rest}\n")
+}
+
+/// Rows that are written in pieces.
+struct Rows<'o, W> {
+    output: &'o mut W,
+    text: Vec<u8>,
+}
+
+impl<'o, W: Write> Rows<'o, W> {
+    fn new(output: &'o mut W) -> Self {
+        Rows { output, text: Vec::new() }
+    }
+
+    fn field(&mut self, text: &str) {
+        self.text.push(b'\t');
+        self.text.extend_from_slice(text.as_bytes());
+    }
+
+    fn integer(&mut self, value: impl std::fmt::Display) -> Result<()> {
+        write!(self.text, "\t{value}").map_err(write_error)
+    }
+
+    fn number(&mut self, value: f64) -> Result<()> {
+        self.text.push(b'\t');
+        write_number(&mut self.text, value).map_err(write_error)
+    }
+
+    fn end_row(&mut self) -> Result<()> {
+        self.text.push(b'\n');
+        if self.text.len() >= ROWS_LEN { self.finish() } else { Ok(()) }
+    }
+
+    fn finish(&mut self) -> Result<()> {
+        self.output.write_all(&self.text).map_err(write_error)?;
+        self.text.clear();
+        Ok(())
+    }
+}
+
+/// The table of cells.
+pub(super) struct CellTable<'t> {
+    pub(super) molecule: &'t Molecule<'t>,
+    pub(super) options: &'t BallOptions,
+    pub(super) groups: &'t Groups,
+}
+
+impl CellTable<'_> {
+    pub(super) fn write(&self, cells: &[Cell], output: &mut impl Write) -> Result<()> {
+        let mut rows = Rows::new(output);
+        if self.options.level == Level::Atom {
+            for (atom, cell) in (0..).zip(cells) {
+                let serial = self.molecule.selected.label(atom as usize);
+                self.row(atom, serial, cell, &mut rows)?;
+            }
+            return rows.finish();
+        }
+        let mut sums = vec![Cell::default(); self.groups.sizes.len()];
+        for (atom, cell) in (0..).zip(cells) {
+            let sum = &mut sums[self.groups.of(atom) as usize];
+            sum.area += cell.area;
+            sum.volume += cell.volume;
+        }
+        for ((group, sum), &atoms) in (0..).zip(&sums).zip(&self.groups.sizes) {
+            self.row(group, u64::from(atoms), sum, &mut rows)?;
+        }
+        rows.finish()
+    }
+
+    fn row<W: Write>(&self, group: u32, count: u64, cell: &Cell, rows: &mut Rows<'_, W>) -> Result<()> {
+        write!(rows.text, "{}", self.molecule.number).map_err(write_error)?;
+        rows.field(self.groups.name(group));
+        rows.integer(count)?;
+        let scale = self.molecule.scale;
+        if self.options.areas {
+            rows.number(cell.area * scale.powi(2))?;
+        }
+        if self.options.volumes {
+            rows.number(cell.volume * scale.powi(3))?;
+        }
+        rows.end_row()
+    }
+}
+
+/// The table of contacts.
+pub(super) struct ContactTable<'t> {
+    pub(super) molecule: &'t Molecule<'t>,
+    pub(super) options: &'t BallOptions,
+    pub(super) groups: &'t Groups,
+}
+
+impl ContactTable<'_> {
+    pub(super) fn write(&self, contacts: &[Contact], output: &mut impl Write) -> Result<()> {
+        let mut rows = Rows::new(output);
+        let wanted = contacts.iter().filter(|contact| self.is_wanted(contact));
+        if self.options.level == Level::Atom {
+            for contact in wanted.filter(|contact| self.area(contact) >= self.options.contacts.min_area) {
+                self.row_of_atoms(contact, &mut rows)?;
+            }
+            return rows.finish();
+        }
+        let mut sums: BTreeMap<[u32; 2], (u64, f64)> = BTreeMap::new();
+        for contact in wanted {
+            let mut pair = contact.balls.map(|ball| self.groups.of(ball));
+            pair.sort_unstable();
+            if pair[0] != pair[1] {
+                let (count, area) = sums.entry(pair).or_default();
+                *count += 1;
+                *area += self.area(contact);
+            }
+        }
+        for (pair, (count, area)) in sums {
+            if area >= self.options.contacts.min_area {
+                self.start_row(pair, &mut rows)?;
+                rows.integer(count)?;
+                rows.number(area)?;
+                rows.end_row()?;
+            }
+        }
+        rows.finish()
+    }
+
+    fn area(&self, contact: &Contact) -> f64 {
+        contact.area * self.molecule.scale.powi(2)
+    }
+
+    fn is_wanted(&self, contact: &Contact) -> bool {
+        let filter = &self.options.contacts;
+        let differ = |level| {
+            let [p, q]: [Option<Key>; 2] =
+                contact.balls.map(|ball| Some(key(&self.molecule.selected.atom(ball as usize)?, level)));
+            p != q
+        };
+        filter.within.is_none_or(|most| self.distance(contact) <= most) && filter.between.is_none_or(differ)
+    }
+
+    /// Distance of the centres, in Å.
+    fn distance(&self, contact: &Contact) -> f64 {
+        let [p, q] = contact.balls.map(|ball| self.molecule.selected.points()[ball as usize]);
+        let square: f64 = (0..3).map(|axis| (p[axis] - q[axis]).powi(2)).sum();
+        square.sqrt() * self.molecule.scale
+    }
+
+    fn row_of_atoms<W: Write>(&self, contact: &Contact, rows: &mut Rows<'_, W>) -> Result<()> {
+        self.start_row(contact.balls, rows)?;
+        for ball in contact.balls {
+            rows.integer(self.molecule.selected.label(ball as usize))?;
+        }
+        rows.number(self.distance(contact))?;
+        rows.number(self.area(contact))?;
+        rows.end_row()
+    }
+
+    fn start_row<W: Write>(&self, pair: [u32; 2], rows: &mut Rows<'_, W>) -> Result<()> {
+        write!(rows.text, "{}", self.molecule.number).map_err(write_error)?;
+        pair.iter().for_each(|&group| rows.field(self.groups.name(group)));
+        Ok(())
+    }
+}
