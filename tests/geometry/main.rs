@@ -13,5 +13,6 @@ mod kernel_predicates;
 mod kernel_predicates3;
 mod noding;
 mod order;
+mod pockets;
 mod queries;
 mod sphere;

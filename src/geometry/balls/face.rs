@@ -57,6 +57,14 @@ impl Pair {
         self.square
     }
 
+    /// Whether a side of the polygon has a point in the disk: also where the polygon is nothing but that side.
+    #[inline(always)]
+    pub(super) fn touches(&self, side: Side) -> bool {
+        let square = (self.radius - side.offset) * (self.radius + side.offset);
+        let half_chord = square.max(0.0).sqrt();
+        square >= 0.0 && side.from <= half_chord && side.to >= -half_chord
+    }
+
     /// Adds the part of the face under one side of the polygon.
     #[inline(always)]
     pub(super) fn add(&self, side: Side, with_angles: bool, face: &mut Face) {

@@ -18,10 +18,14 @@
 
 mod centre;
 mod face;
+mod pockets;
+mod shares;
 #[cfg(test)]
 mod tests;
 mod tile;
 mod tiles;
+
+pub use pockets::{Pocket, pockets};
 
 use crate::predicates::Point3;
 use spmesh_core::error::Result;

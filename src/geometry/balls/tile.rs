@@ -1,10 +1,10 @@
 //! The cells of the balls of one tile.
 
 use super::centre::{difference, orthocentre};
-use super::face::{Face, Pair};
+use super::face::{Face, Pair, Side};
 use super::tiles::Members;
 use super::{Balls, Cell, Cells, Contact};
-use crate::delaunay3::{Kernel, Ring, Tetrahedralization};
+use crate::delaunay3::{Kernel, Ring, Tetrahedralization, Tetrahedron};
 use crate::predicates::Point3;
 use spmesh_core::error::Result;
 use std::borrow::Cow;
@@ -68,19 +68,47 @@ impl<'t> Tile<'t> {
         (self.centres, self.may_be_exposed) = (centres, may_be_exposed);
     }
 
-    fn point(&self, vertex: u32) -> Point3 {
+    pub(super) fn point(&self, vertex: u32) -> Point3 {
         self.mesh.vertices()[vertex as usize].at
     }
 
     /// The ball of a vertex; `None` for an outpost.
-    fn ball(&self, vertex: u32) -> Option<u32> {
+    pub(super) fn ball(&self, vertex: u32) -> Option<u32> {
         let place = self.places[vertex as usize] as usize;
         let Members { core, around } = self.members;
         core.get(place).or_else(|| around.get(place - core.len())).copied()
     }
 
-    fn radius(&self, vertex: u32) -> f64 {
+    pub(super) fn radius(&self, vertex: u32) -> f64 {
         self.ball(vertex).map_or(0.0, |ball| self.balls.radii[ball as usize])
+    }
+
+    pub(super) fn tetrahedra(&self) -> &[Tetrahedron] {
+        self.mesh.tetrahedra()
+    }
+
+    /// The orthocentre of a tetrahedron.
+    pub(super) fn centre(&self, t: usize) -> Point3 {
+        self.centres[t]
+    }
+
+    /// Calls `visit` with the ends of each edge whose balls share a face, be it without area.
+    pub(super) fn for_each_face(
+        &self,
+        is_wanted: impl Fn([u32; 2]) -> bool,
+        mut visit: impl FnMut([u32; 2]),
+    ) {
+        let Ok(()) = self.mesh.for_each_edge(is_wanted, |ring| -> std::result::Result<(), Infallible> {
+            if ring.ends.iter().all(|&v| self.ball(v).is_some()) {
+                let pair = Pair::new(ring.ends.map(|v| self.point(v)), ring.ends.map(|v| self.radius(v)));
+                let mut touches = false;
+                let area = self.face(ring, &pair, |side| touches |= pair.touches(side)).area;
+                if pair.has_disk() && (touches || area > NOISE * pair.disk()) {
+                    visit(ring.ends);
+                }
+            }
+            Ok(())
+        });
     }
 
     fn is_core(&self, vertex: u32) -> bool {
@@ -104,7 +132,7 @@ impl<'t> Tile<'t> {
             if !pair.has_disk() {
                 return Ok(());
             }
-            let face = self.face(ring, &pair);
+            let face = self.face(ring, &pair, |_| ());
             for ((&v, height), angle) in ring.ends.iter().zip(pair.heights).zip(face.angles) {
                 if self.is_core(v) {
                     cells[self.places[v as usize] as usize].volume += height * face.area / 3.0;
@@ -133,8 +161,9 @@ impl<'t> Tile<'t> {
         Cells { cells, contacts }
     }
 
-    /// The face at an edge whose ends are balls.
-    fn face(&self, ring: &Ring, pair: &Pair) -> Face {
+    /// The face at an edge whose ends are balls; `see` gets each side of its polygon.
+    #[inline(always)]
+    fn face(&self, ring: &Ring, pair: &Pair, mut see: impl FnMut(Side)) -> Face {
         let [first, second] = ring.ends;
         let origin = self.point(first);
         let weight = self.radius(first).powi(2);
@@ -147,6 +176,7 @@ impl<'t> Tile<'t> {
             let to = relative(t);
             let heavier = self.radius(third).powi(2) - weight;
             if let Some(side) = pair.side(difference(self.point(third), origin), heavier, [from, to]) {
+                see(side);
                 pair.add(side, with_angles, &mut face);
             }
             from = to;

@@ -1,0 +1,333 @@
+//! Pockets and voids of a union of balls.
+//!
+//! The tetrahedra of the power diagram's dual whose orthocentre no ball covers are *empty*. From an empty
+//! tetrahedron the discrete flow leads across each facet that separates it from its orthocentre. What flows to the
+//! outside is outside; the other empty tetrahedra, joined across facets that the balls leave open, are the pockets.
+//! Open facets between a pocket and the outside are its mouths; a pocket without a mouth is a void.
+//!
+//! Volume and area are those of the part that no ball covers, by short inclusion and exclusion over the corners,
+//! edges and facets of the tetrahedra: exact for voids. Balls that reach through a mouth from inside are counted
+//! whole, so that pockets have that much less.
+//!
+//! Source: Edelsbrunner, Facello and Liang, "On the definition and the construction of pockets in macromolecules",
+//! 1998, as in the server CASTp.
+
+use super::Balls;
+use super::centre::{cross, difference, dot};
+use super::shares::{
+    Foot, Measure, angle, ball, dihedral, length, lens, lens_of_disks, solid_angle, triple, volume,
+};
+use super::tile::Tile;
+use super::tiles::Members;
+use spmesh_core::error::Result;
+use spmesh_model::simplex::TETRAHEDRON_FACETS;
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::PI;
+
+/// The six edges of a tetrahedron as corners, and the two other corners.
+const EDGES: [([usize; 2], [usize; 2]); 6] = [
+    ([0, 1], [2, 3]),
+    ([0, 2], [1, 3]),
+    ([0, 3], [1, 2]),
+    ([1, 2], [0, 3]),
+    ([1, 3], [0, 2]),
+    ([2, 3], [0, 1]),
+];
+
+/// A pocket, or a void if it has no mouth.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Pocket {
+    /// Volume that no ball covers.
+    pub volume: f64,
+    /// Area of the spheres around it.
+    pub area: f64,
+    /// Number of mouths.
+    pub mouths: u32,
+    /// Area of the mouths that no ball covers.
+    pub mouth_area: f64,
+    /// Greatest distance of the centre of a ball around the pocket from the nearest centre at a mouth; 0 if there is
+    /// no mouth.
+    pub depth: f64,
+    /// Number of tetrahedra.
+    pub tetrahedra: u32,
+    /// The balls around it, in increasing order.
+    pub balls: Vec<u32>,
+}
+
+/// The pockets and voids of a union of balls, the largest volume first.
+///
+/// # Errors
+/// As [`super::measure`].
+///
+/// Cost: that of the triangulation of all balls, on one thread. Memory: about 500 bytes per ball.
+pub fn pockets(balls: Balls<'_>) -> Result<Vec<Pocket>> {
+    if balls.centres.is_empty() {
+        return Ok(Vec::new());
+    }
+    let all = Members { core: (0..balls.centres.len() as u32).collect(), around: Vec::new() };
+    let tile = Tile::new(balls, &all)?;
+    let mut pockets = Search::new(&tile).pockets();
+    pockets.sort_by(|p, q| q.volume.total_cmp(&p.volume).then_with(|| p.balls.cmp(&q.balls)));
+    Ok(pockets)
+}
+
+/// What is known of a tetrahedron.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// The balls cover its orthocentre.
+    Covered,
+    /// Empty, and part of the outside or draining to it.
+    Outside,
+    /// Empty, and not known to drain.
+    Empty,
+}
+
+struct Search<'t> {
+    tile: &'t Tile<'t>,
+    /// Power of each orthocentre.
+    powers: Vec<f64>,
+    states: Vec<State>,
+}
+
+impl<'t> Search<'t> {
+    fn new(tile: &'t Tile<'t>) -> Self {
+        let count = tile.tetrahedra().len();
+        let mut search = Search { tile, powers: Vec::with_capacity(count), states: Vec::new() };
+        for t in 0..count {
+            let apex = tile.tetrahedra()[t].vertices[0];
+            let to_centre = difference(tile.centre(t), tile.point(apex));
+            search.powers.push(dot(to_centre, to_centre) - tile.radius(apex).powi(2));
+            let vertices = tile.tetrahedra()[t].vertices;
+            let is_outer = vertices.iter().any(|&v| tile.ball(v).is_none());
+            search.states.push(match (is_outer, search.powers[t] > 0.0) {
+                (true, _) => State::Outside,
+                (_, true) => State::Empty,
+                _ => State::Covered,
+            });
+        }
+        search.drain();
+        search
+    }
+
+    /// Marks all empty tetrahedra from which the flow leads outside.
+    fn drain(&mut self) {
+        let is_outside = |&t: &usize| self.states[t] == State::Outside;
+        let mut open: Vec<usize> = (0..self.states.len()).filter(is_outside).collect();
+        while let Some(t) = open.pop() {
+            for side in 0..4 {
+                let Some(other) = self.tile.tetrahedra()[t].neighbour(side) else { continue };
+                let (other, across) = (other.tetrahedron as usize, other.corner as usize);
+                if self.states[other] == State::Empty && self.flows(other, across) {
+                    self.states[other] = State::Outside;
+                    open.push(other);
+                }
+            }
+        }
+    }
+
+    /// Whether the facet opposite to a corner separates a tetrahedron from its orthocentre.
+    fn flows(&self, t: usize, corner: usize) -> bool {
+        self.height(t, corner) < 0.0
+    }
+
+    /// Distance of the orthocentre from the plane of a facet, up to a positive factor: positive on the side of the
+    /// tetrahedron.
+    fn height(&self, t: usize, corner: usize) -> f64 {
+        let vertices = self.tile.tetrahedra()[t].vertices;
+        let [a, b, c] = TETRAHEDRON_FACETS[corner].map(|i| self.tile.point(vertices[i]));
+        let normal = cross(difference(b, a), difference(c, a));
+        let apex = dot(normal, difference(self.tile.point(vertices[corner]), a));
+        let centre = dot(normal, difference(self.tile.centre(t), a));
+        if apex < 0.0 { -centre } else { centre }
+    }
+
+    /// Whether the balls cover the facet's place in the dual: some point of the line of equal power between the two
+    /// orthocentres.
+    fn is_closed(&self, t: usize, corner: usize) -> bool {
+        let tetrahedron = &self.tile.tetrahedra()[t];
+        let Some(other) = tetrahedron.neighbour(corner) else { return false };
+        let (other, across) = (other.tetrahedron as usize, other.corner as usize);
+        let least = self.powers[t].min(self.powers[other]);
+        if least <= 0.0 || self.flows(t, corner) || self.flows(other, across) {
+            return least <= 0.0;
+        }
+        // The orthocentre of the facet lies between.
+        let points = TETRAHEDRON_FACETS[corner].map(|i| tetrahedron.vertices[i]);
+        let foot = Foot::of(points.map(|v| self.tile.point(v)), points.map(|v| self.tile.radius(v)));
+        foot.is_some_and(|foot| foot.power <= 0.0)
+    }
+
+    fn pockets(&self) -> Vec<Pocket> {
+        let edges = self.closed_edges();
+        let mut is_seen = vec![false; self.states.len()];
+        let mut pockets = Vec::new();
+        for start in 0..self.states.len() {
+            if self.states[start] == State::Empty && !is_seen[start] {
+                let members = self.component(start, &mut is_seen);
+                pockets.push(self.pocket(&members, &edges));
+            }
+        }
+        pockets
+    }
+
+    /// The tetrahedra that are joined to `start` across open facets.
+    fn component(&self, start: usize, is_seen: &mut [bool]) -> Vec<usize> {
+        let mut members = vec![start];
+        is_seen[start] = true;
+        let mut next = 0;
+        while next < members.len() {
+            let t = members[next];
+            next += 1;
+            for corner in 0..4 {
+                let Some(other) = self.tile.tetrahedra()[t].neighbour(corner) else { continue };
+                let other = other.tetrahedron as usize;
+                if self.states[other] == State::Empty && !is_seen[other] && !self.is_closed(t, corner) {
+                    is_seen[other] = true;
+                    members.push(other);
+                }
+            }
+        }
+        members
+    }
+
+    /// Edges of empty tetrahedra whose cells share a face in the union.
+    fn closed_edges(&self) -> BTreeSet<[u32; 2]> {
+        let mut wanted = BTreeSet::new();
+        for (t, tetrahedron) in self.tile.tetrahedra().iter().enumerate() {
+            if self.states[t] == State::Empty {
+                wanted.extend(EDGES.map(|(ends, _)| sorted(ends.map(|i| tetrahedron.vertices[i]))));
+            }
+        }
+        let mut closed = BTreeSet::new();
+        self.tile.for_each_face(
+            |ends| wanted.contains(&sorted(ends)),
+            |ends| {
+                closed.insert(sorted(ends));
+            },
+        );
+        closed
+    }
+
+    fn pocket(&self, members: &[usize], edges: &BTreeSet<[u32; 2]>) -> Pocket {
+        let mut free = Measure::default();
+        let mut balls = BTreeSet::new();
+        let mut mouths: Vec<[u32; 3]> = Vec::new();
+        for &t in members {
+            let vertices = self.tile.tetrahedra()[t].vertices;
+            balls.extend(vertices.iter().filter_map(|&v| self.tile.ball(v)));
+            free.add(1.0, self.free_part(t, edges));
+            for corner in 0..4 {
+                let other =
+                    self.tile.tetrahedra()[t].neighbour(corner).map(|other| other.tetrahedron as usize);
+                let is_outside = other.is_none_or(|other| self.states[other] == State::Outside);
+                if is_outside && !self.is_closed(t, corner) {
+                    mouths.push(TETRAHEDRON_FACETS[corner].map(|i| vertices[i]));
+                }
+            }
+        }
+        Pocket {
+            volume: free.volume.max(0.0),
+            area: free.area.max(0.0),
+            mouths: count_mouths(&mouths, edges),
+            mouth_area: mouths.iter().map(|&facet| self.open_area(facet, edges)).sum::<f64>().max(0.0),
+            depth: self.depth(members, &mouths),
+            tetrahedra: members.len() as u32,
+            balls: balls.into_iter().collect(),
+        }
+    }
+
+    /// The part of a tetrahedron that no ball covers.
+    fn free_part(&self, t: usize, edges: &BTreeSet<[u32; 2]>) -> Measure {
+        let vertices = self.tile.tetrahedra()[t].vertices;
+        let points = vertices.map(|v| self.tile.point(v));
+        let radii = vertices.map(|v| self.tile.radius(v));
+        let mut free = Measure { area: 0.0, volume: volume(points) };
+        for corner in 0..4 {
+            let others = TETRAHEDRON_FACETS[corner];
+            let share = solid_angle(points[corner], others.map(|i| points[i])) / (4.0 * PI);
+            let whole = ball(radii[corner]);
+            free.area += share * whole.area;
+            free.volume -= share * whole.volume;
+            if self.is_closed(t, corner) {
+                let common = triple(others.map(|i| points[i]), others.map(|i| radii[i]));
+                free.area += 0.5 * common.area;
+                free.volume -= 0.5 * common.volume;
+            }
+        }
+        for (ends, others) in EDGES {
+            if edges.contains(&sorted(ends.map(|i| vertices[i]))) {
+                let ends_at = ends.map(|i| points[i]);
+                let share = dihedral(ends_at, others.map(|i| points[i])) / (2.0 * PI);
+                let common = lens(ends_at, ends.map(|i| radii[i]));
+                free.area -= share * common.area;
+                free.volume += share * common.volume;
+            }
+        }
+        free
+    }
+
+    /// The part of a mouth's facet that no ball of its corners covers.
+    fn open_area(&self, facet: [u32; 3], edges: &BTreeSet<[u32; 2]>) -> f64 {
+        let points = facet.map(|v| self.tile.point(v));
+        let radii = facet.map(|v| self.tile.radius(v));
+        let normal = cross(difference(points[1], points[0]), difference(points[2], points[0]));
+        let mut area = 0.5 * length(normal);
+        for i in 0..3 {
+            let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+            area -= 0.5 * radii[i] * radii[i] * angle(points[i], [points[j], points[k]]);
+            if edges.contains(&sorted([facet[i], facet[j]])) {
+                area += 0.5 * lens_of_disks([points[i], points[j]], [radii[i], radii[j]]);
+            }
+        }
+        area
+    }
+
+    fn depth(&self, members: &[usize], mouths: &[[u32; 3]]) -> f64 {
+        let rim: BTreeSet<u32> = mouths.iter().flatten().copied().collect();
+        let lining = members.iter().flat_map(|&t| self.tile.tetrahedra()[t].vertices);
+        let lining: BTreeSet<u32> = lining.collect();
+        let nearest = |v: u32| {
+            let distance = |&r: &u32| length(difference(self.tile.point(r), self.tile.point(v)));
+            rim.iter().map(distance).min_by(f64::total_cmp)
+        };
+        lining.into_iter().filter_map(nearest).fold(0.0, f64::max)
+    }
+}
+
+/// Number of groups of facets that are joined at edges that the balls leave open.
+fn count_mouths(facets: &[[u32; 3]], closed: &BTreeSet<[u32; 2]>) -> u32 {
+    let mut at_edges: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
+    for (number, facet) in facets.iter().enumerate() {
+        for i in 0..3 {
+            let edge = sorted([facet[i], facet[(i + 1) % 3]]);
+            if !closed.contains(&edge) {
+                at_edges.entry(edge).or_default().push(number);
+            }
+        }
+    }
+    let mut group: Vec<usize> = (0..facets.len()).collect();
+    let mut groups = facets.len() as u32;
+    for joined in at_edges.values() {
+        for pair in joined.windows(2) {
+            let [p, q] = [root(&mut group, pair[0]), root(&mut group, pair[1])];
+            if p != q {
+                group[p] = q;
+                groups -= 1;
+            }
+        }
+    }
+    groups
+}
+
+/// The root of a tree of groups; halves the way.
+fn root(group: &mut [usize], mut at: usize) -> usize {
+    while group[at] != at {
+        group[at] = group[group[at]];
+        at = group[at];
+    }
+    at
+}
+
+fn sorted([p, q]: [u32; 2]) -> [u32; 2] {
+    [p.min(q), p.max(q)]
+}
