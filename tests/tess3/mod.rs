@@ -1,6 +1,8 @@
 //! `tess3`: from structures to meshes and tables.
 
 mod alpha;
+mod assemblies;
+mod classes;
 #[cfg(feature = "experiments")]
 mod experiments;
 mod failures;
