@@ -8,6 +8,7 @@ mod experiments;
 mod failures;
 mod meshes;
 mod molecules;
+mod pipes;
 mod selections;
 mod sweeps;
 mod tables;
