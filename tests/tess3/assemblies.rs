@@ -46,6 +46,11 @@ X ? ? ? ?    0 1 0 0    0 0 1 0
 
 /// Ten atoms of subchain A, which the authors call U, and ten of subchain B, of theirs too.
 fn mmcif(generators: &[[&str; 3]]) -> String {
+    mmcif_of(20, generators)
+}
+
+/// The same with `atoms` atoms; all but ten are of subchain B.
+fn mmcif_of(atoms: u32, generators: &[[&str; 3]]) -> String {
     let mut text = "data_test\nloop_\n_pdbx_struct_assembly_gen.assembly_id\n\
                     _pdbx_struct_assembly_gen.oper_expression\n_pdbx_struct_assembly_gen.asym_id_list\n"
         .to_string();
@@ -55,7 +60,7 @@ fn mmcif(generators: &[[&str; 3]]) -> String {
     text += OPERATORS;
     text += "loop_\n_atom_site.group_PDB\n_atom_site.id\n_atom_site.label_atom_id\n_atom_site.label_asym_id\n\
              _atom_site.auth_asym_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n";
-    for (i, atom) in cloud(20, 9_000, 60).iter().enumerate() {
+    for (i, atom) in cloud(atoms, 9_000, 60).iter().enumerate() {
         let [x, y, z] = atom.at;
         let subchain = if i < 10 { 'A' } else { 'B' };
         writeln!(text, "ATOM {} CA {subchain} U {x:.3} {y:.3} {z:.3}", i + 1).unwrap();
@@ -157,6 +162,17 @@ fn malformed_operators_are_errors() {
         assert_eq!(code, Some(3), "{expression}: {message}");
         assert!(message.contains(words), "{expression}: {message}");
     }
+}
+
+#[test]
+fn equal_operators_make_one_copy_and_all_operators_are_limited() {
+    let twelve = "(1,1,1,1,1,1,1,1,1,1,1,2)";
+    let text = mmcif_of(40, &[["1", &twelve.repeat(3), "B"]]);
+    // Equal operators make one copy.
+    assert_eq!(points(&["--assembly", "1"], &text).len(), 30 * 4);
+    let (code, message) = failure("1", &mmcif_of(40, &[["1", &twelve.repeat(4), "B"]]));
+    assert_eq!(code, Some(3), "{message}");
+    assert!(message.contains("more than 16384 operators"), "{message}");
 }
 
 #[test]

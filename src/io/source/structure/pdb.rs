@@ -22,7 +22,7 @@ const PLACE: [(usize, &str); 3] = [(30, "x"), (38, "y"), (46, "z")];
 const WIDTH: usize = 8;
 
 /// Number of columns that are used.
-const LINE_LEN: usize = 80;
+pub(super) const LINE_LEN: usize = 80;
 
 /// Reads all records.
 ///

@@ -2,7 +2,7 @@
 //! on them.
 
 use super::builder::StructureBuilder;
-use super::pdb::columns;
+use super::pdb::{LINE_LEN, columns};
 use super::residue_names::{Kind, kind};
 use super::serial::residue_number;
 
@@ -35,7 +35,8 @@ pub(super) fn modified_residue(line: &[u8], builder: &mut StructureBuilder) {
     }
 }
 
-/// The text of a line, if it is ASCII.
+/// The text of the used columns of a line, if it is ASCII.
 pub(super) fn text(line: &[u8]) -> Option<&str> {
+    let line = &line[..line.len().min(LINE_LEN)];
     line.is_ascii().then(|| std::str::from_utf8(line).ok())?
 }
