@@ -204,6 +204,8 @@ fn start_of(format: Format) -> Vec<u8> {
         Format::Zip => b"PK\x03\x04",
         Format::Bzip2 => b"BZh91AY",
         Format::Xz => b"\xfd7zXZ\0",
+        Format::Compress => b"\x1f\x9d\x90",
+        Format::BinaryCif => b"\x83\xa7version\xa50.3.0",
         Format::Utf16 => b"\xff\xfe1\0",
         Format::Pcd => b"# .PCD v0.7\n",
         Format::Hdf5 => b"\x89HDF\r\n",

@@ -1,16 +1,21 @@
 //! Prints the atoms of structures as lines of text, or the time that reading them takes, for
 //! `scripts/check-structures`.
 //!
-//!     cargo run --release --example structures -- [--time] FILE...
+//!     cargo run --release --example structures -- [--time | --assembly NAME] FILE...
 
 use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use spmesh_io::source::structure::{Models, Selection, Structure, read_structure};
+use spmesh_io::source::structure::{Class, Models, Selection, Structure, read_structure};
 
 fn main() -> std::io::Result<()> {
     let mut files: Vec<String> = std::env::args().skip(1).collect();
+    let mut assembly = None;
+    if files.first().is_some_and(|flag| flag == "--assembly") {
+        files.remove(0);
+        assembly = Some(files.remove(0));
+    }
     let is_timed = files.first().is_some_and(|flag| flag == "--time");
     if is_timed {
         files.remove(0);
@@ -20,6 +25,10 @@ fn main() -> std::io::Result<()> {
         let start = Instant::now();
         let result = read_structure(Path::new(&file), None);
         let seconds = start.elapsed().as_secs_f64();
+        let result = match &assembly {
+            Some(name) => result.and_then(|structure| structure.assembled(name)),
+            None => result,
+        };
         match result {
             Err(error) => writeln!(output, "refused\t{error}")?,
             Ok(structure) if is_timed => {
@@ -46,10 +55,16 @@ fn print(structure: &Structure, output: &mut impl Write) -> std::io::Result<()> 
             continue;
         };
         let number = atom.residue_number().map_or(String::new(), |number| number.to_string());
+        let class = match atom.residue().class {
+            Class::Polymer => "polymer",
+            Class::Water => "water",
+            Class::Ion => "ion",
+            Class::Ligand => "ligand",
+        };
         let group = if atom.atom.is_hetatm { "HETATM" } else { "ATOM" };
         writeln!(
             output,
-            "{group}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{number}\t{}\t{}\t{x:.6}\t{y:.6}\t{z:.6}",
+            "{group}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{number}\t{}\t{}\t{class}\t{x:.6}\t{y:.6}\t{z:.6}",
             atom.model,
             atom.atom.serial,
             atom.name(),

@@ -78,8 +78,8 @@ pub struct Flags {
     audit: Option<AuditStandard>,
 
     /// Also prove that the vertices of the mesh are exactly the points of this file, in any format that
-    /// spfinalize reads; can be repeated. The points are held, with 4 bytes per integer coordinate and 8
-    /// bytes per other one
+    /// spfinalize reads, with the atoms of PDB and mmCIF; can be repeated. The points are held, with 4 bytes
+    /// per integer coordinate and 8 bytes per other one
     #[arg(long, value_name = "FILE", requires = "audit")]
     points: Vec<PathBuf>,
 

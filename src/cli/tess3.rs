@@ -37,6 +37,8 @@ Examples:
     spinfo --audit 1abc.spm
   Contacts between residues: edges of the triangulation of the alpha carbons of two chains:
     tess3 1abc.pdb --chain A,B --atoms ca --contacts -o contacts.tsv
+  Proteins, nucleic acids and ligands of a biological assembly, without water and ions:
+    tess3 1abc.cif --assembly 1 --classes polymer,ligand -o 1abc.spm
   Tetrahedra with circumradius and volume; only those of the alpha complex of radius 4 Å:
     tess3 1abc.pdb --hetatm off --alpha 4 --table | sort -gk10
   Many structures, two at a time; later only what is new or changed:
@@ -55,9 +57,9 @@ const OUT_OF_MEMORY: &str = "tess3: not enough memory: take fewer points, or few
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
-/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ, OFF, VTK and LAS, plain or
-/// compressed (.gz), and writes a tetrahedral mesh stream or a table. The result is exact and canonical: it
-/// depends on the set of points only.
+/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF, VTK and
+/// LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table. The result is exact and
+/// canonical: it depends on the set of points only.
 #[derive(Debug, Parser)]
 #[command(name = "tess3", version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -212,7 +214,9 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     let mut output = Some(Output::create(&flags.output, is_binary)?);
     let started = Instant::now();
     let structure = read_structure(input, flags.from.map(Into::into))?;
-    structure.warnings.iter().for_each(|warning| flags.notice(&format!("{}: {warning}", structure.name)));
+    let missing = structure.missing_location(&options.selection);
+    let warnings = structure.warnings.iter().chain(&missing);
+    warnings.for_each(|warning| flags.notice(&format!("{}: {warning}", structure.name)));
     check_models(&structure, &options, flags)?;
     let read = started.elapsed();
     let reports = spmesh_tess3::run(structure, &options, &mut |_| {
@@ -300,6 +304,7 @@ impl Flags {
         let balls = self.balls.options(NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN))?;
         Ok(Options {
             selection: self.selection.selection(),
+            assembly: self.selection.assembly().map(str::to_string),
             alpha: self.alpha.clone(),
             method: self.method.method()?,
             compress: self.compression.of_output(product == Product::Mesh)?,

@@ -33,6 +33,15 @@ pub const TEXT_NUMBERS_MAX: usize = 1 << 12;
 /// Longest line of a molecular structure, in bytes: mmCIF may hold a whole sequence in one.
 pub const STRUCTURE_LINE_MAX: usize = 1 << 24;
 
+/// Most operators of a biological assembly of a structure.
+pub const ASSEMBLY_COPIES_MAX: usize = 1 << 14;
+
+/// Most copies of subchains in a biological assembly.
+pub const ASSEMBLY_CHAINS_MAX: usize = 1 << 22;
+
+/// Most atoms of a biological assembly, in all models: 1.9 GB, and the names of chains.
+pub const ASSEMBLY_ATOMS_MAX: usize = 1 << 25;
+
 /// Longest header line of a text twin, in bytes: it may hold a CRS, escaped.
 pub const TEXT_HEADER_LINE_MAX: usize = 1 << 23;
 

@@ -1,11 +1,14 @@
 //! `tess3`: from structures to meshes and tables.
 
 mod alpha;
+mod assemblies;
+mod classes;
 #[cfg(feature = "experiments")]
 mod experiments;
 mod failures;
 mod meshes;
 mod molecules;
+mod pipes;
 mod selections;
 mod sweeps;
 mod tables;

@@ -65,6 +65,24 @@ fn flags_choose_atoms() {
 }
 
 #[test]
+fn a_location_that_is_missing_is_a_notice() {
+    let cases: [(&[&str], &str); 3] = [
+        (&["--altloc", "C"], "no atom has the alternate location \"C\", only A, B"),
+        (&["--altloc", "A", "--chain", "B"], "no atom has the alternate location \"A\", nor any other"),
+        (&["--altloc", "A"], ""),
+    ];
+    for (arguments, words) in cases {
+        let output = run("tess3", &[arguments, &["-"]].concat(), molecule().as_bytes());
+        assert!(output.status.success());
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            message.contains(words) && message.is_empty() == words.is_empty(),
+            "{arguments:?}: {message}"
+        );
+    }
+}
+
+#[test]
 fn nothing_selected_is_an_error_that_says_what_there_is() {
     let waters: Vec<Record> = cloud(5, 9_000, 41)
         .into_iter()

@@ -344,6 +344,14 @@ fn warnings_are_in_the_summary() {
     let expected =
         "1 of 5 points coincides with an earlier one; no tetrahedra: all points in a plane (5 points)";
     assert_eq!(rows.text(0, "warnings"), expected);
+    let files = ["tests/data/altloc.cif".into(), "tests/data/1pfe.cif.gz".into()];
+    assert_eq!(sweep(&folder, &["--altloc", "Z"], &files).0, Some(1));
+    let rows = summary(&folder);
+    // Each atom of the first file has alternate locations.
+    for (name, column) in [("altloc.cif", "error"), ("1pfe.cif.gz", "warnings")] {
+        let text = rows.text(rows.of_file(name), column);
+        assert!(text.contains("no atom has the alternate location \"Z\", only A, B"), "{text}");
+    }
 }
 
 #[test]

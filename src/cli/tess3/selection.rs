@@ -4,7 +4,7 @@ use std::fmt;
 
 use clap::{Args, ValueEnum};
 
-use spmesh_io::source::structure::{Altlocs, Atoms, Models, Selection};
+use spmesh_io::source::structure::{Altlocs, Atoms, Class, Models, Selection};
 
 /// Which atoms are triangulated.
 #[derive(Debug, Clone, Args)]
@@ -12,6 +12,11 @@ pub(super) struct SelectionFlags {
     /// The model of this number, or all models one by one [default: the first model]
     #[arg(long, value_name = "N|all", allow_hyphen_values = true, value_parser = parse_models)]
     model: Option<Models>,
+
+    /// The biological assembly of this name: copies of chains moved by operators. Copies of chain A are named
+    /// A, A-2, A-3 and so on
+    #[arg(long, value_name = "NAME")]
+    assembly: Option<String>,
 
     /// Only these chains, as the authors call them
     #[arg(long, value_name = "CHAIN,...", value_delimiter = ',')]
@@ -22,7 +27,13 @@ pub(super) struct SelectionFlags {
     #[arg(long, value_name = "best|first|all|NAME", default_value = "best", value_parser = parse_altlocs)]
     altloc: Altlocs,
 
-    /// Whether HETATM records are wanted: ligands, ions, water, modified residues
+    /// Only these classes of residues: polymer (amino acids and nucleotides, modified ones too), ligand, ion
+    /// (single atoms), water [default: all]. mmCIF states them; in other files names, SEQRES and TER tell
+    #[arg(long, value_enum, value_name = "CLASS,...", value_delimiter = ',', hide_possible_values = true)]
+    classes: Vec<ClassFlag>,
+
+    /// Whether HETATM records are wanted: ligands, ions, water, and modified residues of polymers (to keep
+    /// these, use --classes polymer)
     #[arg(long, value_enum, default_value_t = Switch::On, value_name = "on|off", hide_possible_values = true)]
     hetatm: Switch,
 
@@ -50,6 +61,29 @@ enum AtomsFlag {
     All,
 }
 
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
+enum ClassFlag {
+    /// Amino acids and nucleotides in chains
+    Polymer,
+    /// Small molecules
+    Ligand,
+    /// Metals and halogens
+    Ion,
+    /// Water
+    Water,
+}
+
+impl ClassFlag {
+    fn class(self) -> Class {
+        match self {
+            ClassFlag::Polymer => Class::Polymer,
+            ClassFlag::Ligand => Class::Ligand,
+            ClassFlag::Ion => Class::Ion,
+            ClassFlag::Water => Class::Water,
+        }
+    }
+}
+
 impl SelectionFlags {
     pub(super) fn selection(&self) -> Selection {
         Selection {
@@ -62,7 +96,12 @@ impl SelectionFlags {
                 AtomsFlag::Heavy => Atoms::Heavy,
                 AtomsFlag::All => Atoms::All,
             },
+            classes: self.classes.iter().map(|flag| flag.class()).collect(),
         }
+    }
+
+    pub(super) fn assembly(&self) -> Option<&str> {
+        self.assembly.as_deref()
     }
 
     pub(super) fn wants_all_models(&self) -> bool {
@@ -77,6 +116,9 @@ impl fmt::Display for SelectionFlags {
             Models::First => {}
             Models::One(number) => write!(f, "--model {number} ")?,
             Models::All => write!(f, "--model all ")?,
+        }
+        if let Some(assembly) = &self.assembly {
+            write!(f, "--assembly {assembly} ")?;
         }
         if !self.chain.is_empty() {
             write!(f, "--chain {} ", self.chain.join(","))?;
@@ -93,7 +135,15 @@ impl fmt::Display for SelectionFlags {
             AtomsFlag::Heavy => "heavy",
             AtomsFlag::All => "all",
         };
-        write!(f, "--altloc {altloc} --hetatm {hetatm} --atoms {atoms}")
+        write!(f, "--altloc {altloc} --hetatm {hetatm} --atoms {atoms}")?;
+        let mut classes = self.classes.clone();
+        classes.sort_unstable();
+        classes.dedup();
+        for (flag, class) in std::iter::once(" --classes ").chain(std::iter::repeat(",")).zip(classes) {
+            let name = class.to_possible_value().expect("each class has a name");
+            write!(f, "{flag}{}", name.get_name())?;
+        }
+        Ok(())
     }
 }
 

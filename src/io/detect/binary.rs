@@ -20,6 +20,14 @@ pub(super) fn is_nifti(head: &[u8]) -> bool {
     states(348) && has_magic || states(540) && head.get(4..6) == Some(b"n+")
 }
 
+/// Whether `head` is BinaryCIF: a map of MessagePack that starts with one of the keys of such files.
+pub(super) fn is_binary_cif(head: &[u8]) -> bool {
+    // A map of up to 15 entries, and a text of 7 or 10 bytes.
+    let is_map = matches!(head.first(), Some(0x80..=0x8f));
+    let keys: [&[u8]; 3] = [b"\xa7encoder", b"\xa7version", b"\xaadataBlocks"];
+    is_map && keys.iter().any(|key| head[1..].starts_with(key))
+}
+
 /// Whether `head` is an SPB header: version 7, byte order 0 or 1, then data type (two bits) and finalization
 /// method.
 pub(super) fn is_spb(head: &[u8]) -> bool {

@@ -75,6 +75,10 @@ pub enum Format {
     Bzip2,
     /// xz.
     Xz,
+    /// compress, of older Unix systems.
+    Compress,
+    /// BinaryCIF.
+    BinaryCif,
     /// Text in UTF-16.
     Utf16,
     /// PCD, of the Point Cloud Library.
@@ -129,12 +133,12 @@ const fn row(
 
 const NO_LIST: &str = "";
 const VALUES: &str = "write its values as NRRD or raw numbers first";
-const TO_POINTS: &str = "write points as lines of x y z, or use tess3";
+const TO_POINTS: &str = "make a point stream of its atoms with spfinalize --octree, or use tess3";
 const TO_STREAM: &str = "convert it first with spconvert";
 const TO_PLY: &str = "convert it first with spconvert --to ply";
 
 /// All formats. The first row whose test passes is the format of an input.
-const ROWS: [Row; 35] = [
+const ROWS: [Row; 37] = [
     row(Format::Las, "a LAS, LAZ or COPC file", "LAS, LAZ, COPC", Test::Magic(&[b"LASF"]), ""),
     row(Format::Stream, "a spmesh stream", "spmesh streams", Test::Magic(&[b"\x89S"]), ""),
     row(
@@ -187,6 +191,20 @@ const ROWS: [Row; 35] = [
         NO_LIST,
         Test::Magic(&[b"\xfd7zXZ\x00"]),
         "decompress it first, for example with xzcat",
+    ),
+    row(
+        Format::Compress,
+        "data of compress (.Z)",
+        NO_LIST,
+        Test::Magic(&[b"\x1f\x9d"]),
+        "decompress it first, for example with uncompress -c FILE.Z",
+    ),
+    row(
+        Format::BinaryCif,
+        "a BinaryCIF file",
+        NO_LIST,
+        Test::Look(binary::is_binary_cif),
+        "download the entry as .cif or .cif.gz, or convert it first, for example with biotite",
     ),
     row(
         Format::Utf16,

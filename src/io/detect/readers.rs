@@ -35,8 +35,12 @@ const POINTS: &[Format] = &[
     Format::Npy,
 ];
 
+/// Molecular structures, whose atoms are points in space.
+const STRUCTURES: &[Format] = &[Format::Pdb, Format::Mmcif, Format::Xyz];
+
 /// `spfinalize`.
-pub const SPFINALIZE: Reader = Reader { tool: "spfinalize", formats: &[POINTS], has_raw: true, axes: 3 };
+pub const SPFINALIZE: Reader =
+    Reader { tool: "spfinalize", formats: &[POINTS, STRUCTURES], has_raw: true, axes: 3 };
 
 /// `configgen`.
 pub const CONFIGGEN: Reader = Reader { tool: "configgen", formats: &[POINTS], has_raw: false, axes: 3 };
@@ -45,7 +49,7 @@ pub const CONFIGGEN: Reader = Reader { tool: "configgen", formats: &[POINTS], ha
 pub const SPLINEFIT: Reader = Reader { tool: "splinefit", formats: &[POINTS], has_raw: false, axes: 3 };
 
 /// `spinfo`, for the points that an audit compares with.
-pub const SPINFO: Reader = Reader { tool: "spinfo", formats: &[POINTS], has_raw: false, axes: 3 };
+pub const SPINFO: Reader = Reader { tool: "spinfo", formats: &[POINTS, STRUCTURES], has_raw: false, axes: 3 };
 
 /// `spconvert`.
 pub const SPCONVERT: Reader = Reader {
@@ -69,12 +73,8 @@ pub const SPCONVERT: Reader = Reader {
 };
 
 /// `tess3`.
-pub const TESS3: Reader = Reader {
-    tool: "tess3",
-    formats: &[&[Format::Pdb, Format::Mmcif, Format::Xyz, Format::Off], POINTS],
-    has_raw: false,
-    axes: 3,
-};
+pub const TESS3: Reader =
+    Reader { tool: "tess3", formats: &[STRUCTURES, &[Format::Off], POINTS], has_raw: false, axes: 3 };
 
 /// `spcanopy`.
 pub const SPCANOPY: Reader = Reader { tool: "spcanopy", formats: &[&[Format::Las]], has_raw: false, axes: 3 };

@@ -4,6 +4,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
+use super::atoms::{self, AtomPass, Atoms};
 use super::crs;
 use super::cut::Cut;
 use super::describe::{File, describe};
@@ -49,6 +50,8 @@ enum Content {
     /// VTK, and raw numbers.
     Arrays(Arc<[PointArray]>),
     Npy(NpyArray),
+    /// Molecular structures, which are read when they are opened.
+    Atoms(Atoms),
     Text(Columns),
 }
 
@@ -167,7 +170,7 @@ impl Input {
                     Content::Las(header) => header.laz.is_some(),
                     Content::Twin | Content::Spa | Content::Ply | Content::Obj | Content::Text(_) => true,
                     Content::Arrays(arrays) => point_arrays::are_costly(arrays),
-                    Content::Stream | Content::Spb | Content::Npy(_) => false,
+                    Content::Stream | Content::Spb | Content::Npy(_) | Content::Atoms(_) => false,
                 }
         })
     }
@@ -227,6 +230,8 @@ impl Source {
         }
         stated.crs = crs::fitting(stated.crs, &mut own_notices);
         notices.extend(own_notices.into_iter().map(|notice| format!("{name}: {notice}")));
+        // Atoms are decompressed once.
+        let is_compressed = is_compressed && !matches!(content, Content::Atoms(_));
         let cut = cut.map_or_else(OnceLock::new, OnceLock::from);
         let source = Source { name, origin, is_compressed, content, stated, cut };
         source.check(options).map_err(|e| e.of_input(&source.name))?;
@@ -271,6 +276,7 @@ impl Source {
             Content::Ply => Box::new(stream::pass_of_ply(origin.plain()?, &self.name, plan)?),
             Content::Obj => Box::new(stream::pass_of_obj(origin.plain()?, &self.name)),
             Content::Arrays(arrays) => Box::new(ArrayPass::new(origin.view()?, Arc::clone(arrays), plan)),
+            Content::Atoms(atoms) => Box::new(AtomPass::new(atoms)),
             Content::Npy(array) => Box::new(NpyPass::new(&origin.view()?, array.clone())),
             Content::Text(columns) => {
                 let (file, columns) = (origin.plain()?, columns.clone());
@@ -357,7 +363,10 @@ impl Content {
                 let (columns, stated) = text_columns::state(origin.plain()?, layout, notices)?;
                 (Content::Text(columns), stated)
             }
-            other => return Err(Error::usage(format!("{} holds no points of space", other.name()))),
+            other => {
+                let (atoms, stated) = atoms::read(origin.plain()?, name, other, notices)?;
+                (Content::Atoms(atoms), stated)
+            }
         })
     }
 

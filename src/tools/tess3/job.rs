@@ -32,6 +32,10 @@ pub fn run(
     open: &mut dyn FnMut(Option<ModelName>) -> Result<Output>,
 ) -> Result<Vec<Report>> {
     let name = structure.name.clone();
+    let structure = match &options.assembly {
+        Some(assembly) => structure.assembled(assembly)?,
+        None => structure,
+    };
     let mut job = Job { options: options.clone(), open, table: None };
     let reports = job.all_models(structure).map_err(|e| e.of_input(name))?;
     if let Some(table) = job.table {
@@ -75,8 +79,10 @@ impl Job<'_> {
         let started = Instant::now();
         let at = selection::model_index(structure, &self.options.selection)?;
         let name = ModelName { place, number: structure.models[at].number };
-        // Points without atoms move into the kernel, which then needs no copy.
-        let is_plain = self.options.product == Product::Mesh && structure.models[at].atoms.is_empty();
+        // Points without atoms and labels move into the kernel, which then needs no copy.
+        let model = &structure.models[at];
+        let is_plain =
+            self.options.product == Product::Mesh && model.atoms.is_empty() && model.labels.is_empty();
         if is_plain {
             selection::select(structure, &self.options.selection)?;
         }

@@ -51,6 +51,8 @@ pub enum Product {
 pub struct Options {
     /// Which atoms; all models are triangulated one by one.
     pub selection: Selection,
+    /// The biological assembly to make of each file first, if one is wanted.
+    pub assembly: Option<String>,
     /// What is written.
     pub product: Product,
     /// Write only simplices of the alpha complex with this radius, in world units.

@@ -29,6 +29,7 @@ fn nothing_left(structure: &Structure, selection: &Selection) -> Error {
     let relaxed = [
         ("--hetatm on", Selection { hetatm: true, ..selection.clone() }),
         ("--atoms all", Selection { atoms: Atoms::All, ..selection.clone() }),
+        ("all classes", Selection { classes: Vec::new(), ..selection.clone() }),
         ("all chains", Selection { chains: Vec::new(), ..selection.clone() }),
         ("--altloc all", Selection { altlocs: Altlocs::All, ..selection.clone() }),
     ];
@@ -40,8 +41,8 @@ fn nothing_left(structure: &Structure, selection: &Selection) -> Error {
     if let Ok(all) = structure.select(&all) {
         message += &describe(&all);
     }
-    for remedy in remedies {
-        message += &format!("; {remedy}");
+    for hint in structure.missing_location(selection).into_iter().chain(remedies) {
+        message += &format!("; {hint}");
     }
     Error::usage(message)
 }

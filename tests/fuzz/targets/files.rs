@@ -80,7 +80,12 @@ pub fn molecule(bytes: &[u8]) {
 }
 
 fn structure(bytes: &[u8], format: Option<Format>) {
-    drop(read_structure_from(Cursor::new(bytes.to_vec()), "fuzz", format));
+    let read = || read_structure_from(Cursor::new(bytes.to_vec()), "fuzz", format);
+    let Ok(structure) = read() else { return };
+    let assembly = structure.assemblies.names().first().map(|name| (*name).to_string());
+    if let Some(assembly) = assembly {
+        drop(structure.assembled(&assembly));
+    }
 }
 
 /// Volumes that change over time: NRRD, NIfTI, text.

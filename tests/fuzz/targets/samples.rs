@@ -66,6 +66,26 @@ pub const MOLECULES: &[&str] = &[
     "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n",
     "data_a\nloop_\n_atom_site.id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n1 1.0 2 3\n2 'a b' ? .\n",
     "1 2 3\n4 5 6\n",
+    "data_a\n_entity.id 1\n_entity.type polymer\n_struct_asym.id A\n_struct_asym.entity_id 1\nloop_\n\
+     _pdbx_struct_assembly_gen.assembly_id\n_pdbx_struct_assembly_gen.oper_expression\n\
+     _pdbx_struct_assembly_gen.asym_id_list\n1 (1-2)(P) A,B\n1 1,2 B\nloop_\n_pdbx_struct_oper_list.id\n\
+     _pdbx_struct_oper_list.matrix[1][1]\n_pdbx_struct_oper_list.matrix[1][2]\n\
+     _pdbx_struct_oper_list.matrix[1][3]\n_pdbx_struct_oper_list.vector[1]\n\
+     _pdbx_struct_oper_list.matrix[2][1]\n_pdbx_struct_oper_list.matrix[2][2]\n\
+     _pdbx_struct_oper_list.matrix[2][3]\n_pdbx_struct_oper_list.vector[2]\n\
+     _pdbx_struct_oper_list.matrix[3][1]\n_pdbx_struct_oper_list.matrix[3][2]\n\
+     _pdbx_struct_oper_list.matrix[3][3]\n_pdbx_struct_oper_list.vector[3]\n\
+     1 1 0 0 0 0 1 0 0 0 0 1 0\n2 0 1 0 9 -1 0 0 8 0 0 1 7\nP 1 0 0 1e9 0 1 0 0 0 0 1 0\nloop_\n\
+     _atom_site.id\n_atom_site.label_asym_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n\
+     _atom_site.Cartn_z\n1 A 1.0 2 3\n2 B 4 5 6.125\n",
+    "SEQRES   1 A    2  ALA MSE\nMODRES 1ABC MSE A   2  MET  SELENOMETHIONINE\n\
+     REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A,\n\
+     REMARK 350                    AND CHAINS: B\n\
+     REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n\
+     REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n\
+     REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        5.00000\n\
+     ATOM      1  N   ALA A   1       1.000   2.000   3.000  1.00  0.00           N\n\
+     HETATM    2  N   MSE A   2       4.000   5.000   6.000  1.00  0.00           N\nTER\n",
 ];
 
 /// Breaklines, corners, values.

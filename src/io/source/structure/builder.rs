@@ -1,8 +1,10 @@
 //! Builds a structure from atoms, in the order of a file.
 
+use super::assemblies::Assemblies;
+use super::classes::{Annotations, Class, Detail};
 use super::decimal::{Number, Quantum};
 use super::model::{Atom, Model, Residue, Structure};
-use super::names::Names;
+use super::names::{Name, Names};
 use spmesh_core::error::{Error, Result};
 
 /// An atom as stated by a file.
@@ -16,6 +18,9 @@ pub(super) struct Record<'a> {
     pub(super) element: &'a str,
     pub(super) altloc: &'a str,
     pub(super) chain: &'a str,
+    /// Part of the chain, and its entity, if the file names them.
+    pub(super) subchain: &'a str,
+    pub(super) entity: &'a str,
     pub(super) residue_name: &'a str,
     pub(super) residue_number: Option<i32>,
     pub(super) insertion_code: &'a str,
@@ -53,6 +58,11 @@ pub(super) struct StructureBuilder {
     /// Index of the model that receives atoms.
     model: usize,
     residues: Vec<Residue>,
+    /// What is known of each residue until its class is.
+    details: Vec<Detail>,
+    /// What the file states of its molecules.
+    pub(super) annotations: Annotations,
+    pub(super) assemblies: Assemblies,
     names: Names,
     /// First line and count of each oddity.
     oddities: [(u64, u64); ODDITIES.len()],
@@ -66,6 +76,7 @@ impl StructureBuilder {
     pub(super) fn start_model(&mut self, number: i64) {
         self.model = self.models.len();
         self.models.push(Model { number, ..Model::default() });
+        self.annotations.model_starts.push(self.residues.len());
     }
 
     /// Continues the last model with this number, or starts a new one.
@@ -82,6 +93,16 @@ impl StructureBuilder {
     /// Number for a model without a number of its own.
     pub(super) fn next_model_number(&self) -> i64 {
         self.models.last().map_or(1, |model| model.number.saturating_add(1))
+    }
+
+    /// The name of `text`.
+    pub(super) fn intern(&mut self, text: &str) -> Name {
+        self.names.intern(text)
+    }
+
+    /// Ends the chain of the last residue.
+    pub(super) fn end_chain(&mut self) {
+        self.annotations.chain_ends.push(self.residues.len());
     }
 
     /// Counts an oddity in `line`.
@@ -115,15 +136,17 @@ impl StructureBuilder {
             self.start_model(1);
         }
         self.last_line = record.line;
-        let residue = self.residue(record)?;
+        let name = self.names.intern(record.name);
+        let element = self.names.intern(record.element);
+        let residue = self.residue(record, name, element)?;
         let point = self.quantum.store(record.place, &mut self.models);
         let model = &mut self.models[self.model];
         let after_last = || model.atoms.last().map_or(1, |atom| atom.serial.saturating_add(1));
         let atom = Atom {
             serial: record.serial.unwrap_or_else(after_last),
             residue,
-            name: self.names.intern(record.name),
-            element: self.names.intern(record.element),
+            name,
+            element,
             altloc: self.names.intern(record.altloc),
             occupancy: record.occupancy,
             is_hetatm: record.is_hetatm,
@@ -134,16 +157,28 @@ impl StructureBuilder {
         Ok(())
     }
 
-    /// Index of an atom's residue: the residue of the atom before, or a new one.
-    fn residue(&mut self, record: &Record) -> Result<u32> {
+    /// Index of the residue of an atom with this name and element: the residue of the atom before, or a new
+    /// one.
+    fn residue(&mut self, record: &Record, atom: Name, element: Name) -> Result<u32> {
+        let chain = self.names.intern(record.chain);
         let residue = Residue {
-            chain: self.names.intern(record.chain),
+            chain,
             name: self.names.intern(record.residue_name),
             number: record.residue_number,
             insertion_code: self.names.intern(record.insertion_code),
+            subchain: if record.subchain.is_empty() { chain } else { self.names.intern(record.subchain) },
+            class: Class::default(),
         };
-        if self.residues.last() != Some(&residue) {
-            self.residues.push(residue);
+        let entity = self.names.intern(record.entity);
+        match (self.residues.last(), self.details.last_mut()) {
+            (Some(last), Some(detail)) if *last == residue && detail.entity == entity => {
+                detail.is_single &= detail.atom == atom;
+            }
+            _ => {
+                self.residues.push(residue);
+                let is_hetatm = record.is_hetatm;
+                self.details.push(Detail { entity, atom, element, is_hetatm, is_single: true });
+            }
         }
         u32::try_from(self.residues.len() - 1)
             .map_err(|_| Error::malformed("more than 2^32 residues, the maximum"))
@@ -164,12 +199,14 @@ impl StructureBuilder {
                 self.warnings.push(format!("{count} {what}, the first in line {line}: {remedy}"));
             }
         }
+        self.annotations.classify(&mut self.residues, &self.details, &self.names);
         Ok(Structure {
             name: name.to_string(),
             coordinates: self.quantum.coordinates(),
             models: self.models,
             residues: self.residues,
             names: self.names,
+            assemblies: self.assemblies,
             warnings: self.warnings,
         })
     }

@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::builder::{Oddity, Record, StructureBuilder, printable};
 use super::cif::{Token, Tokens};
 use super::decimal::Number;
+use super::mmcif_tables::{Column, Tables, column};
 use crate::source::lines::Lines;
 use crate::source::statements::unexpected;
 use spmesh_core::error::{Error, Result};
@@ -26,6 +27,7 @@ enum Item {
     LabelResidue,
     AuthChain,
     LabelChain,
+    Entity,
     AuthNumber,
     LabelNumber,
     Insertion,
@@ -33,7 +35,7 @@ enum Item {
     Model,
 }
 
-const ITEMS: [(Item, &str); 18] = [
+const ITEMS: [(Item, &str); 19] = [
     (Item::X, "Cartn_x"),
     (Item::Y, "Cartn_y"),
     (Item::Z, "Cartn_z"),
@@ -47,6 +49,7 @@ const ITEMS: [(Item, &str); 18] = [
     (Item::LabelResidue, "label_comp_id"),
     (Item::AuthChain, "auth_asym_id"),
     (Item::LabelChain, "label_asym_id"),
+    (Item::Entity, "label_entity_id"),
     (Item::AuthNumber, "auth_seq_id"),
     (Item::LabelNumber, "label_seq_id"),
     (Item::Insertion, "pdbx_PDB_ins_code"),
@@ -63,14 +66,16 @@ const CATEGORY: &[u8] = b"_atom_site.";
 /// If the syntax is broken, an atom has no coordinates, or no block has atoms; line and column are named.
 pub(super) fn read<R: Read>(lines: Lines<R>, builder: &mut StructureBuilder) -> Result<()> {
     let tokens = Tokens::new(lines)?;
-    MmcifReader { tokens, builder, row: Row::default(), blocks: 0, state: Block::Empty, is_core: false }
-        .read()
+    let (row, tables) = (Row::default(), Tables::default());
+    MmcifReader { tokens, builder, row, tables, blocks: 0, state: Block::Empty, is_core: false }.read()
 }
 
 struct MmcifReader<'b, R> {
     tokens: Tokens<R>,
     builder: &'b mut StructureBuilder,
     row: Row,
+    /// What the current data block states of its molecules.
+    tables: Tables,
     /// Number of data blocks with atoms so far; only the first of them is read.
     blocks: u64,
     state: Block,
@@ -133,10 +138,13 @@ impl<R: Read> MmcifReader<'_, R> {
     }
 
     fn end_block(&mut self) -> Result<()> {
-        if std::mem::replace(&mut self.state, Block::Empty) == Block::Items && self.blocks == 1 {
-            self.finish_row()?;
+        let tables = std::mem::take(&mut self.tables);
+        let state = std::mem::replace(&mut self.state, Block::Empty);
+        if state == Block::Empty || self.blocks != 1 {
+            return Ok(());
         }
-        Ok(())
+        tables.give(self.builder);
+        if state == Block::Items { self.finish_row() } else { Ok(()) }
     }
 
     /// Records that the block has atoms. Returns whether to read them.
@@ -156,6 +164,7 @@ impl<R: Read> MmcifReader<'_, R> {
     /// Reads a tag and its value.
     fn read_item(&mut self) -> Result<()> {
         let item = self.item();
+        let column = column(self.tokens.text());
         let is_wanted = item.is_some() && self.enter(Block::Items)?;
         if !matches!(self.tokens.advance()?, Token::Value | Token::Quoted) {
             return Err(self.tokens.locate(Error::malformed("the tag before has no value")));
@@ -164,6 +173,9 @@ impl<R: Read> MmcifReader<'_, R> {
             && is_wanted
         {
             self.take(item)?;
+        }
+        if let Some(column) = column {
+            self.take_of_table(column);
         }
         self.tokens.advance().map(drop)
     }
@@ -182,7 +194,7 @@ impl<R: Read> MmcifReader<'_, R> {
     }
 
     fn read_loop(&mut self) -> Result<()> {
-        let mut columns = Vec::new();
+        let (mut columns, mut table) = (Vec::new(), Vec::new());
         let mut is_wanted = false;
         while self.tokens.advance()? == Token::Tag {
             let item = self.item();
@@ -195,6 +207,7 @@ impl<R: Read> MmcifReader<'_, R> {
                 return Err(self.tokens.locate(Error::malformed("the loop has this tag a second time")));
             }
             columns.push(item.flatten());
+            table.push(column(self.tokens.text()));
         }
         if columns.is_empty() {
             return Err(self.tokens.locate(Error::malformed("loop_ without tags")));
@@ -208,10 +221,38 @@ impl<R: Read> MmcifReader<'_, R> {
             }
             return self.read_rows(&columns);
         }
+        if let Some(&first) = table.iter().flatten().next() {
+            return self.read_table(&table, first);
+        }
         while matches!(self.tokens.token(), Token::Value | Token::Quoted) {
             self.tokens.advance()?;
         }
         Ok(())
+    }
+
+    /// Reads the rows of a category of the tables.
+    fn read_table(&mut self, columns: &[Option<Column>], first: Column) -> Result<()> {
+        for index in (0..columns.len()).cycle() {
+            if !matches!(self.tokens.token(), Token::Value | Token::Quoted) {
+                break;
+            }
+            if index == 0 {
+                self.tables.start_row(first);
+            }
+            if let Some(column) = columns[index] {
+                self.take_of_table(column);
+            }
+            self.tokens.advance()?;
+        }
+        Ok(())
+    }
+
+    /// Stores the current value in the tables.
+    fn take_of_table(&mut self, column: Column) {
+        let value = self.tokens.text();
+        if self.tokens.token() == Token::Quoted || !matches!(value, b"?" | b".") {
+            self.tables.set(column, value);
+        }
     }
 
     fn read_rows(&mut self, columns: &[Option<Item>]) -> Result<()> {
@@ -310,6 +351,8 @@ impl Row {
             element: self.text([Item::Symbol; 2])?,
             altloc: self.text([Item::Altloc; 2])?,
             chain: self.text([Item::AuthChain, Item::LabelChain])?,
+            subchain: self.text([Item::LabelChain, Item::AuthChain])?,
+            entity: self.text([Item::Entity; 2])?,
             residue_name: self.text([Item::AuthResidue, Item::LabelResidue])?,
             residue_number,
             insertion_code: self.text([Item::Insertion; 2])?,

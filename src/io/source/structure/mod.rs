@@ -5,17 +5,28 @@
 //! The readers are this project's own. The crate `pdbtbx` panics on some files of the test data, rejects
 //! others whose atoms are all intact, and takes longer than the triangulation.
 
+mod assemblies;
+mod assembly;
 mod builder;
 mod cif;
+mod classes;
 mod conformers;
 mod decimal;
+mod locations;
+mod meshes;
 mod mmcif;
+mod mmcif_tables;
 mod model;
+mod motion;
 mod names;
 mod off;
+mod operators;
 mod pdb;
+mod pdb_assemblies;
+mod pdb_header;
 mod points;
 mod radii;
+mod residue_names;
 mod selection;
 mod serial;
 mod xyz;
@@ -23,6 +34,8 @@ mod xyz;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
+pub use assemblies::Assemblies;
+pub use classes::Class;
 pub use model::{Atom, AtomView, Model, Residue, Structure};
 pub use names::{Name, Names};
 pub use radii::{Radii, RadiusFinder};
@@ -56,7 +69,7 @@ pub enum Format {
     /// Vertices of an OFF file.
     Off,
     /// Points as `spfinalize` reads them: lines `x y z` and similar text, streams of this project, their text
-    /// twins, LAS, VTK.
+    /// twins, LAS, VTK; and the vertices of tetrahedral meshes of this project.
     Points,
 }
 
@@ -103,7 +116,11 @@ fn read(
     let head = read_head(&mut input).map_err(reading)?;
     let format = format.map_or_else(|| recognized(&head), |format| check(format, &head));
     let format = format.map_err(|e| e.of_input(name))?;
-    let input = Cursor::new(head).chain(input);
+    let is_mesh = format == Format::Points && meshes::is_mesh(&head);
+    let input = Cursor::new(head.clone()).chain(input);
+    if is_mesh {
+        return meshes::read(&head, input, name);
+    }
     let mut builder = StructureBuilder::default();
     let lines = |input| Lines::with_longest(input, name, STRUCTURE_LINE_MAX);
     match format {

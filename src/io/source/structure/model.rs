@@ -1,5 +1,7 @@
 //! Molecular structures in memory, compact enough for millions of atoms.
 
+use super::assemblies::Assemblies;
+use super::classes::Class;
 use super::names::{Name, Names};
 use spmesh_model::points::Point3;
 use spmesh_stream::Coordinates;
@@ -19,6 +21,8 @@ pub struct Structure {
     pub residues: Vec<Residue>,
     /// The texts that residues and atoms refer to.
     pub names: Names,
+    /// The biological assemblies that the file states.
+    pub assemblies: Assemblies,
     /// Oddities of the input, as sentences.
     pub warnings: Vec<String>,
 }
@@ -32,6 +36,8 @@ pub struct Model {
     pub points: Vec<Point3>,
     /// The atoms, one per point; empty if the input has points without names.
     pub atoms: Vec<Atom>,
+    /// Labels of points without names, if the input has any.
+    pub labels: Vec<u64>,
 }
 
 /// The data of an atom, in 32 bytes. Its position is the point with the same index.
@@ -68,6 +74,10 @@ pub struct Residue {
     pub number: Option<i32>,
     /// Insertion code; mostly empty.
     pub insertion_code: Name,
+    /// Part of the chain, as mmCIF names it (`label_asym_id`); otherwise the chain.
+    pub subchain: Name,
+    /// What it belongs to.
+    pub class: Class,
 }
 
 /// All data of one atom, with its texts.

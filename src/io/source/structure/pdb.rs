@@ -8,6 +8,8 @@ use std::io::Read;
 
 use super::builder::{Oddity, Record, StructureBuilder};
 use super::decimal::Number;
+use super::pdb_assemblies::Remark350;
+use super::pdb_header;
 use super::serial::{Serials, residue_number};
 use crate::source::lines::{Lines, quote};
 use crate::source::statements::unexpected;
@@ -20,14 +22,15 @@ const PLACE: [(usize, &str); 3] = [(30, "x"), (38, "y"), (46, "z")];
 const WIDTH: usize = 8;
 
 /// Number of columns that are used.
-const LINE_LEN: usize = 80;
+pub(super) const LINE_LEN: usize = 80;
 
 /// Reads all records.
 ///
 /// # Errors
 /// If an atom has no coordinates that can be read with certainty; the line is named.
 pub(super) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<()> {
-    let mut reader = PdbReader { builder, serials: Serials::default(), is_closed: false, number: 0 };
+    let (serials, remark) = (Serials::default(), Remark350::default());
+    let mut reader = PdbReader { builder, serials, remark, is_closed: false, number: 0 };
     while let Some(line) = lines.next_line()? {
         reader.number += 1;
         let is_part = is_part_of_name(line);
@@ -48,6 +51,7 @@ fn is_part_of_name(line: &[u8]) -> bool {
 struct PdbReader<'b> {
     builder: &'b mut StructureBuilder,
     serials: Serials,
+    remark: Remark350,
     /// Whether the last model has ended.
     is_closed: bool,
     /// Number of the line, counted from 1.
@@ -70,6 +74,26 @@ impl PdbReader<'_> {
             }
             b"ENDMDL" | b"END" => {
                 self.is_closed = true;
+                Ok(())
+            }
+            b"TER" => {
+                self.builder.end_chain();
+                Ok(())
+            }
+            b"SEQRES" => {
+                pdb_header::sequence(line, self.builder);
+                Ok(())
+            }
+            b"REMARK" => {
+                if let Some(text) =
+                    pdb_header::text(line).and_then(|text| text[6..].trim_start().strip_prefix("350"))
+                {
+                    self.remark.line(text, self.builder);
+                }
+                Ok(())
+            }
+            b"MODRES" => {
+                pdb_header::modified_residue(line, self.builder);
                 Ok(())
             }
             _ => Ok(()),
@@ -118,6 +142,8 @@ impl PdbReader<'_> {
             element: if element.bytes().all(|byte| byte.is_ascii_alphabetic()) { element } else { "" },
             altloc: columns(text, 16, 17),
             chain: columns(text, 21, 22),
+            subchain: "",
+            entity: "",
             // The format leaves column 21 empty; residue names of four letters are widely used.
             residue_name: columns(text, 17, 21),
             residue_number,
@@ -130,7 +156,7 @@ impl PdbReader<'_> {
     }
 }
 
-/// The name of the record if it is used: ATOM, HETATM, MODEL, ENDMDL or END, in upper or lower case.
+/// The name of the record if it is used, in upper case; the line may have it in lower case.
 fn record_name(line: &[u8]) -> &'static [u8] {
     let is = |name: &[u8], len: usize| {
         line.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name))
@@ -142,6 +168,10 @@ fn record_name(line: &[u8]) -> &'static [u8] {
         Some(b'M' | b'm') if is(b"MODEL", 6) => b"MODEL",
         Some(b'E' | b'e') if is(b"ENDMDL", 6) => b"ENDMDL",
         Some(b'E' | b'e') if is(b"END", 6) => b"END",
+        Some(b'T' | b't') if is(b"TER", 6) => b"TER",
+        Some(b'S' | b's') if is(b"SEQRES", 6) => b"SEQRES",
+        Some(b'M' | b'm') if is(b"MODRES", 6) => b"MODRES",
+        Some(b'R' | b'r') if is(b"REMARK", 6) => b"REMARK",
         _ => b"",
     }
 }
@@ -201,7 +231,7 @@ fn ascii(line: &[u8]) -> Result<&str> {
 }
 
 /// The text of columns counted from 0, cut off at the end of the line, without surrounding blanks.
-fn columns(line: &str, start: usize, end: usize) -> &str {
+pub(super) fn columns(line: &str, start: usize, end: usize) -> &str {
     let end = end.min(line.len());
     line.get(start..end).unwrap_or_default().trim_ascii()
 }

@@ -3,6 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
+use super::assemblies::Assemblies;
 use super::model::{Model, Structure};
 use super::names::Names;
 use crate::detect::TESS3;
@@ -106,9 +107,10 @@ pub(super) fn structure(
     Ok(Structure {
         name: name.to_string(),
         coordinates,
-        models: vec![Model { number: 1, points, atoms: Vec::new() }],
+        models: vec![Model { number: 1, points, ..Model::default() }],
         residues: Vec::new(),
         names: Names::default(),
+        assemblies: Assemblies::default(),
         warnings,
     })
 }

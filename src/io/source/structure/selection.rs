@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashSet;
 
+use super::classes::Class;
 use super::conformers::{Preference, one_conformer};
 use super::model::{Atom, AtomView, Model, Residue, Structure};
 use super::names::Name;
@@ -60,6 +61,8 @@ pub struct Selection {
     pub hetatm: bool,
     /// Types of atoms.
     pub atoms: Atoms,
+    /// Classes of residues; all if empty.
+    pub classes: Vec<Class>,
 }
 
 impl Default for Selection {
@@ -70,6 +73,7 @@ impl Default for Selection {
             altlocs: Altlocs::default(),
             hetatm: true,
             atoms: Atoms::default(),
+            classes: Vec::new(),
         }
     }
 }
@@ -93,7 +97,7 @@ enum Members {
 
 impl Structure {
     /// Selects atoms. Selecting a whole model takes no time. Points without names are in every selection of
-    /// their model, unless it asks for chains or alpha carbons.
+    /// their model, unless it asks for chains, classes or alpha carbons.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Usage`] if the structure has no such model or chain, or no names to
@@ -143,8 +147,13 @@ impl Structure {
     /// The selected chains; empty if all are.
     fn chains_of(&self, selection: &Selection) -> Result<Vec<Name>> {
         let is_nameless = self.models.iter().all(|model| model.atoms.is_empty());
-        if is_nameless && (!selection.chains.is_empty() || selection.atoms == Atoms::CAlpha) {
-            let reason = "has points without names: chains and atoms cannot be selected";
+        let is_by_residue = !selection.chains.is_empty() || !selection.classes.is_empty();
+        if is_nameless && (is_by_residue || selection.atoms == Atoms::CAlpha) {
+            let reason = "has points without names: chains, classes and atoms cannot be selected";
+            return Err(Error::usage(reason).of_input(&self.name));
+        }
+        if !selection.classes.is_empty() && self.residues.iter().all(|residue| residue.name.is_empty()) {
+            let reason = "has atoms without residues: classes cannot be selected";
             return Err(Error::usage(reason).of_input(&self.name));
         }
         let find = |chain: &String| {
@@ -163,7 +172,8 @@ impl Structure {
         chains.filter(|&chain| seen.insert(chain)).map(|chain| self.names.text(chain)).collect()
     }
 
-    fn lacks(&self, what: &str, wanted: &str, there: impl Iterator<Item = String>) -> Error {
+    /// The error for a name that the file lacks.
+    pub(super) fn lacks(&self, what: &str, wanted: &str, there: impl Iterator<Item = String>) -> Error {
         const SHOWN: usize = 20;
         let mut there: Vec<String> = there.take(SHOWN + 1).collect();
         if there.len() > SHOWN {
@@ -179,7 +189,7 @@ struct Filter<'s> {
     model: &'s Model,
     hetatm: bool,
     atoms: Atoms,
-    /// For each residue, whether its chain is selected; empty if all are.
+    /// For each residue, whether its chain and class are selected; empty if all are.
     residues: Vec<bool>,
     /// For each atom, whether its location is selected; empty if all are.
     locations: Vec<bool>,
@@ -188,9 +198,14 @@ struct Filter<'s> {
 impl<'s> Filter<'s> {
     fn new(structure: &'s Structure, model: usize, selection: &Selection, chains: &[Name]) -> Self {
         let model = &structure.models[model];
-        let is_wanted = |residue: &Residue| chains.contains(&residue.chain);
+        let classes = &selection.classes;
+        let is_wanted = |residue: &Residue| {
+            (chains.is_empty() || chains.contains(&residue.chain))
+                && (classes.is_empty() || classes.contains(&residue.class))
+        };
+        let wants_every = chains.is_empty() && classes.is_empty();
         let residues =
-            if chains.is_empty() { Vec::new() } else { structure.residues.iter().map(is_wanted).collect() };
+            if wants_every { Vec::new() } else { structure.residues.iter().map(is_wanted).collect() };
         let locations = match &selection.altlocs {
             Altlocs::All => Vec::new(),
             _ if model.atoms.iter().all(|atom| atom.altloc.is_empty()) => Vec::new(),
@@ -261,12 +276,14 @@ impl<'s> Selected<'s> {
         self.structure
     }
 
-    /// The label of the point at `index`: its atom's serial number or, for points without names, the number
-    /// of the point in the input, counted from 1.
+    /// The label of the point at `index`: its atom's serial number or, for points without names, their label
+    /// or else the number of the point in the input, counted from 1.
     #[must_use]
     pub fn label(&self, index: usize) -> u64 {
         let [model, atom] = self.place(index);
-        self.structure.models[model].atoms.get(atom).map_or(atom as u64 + 1, |atom| atom.serial)
+        let Model { atoms, labels, .. } = &self.structure.models[model];
+        let label = labels.get(atom).copied().unwrap_or(atom as u64 + 1);
+        atoms.get(atom).map_or(label, |atom| atom.serial)
     }
 
     /// The atom at `index`; `None` for points without names.

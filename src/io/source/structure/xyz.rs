@@ -60,6 +60,8 @@ fn read_atom(text: &[u8], [serial, line]: [u64; 2], builder: &mut StructureBuild
         element,
         altloc: "",
         chain: "",
+        subchain: "",
+        entity: "",
         residue_name: "",
         residue_number: None,
         insertion_code: "",

@@ -119,6 +119,7 @@ fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model
     let read = started.elapsed();
     let has_distinct_numbers = has_distinct_numbers(&structure);
     let mut of_file = structure.warnings.clone();
+    of_file.extend(structure.missing_location(&sweep.options.selection));
     let mut outputs: Vec<PathBuf> = Vec::new();
     let mut open = |model: Option<ModelName>| {
         let model = model.filter(|_| sweep.options.selection.models == Models::All);
