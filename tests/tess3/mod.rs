@@ -2,6 +2,7 @@
 
 mod alpha;
 mod assemblies;
+mod balls;
 mod classes;
 #[cfg(feature = "experiments")]
 mod experiments;

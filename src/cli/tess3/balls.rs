@@ -33,6 +33,11 @@ pub(super) struct BallFlags {
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "sasa", "volumes"])]
     contact_areas: bool,
 
+    /// Write a table of pockets and voids, the largest first: spaces that a probe fits in and does not leave the
+    /// straight way (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "sasa", "volumes", "contact_areas"])]
+    pockets: bool,
+
     /// Radii of atoms: protor (united atoms, Tsai et al. 1999), bondi (by element), united (Chothia 1976), or a file
     /// with lines RESIDUE ATOM RADIUS or ELEMENT RADIUS [default: protor]
     #[arg(long, value_name = "NAME|FILE")]
@@ -43,7 +48,7 @@ pub(super) struct BallFlags {
     #[arg(long, value_name = "RADIUS", value_parser = parse_probe)]
     probe: Option<u32>,
 
-    /// What a row is about [default: atom]
+    /// What a row is about [default: atom; of --pockets molecule]
     #[arg(long, value_enum, value_name = "LEVEL")]
     per: Option<LevelFlag>,
 
@@ -89,6 +94,8 @@ impl BallFlags {
     pub(super) fn product(&self) -> Option<Product> {
         if self.contact_areas {
             Some(Product::ContactAreas)
+        } else if self.pockets {
+            Some(Product::Pockets)
         } else {
             (self.sasa || self.volumes).then_some(Product::Cells)
         }
@@ -112,7 +119,7 @@ impl BallFlags {
             ];
             return match idle.into_iter().find(|(_, is_given)| *is_given) {
                 Some((flag, _)) => {
-                    let remedy = "goes with --sasa, --volumes or --contact-areas";
+                    let remedy = "goes with --sasa, --volumes, --contact-areas or --pockets";
                     Err(Error::usage(format!("{flag} {remedy}")))
                 }
                 None => Ok(None),
@@ -149,6 +156,7 @@ impl BallFlags {
 
     fn level(&self) -> Level {
         match self.per {
+            None if self.pockets => Level::Molecule,
             None | Some(LevelFlag::Atom) => Level::Atom,
             Some(LevelFlag::Residue) => Level::Residue,
             Some(LevelFlag::Chain) => Level::Chain,
@@ -158,9 +166,13 @@ impl BallFlags {
 
     fn text(&self, options: &BallOptions, radii: &str) -> String {
         let mut text = String::new();
-        for (name, is_given) in
-            [("sasa", self.sasa), ("volumes", self.volumes), ("contact-areas", self.contact_areas)]
-        {
+        let products = [
+            ("sasa", self.sasa),
+            ("volumes", self.volumes),
+            ("contact-areas", self.contact_areas),
+            ("pockets", self.pockets),
+        ];
+        for (name, is_given) in products {
             text += &if is_given { format!(" --{name}") } else { String::new() };
         }
         let probe = f64::from(options.probe) / STEPS;

@@ -148,12 +148,12 @@ impl Job<'_> {
         started: Instant,
     ) -> Result<Report> {
         let mut report = Report::new(molecule.number, molecule.selected.points().len());
-        let is_contacts = self.options.product == Product::ContactAreas;
+        let product = self.options.product;
         let table = self.table()?;
-        if is_contacts {
-            molecule.write_contacts(balls, &mut report, table)?;
-        } else {
-            molecule.write_cells(balls, &mut report, table)?;
+        match product {
+            Product::ContactAreas => molecule.write_contacts(balls, &mut report, table)?,
+            Product::Pockets => molecule.write_pockets(balls, &mut report, table)?,
+            _ => molecule.write_cells(balls, &mut report, table)?,
         }
         report.times.triangulate = started.elapsed();
         Ok(report)
@@ -164,6 +164,7 @@ impl Job<'_> {
         match (self.options.product, &self.options.balls) {
             (Product::ContactAreas, Some(balls)) => balls.contact_columns(),
             (Product::Cells, Some(balls)) => balls.cell_columns(),
+            (Product::Pockets, Some(balls)) => balls.pocket_columns(),
             (Product::Contacts, _) => CONTACTS.to_string(),
             _ => TETRAHEDRA.to_string(),
         }

@@ -44,6 +44,8 @@ pub enum Product {
     Cells,
     /// A table of the faces between them.
     ContactAreas,
+    /// A table of the pockets and voids between them.
+    Pockets,
 }
 
 /// What to triangulate, and what to write of it.

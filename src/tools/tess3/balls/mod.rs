@@ -1,6 +1,7 @@
 //! Atoms as balls: exposed areas, volumes and contacts of their cells, as tables.
 
 mod groups;
+mod pockets;
 mod radii;
 mod tables;
 
@@ -12,8 +13,9 @@ use std::sync::Arc;
 
 use super::Report;
 use groups::Groups;
+use pockets::PocketTable;
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::balls::{Balls, Cells, measure};
+use spmesh_geometry::balls::{self, Balls, Cells, measure};
 use spmesh_io::source::structure::{Radii, Selected};
 use tables::{CellTable, ContactTable};
 
@@ -132,6 +134,24 @@ impl Molecule<'_> {
         CellTable { molecule: self, options, groups: &groups }.write(&cells.cells, output)
     }
 
+    /// Writes a row for each pocket and void, or for what is around them.
+    ///
+    /// # Errors
+    /// As [`Molecule::write_cells`].
+    pub(super) fn write_pockets(
+        &self,
+        options: &BallOptions,
+        report: &mut Report,
+        output: &mut impl Write,
+    ) -> Result<()> {
+        let radii = self.radii(options, report)?;
+        let found = balls::pockets(Balls { centres: self.selected.points(), radii: &radii })?;
+        report.is_of_cells = true;
+        report.vertices = report.atoms;
+        let groups = Groups::new(self.selected, options.level);
+        PocketTable { molecule: self, level: options.level, groups: &groups }.write(&found, output)
+    }
+
     /// Writes a row for each pair that shares a face.
     ///
     /// # Errors
@@ -152,6 +172,11 @@ impl BallOptions {
     /// The line with the names of the columns of cells.
     pub(super) fn cell_columns(&self) -> String {
         tables::cell_columns(self)
+    }
+
+    /// The line with the names of the columns of pockets.
+    pub(super) fn pocket_columns(&self) -> String {
+        pockets::columns(self)
     }
 
     /// The line with the names of the columns of contacts.

@@ -29,36 +29,41 @@ pub(super) fn contact_columns(options: &BallOptions) -> String {
 }
 
 /// Rows that are written in pieces.
-struct Rows<'o, W> {
+pub(super) struct Rows<'o, W> {
     output: &'o mut W,
     text: Vec<u8>,
 }
 
 impl<'o, W: Write> Rows<'o, W> {
-    fn new(output: &'o mut W) -> Self {
+    pub(super) fn new(output: &'o mut W) -> Self {
         Rows { output, text: Vec::new() }
     }
 
-    fn field(&mut self, text: &str) {
+    /// Starts a row with the number of the model.
+    pub(super) fn start(&mut self, model: i64) -> Result<()> {
+        write!(self.text, "{model}").map_err(write_error)
+    }
+
+    pub(super) fn field(&mut self, text: &str) {
         self.text.push(b'\t');
         self.text.extend_from_slice(text.as_bytes());
     }
 
-    fn integer(&mut self, value: impl std::fmt::Display) -> Result<()> {
+    pub(super) fn integer(&mut self, value: impl std::fmt::Display) -> Result<()> {
         write!(self.text, "\t{value}").map_err(write_error)
     }
 
-    fn number(&mut self, value: f64) -> Result<()> {
+    pub(super) fn number(&mut self, value: f64) -> Result<()> {
         self.text.push(b'\t');
         write_number(&mut self.text, value).map_err(write_error)
     }
 
-    fn end_row(&mut self) -> Result<()> {
+    pub(super) fn end(&mut self) -> Result<()> {
         self.text.push(b'\n');
         if self.text.len() >= ROWS_LEN { self.finish() } else { Ok(()) }
     }
 
-    fn finish(&mut self) -> Result<()> {
+    pub(super) fn finish(&mut self) -> Result<()> {
         self.output.write_all(&self.text).map_err(write_error)?;
         self.text.clear();
         Ok(())
@@ -95,7 +100,7 @@ impl CellTable<'_> {
     }
 
     fn row<W: Write>(&self, group: u32, count: u64, cell: &Cell, rows: &mut Rows<'_, W>) -> Result<()> {
-        write!(rows.text, "{}", self.molecule.number).map_err(write_error)?;
+        rows.start(self.molecule.number)?;
         rows.field(self.groups.name(group));
         rows.integer(count)?;
         let scale = self.molecule.scale;
@@ -105,7 +110,7 @@ impl CellTable<'_> {
         if self.options.volumes {
             rows.number(cell.volume * scale.powi(3))?;
         }
-        rows.end_row()
+        rows.end()
     }
 }
 
@@ -141,7 +146,7 @@ impl ContactTable<'_> {
                 self.start_row(pair, &mut rows)?;
                 rows.integer(count)?;
                 rows.number(area)?;
-                rows.end_row()?;
+                rows.end()?;
             }
         }
         rows.finish()
@@ -175,11 +180,11 @@ impl ContactTable<'_> {
         }
         rows.number(self.distance(contact))?;
         rows.number(self.area(contact))?;
-        rows.end_row()
+        rows.end()
     }
 
     fn start_row<W: Write>(&self, pair: [u32; 2], rows: &mut Rows<'_, W>) -> Result<()> {
-        write!(rows.text, "{}", self.molecule.number).map_err(write_error)?;
+        rows.start(self.molecule.number)?;
         pair.iter().for_each(|&group| rows.field(self.groups.name(group)));
         Ok(())
     }

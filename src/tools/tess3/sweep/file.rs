@@ -172,6 +172,7 @@ fn ending(product: Product) -> &'static str {
         Product::Contacts => ".contacts.tsv",
         Product::Cells => ".cells.tsv",
         Product::ContactAreas => ".contact-areas.tsv",
+        Product::Pockets => ".pockets.tsv",
     }
 }
 

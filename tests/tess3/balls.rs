@@ -1,0 +1,247 @@
+//! Areas, volumes, contacts and pockets of atoms as balls, against closed forms and sampling.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use super::molecules::{Record, Rows, cloud, models, pdb};
+use crate::programs::{Folder, assert_outcome, outcome, run, sample};
+
+/// Radius of carbon by Bondi with a probe of 1.4 Å.
+const CARBON: f64 = 1.7 + 1.4;
+
+fn table(text: &str, arguments: &[&str]) -> Rows {
+    let output = run("tess3", &[arguments, &["-"]].concat(), text.as_bytes());
+    assert!(output.status.success(), "{:?}", outcome(&output));
+    Rows::new(&String::from_utf8(output.stdout).unwrap())
+}
+
+fn of_sample(name: &str, arguments: &[&str]) -> Rows {
+    let output = run("tess3", &[&[&sample(name)[..]], arguments].concat(), b"");
+    assert!(output.status.success(), "{:?}", outcome(&output));
+    Rows::new(&String::from_utf8(output.stdout).unwrap())
+}
+
+fn sum(rows: &Rows, column: &str) -> f64 {
+    (0..rows.len()).map(|row| rows.number(row, column)).sum()
+}
+
+fn assert_near(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{found}, not {expected}");
+}
+
+#[test]
+fn two_atoms_by_closed_forms() {
+    let atoms = [Record::carbon(1, [0.0; 3]), Record::carbon(2, [1.5, 0.0, 0.0])];
+    let text = pdb(&atoms);
+    let rows = table(&text, &["--sasa", "--volumes", "--radii", "bondi"]);
+    let cap = CARBON - 0.75;
+    let area = 4.0 * PI * CARBON * CARBON - 2.0 * PI * CARBON * cap;
+    let volume = 4.0 / 3.0 * PI * CARBON.powi(3) - PI * cap * cap * (3.0 * CARBON - cap) / 3.0;
+    for row in 0..2 {
+        assert_near(rows.number(row, "area"), area, 1e-6);
+        assert_near(rows.number(row, "volume"), volume, 1e-6);
+        assert_eq!(rows.text(row, "serial"), (row + 1).to_string());
+    }
+    let contacts = table(&text, &["--contact-areas", "--radii", "bondi"]);
+    assert_eq!(contacts.len(), 1);
+    assert_near(contacts.number(0, "area"), PI * (CARBON * CARBON - 0.75 * 0.75), 1e-6);
+    assert_eq!(contacts.text(0, "distance"), "1.5");
+    let alone = table(&text, &["--sasa", "--radii", "bondi", "--probe", "0", "--per", "molecule"]);
+    assert_near(alone.number(0, "area"), 2.0 * 2.0 * PI * 1.7 * (1.7 + 0.75), 1e-6);
+}
+
+/// Points on each sphere tell by themselves what is exposed (Shrake and Rupley, 1973).
+#[test]
+fn areas_of_a_protein_against_points_on_spheres() {
+    let rows = of_sample("1aki.pdb", &["--sasa", "--radii", "bondi", "--chain", "A", "--hetatm", "off"]);
+    let text = std::fs::read_to_string(sample("1aki.pdb")).unwrap();
+    let atoms: Vec<([f64; 3], f64)> = text
+        .lines()
+        .filter(|line| line.starts_with("ATOM"))
+        .map(|line| {
+            let at = [30, 38, 46].map(|i| line[i..i + 8].trim().parse().unwrap());
+            let radius = match line[76..78].trim() {
+                "C" => 1.7,
+                "N" => 1.55,
+                "O" => 1.52,
+                "S" => 1.8,
+                other => panic!("element {other}"),
+            };
+            (at, radius + 1.4)
+        })
+        .collect();
+    assert_eq!(rows.len(), atoms.len());
+    let square = |p: [f64; 3], q: [f64; 3]| (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>();
+    let mut total = 0.0;
+    for (row, &(at, radius)) in atoms.iter().enumerate() {
+        let near: Vec<_> = atoms
+            .iter()
+            .enumerate()
+            .filter(|&(i, (p, r))| i != row && square(*p, at) < (r + radius).powi(2))
+            .map(|(_, atom)| *atom)
+            .collect();
+        let points = 600;
+        let exposed = (0..points)
+            .map(|i| {
+                // A spiral of equal steps in height.
+                let height = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(points);
+                let (sin, cos) = (2.399_963_229_728_653 * f64::from(i)).sin_cos();
+                let ring = (1.0 - height * height).sqrt();
+                [at[0] + radius * ring * cos, at[1] + radius * ring * sin, at[2] + radius * height]
+            })
+            .filter(|&p| near.iter().all(|&(q, r)| square(p, q) > r * r))
+            .count();
+        let sphere = 4.0 * PI * radius * radius;
+        let expected = exposed as f64 / f64::from(points) * sphere;
+        assert_near(rows.number(row, "area"), expected, 0.02 * sphere);
+        total += expected;
+    }
+    assert_near(sum(&rows, "area"), total, 0.003 * total);
+}
+
+#[test]
+fn levels_add_up() {
+    for column in ["area", "volume"] {
+        let atoms = of_sample("1aki.pdb", &["--sasa", "--volumes"]);
+        let mut residues: BTreeMap<String, f64> = BTreeMap::new();
+        for row in 0..atoms.len() {
+            let name = atoms.text(row, "atom");
+            let residue = name.rsplit_once('/').unwrap().0.to_string();
+            *residues.entry(residue).or_default() += atoms.number(row, column);
+        }
+        let rows = of_sample("1aki.pdb", &["--sasa", "--volumes", "--per", "residue"]);
+        assert_eq!(rows.len(), residues.len());
+        for row in 0..rows.len() {
+            assert_near(rows.number(row, column), residues[rows.text(row, "residue")], 1e-5);
+        }
+        for level in ["chain", "molecule"] {
+            let rows = of_sample("1aki.pdb", &["--sasa", "--volumes", "--per", level]);
+            assert_eq!(rows.len(), 1);
+            assert_near(rows.number(0, column), sum(&atoms, column), 1e-3);
+        }
+    }
+}
+
+#[test]
+fn contacts_of_residues_are_sums_of_those_of_atoms() {
+    let atoms = of_sample("1aki.pdb", &["--contact-areas"]);
+    let mut sums: BTreeMap<[String; 2], (u32, f64)> = BTreeMap::new();
+    for row in 0..atoms.len() {
+        let residue = |column| atoms.text(row, column).rsplit_once('/').unwrap().0.to_string();
+        let (p, q) = (residue("atom1"), residue("atom2"));
+        if p != q {
+            let mut pair = [p, q];
+            pair.sort();
+            let entry = sums.entry(pair).or_default();
+            *entry = (entry.0 + 1, entry.1 + atoms.number(row, "area"));
+        }
+    }
+    let rows = of_sample("1aki.pdb", &["--contact-areas", "--per", "residue"]);
+    assert_eq!(rows.len(), sums.len());
+    for row in 0..rows.len() {
+        let mut pair = ["residue1", "residue2"].map(|column| rows.text(row, column).to_string());
+        pair.sort();
+        let (contacts, area) = sums[&pair];
+        assert_eq!(rows.text(row, "contacts"), contacts.to_string());
+        assert_near(rows.number(row, "area"), area, 1e-5);
+    }
+    let large = of_sample("1aki.pdb", &["--contact-areas", "--per", "residue", "--min-area", "20"]);
+    assert_eq!(large.len(), sums.values().filter(|(_, area)| *area >= 20.0).count());
+}
+
+#[test]
+fn contacts_are_filtered() {
+    let all = of_sample("1l2y.pdb.gz", &["--contact-areas"]);
+    let count = |is_wanted: &dyn Fn(usize) -> bool| (0..all.len()).filter(|&row| is_wanted(row)).count();
+    let near = of_sample("1l2y.pdb.gz", &["--contact-areas", "--within", "3.5"]);
+    assert_eq!(near.len(), count(&|row| all.number(row, "distance") <= 3.5));
+    assert!(near.len() > 100 && near.len() < all.len());
+    let between = of_sample("1l2y.pdb.gz", &["--contact-areas", "--between", "residues"]);
+    let residue = |row: usize, column| all.text(row, column).rsplit_once('/').unwrap().0.to_string();
+    assert_eq!(between.len(), count(&|row| residue(row, "atom1") != residue(row, "atom2")));
+    let two = [Record::carbon(1, [0.0; 3]), Record { chain: 'B', ..Record::carbon(2, [2.0, 0.0, 0.0]) }];
+    for (chains, expected) in [(['A', 'B'], 1), (['A', 'A'], 0)] {
+        let atoms = [0, 1].map(|i| Record { chain: chains[i], ..two[i].clone() });
+        let rows = table(&pdb(&atoms), &["--contact-areas", "--between", "chains"]);
+        assert_eq!(rows.len(), expected);
+    }
+}
+
+#[test]
+fn threads_and_models() {
+    let text = pdb(&cloud(400, 20_000, 5));
+    let output =
+        |threads| run("tess3", &["--contact-areas", "--threads", threads, "-"], text.as_bytes()).stdout;
+    assert_eq!(output("1"), output("3"));
+    let two = models(&[cloud(30, 6_000, 1), cloud(40, 6_000, 2)]);
+    let rows = table(&two, &["--sasa", "--model", "all", "--per", "molecule"]);
+    assert_eq!((rows.text(0, "atoms"), rows.text(1, "atoms"), rows.text(1, "model")), ("30", "40", "2"));
+}
+
+#[test]
+fn a_cage_of_carbon_has_a_void() {
+    let range = || 0..=6;
+    let sites = range().flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z])));
+    let shell = sites.filter(|p: &[i32; 3]| p.iter().any(|&c| c == 0 || c == 6));
+    let atoms: Vec<Record> =
+        (1..).zip(shell).map(|(serial, p)| Record::carbon(serial, p.map(|c| f64::from(c) * 2.0))).collect();
+    let text = pdb(&atoms);
+    let rows = table(&text, &["--pockets", "--radii", "bondi", "--probe", "0"]);
+    assert_eq!((rows.text(0, "kind"), rows.text(0, "mouths")), ("void", "0"));
+    // Spheres of the corners leave little between them.
+    assert!((1..rows.len()).all(|row| rows.text(row, "kind") == "void" && rows.number(row, "volume") < 1e-3));
+    // The corners are around these.
+    assert_eq!(rows.text(0, "atoms"), (atoms.len() - 8).to_string());
+    // Within the cube of side 12, without half of the balls' slabs of thickness about 1.5.
+    let volume = rows.number(0, "volume");
+    assert!((8.6f64.powi(3)..11.0f64.powi(3)).contains(&volume), "{volume}");
+    let around = table(&text, &["--pockets", "--radii", "bondi", "--probe", "0", "--per", "atom"]);
+    assert_eq!((0..around.len()).filter(|&row| around.text(row, "pocket") == "1").count(), atoms.len() - 8);
+    // A hole makes it a pocket with a mouth.
+    let open: Vec<Record> = atoms.into_iter().filter(|atom| atom.at != [6.0, 6.0, 0.0]).collect();
+    let rows = table(&pdb(&open), &["--pockets", "--radii", "bondi", "--probe", "0"]);
+    assert_eq!((rows.text(0, "kind"), rows.text(0, "mouths")), ("pocket", "1"));
+    assert!(rows.number(0, "mouth_area") > 0.1 && rows.number(0, "depth") >= 12.0);
+}
+
+#[test]
+fn radii_of_a_file() {
+    let folder = Folder::new();
+    let radii = folder.write("radii", "C 1.0\n");
+    let text = pdb(&[Record::carbon(1, [0.0; 3])]);
+    let rows = table(&text, &["--sasa", "--radii", &radii, "--probe", "0.25"]);
+    assert_near(rows.number(0, "area"), 4.0 * PI * 1.25 * 1.25, 1e-6);
+    // A sweep notices that the file has changed.
+    let input = folder.write("one.pdb", &text);
+    let out = folder.path("out");
+    let arguments = [&input[..], "--sasa", "--radii", &radii, "--out-dir", &out, "--resume"];
+    let area = || {
+        let output = run("tess3", &arguments, b"");
+        assert!(output.status.success(), "{:?}", outcome(&output));
+        let text = std::fs::read_to_string(format!("{out}/one.cells.tsv")).unwrap();
+        Rows::new(&text).number(0, "area")
+    };
+    assert_near(area(), 4.0 * PI * 2.4 * 2.4, 1e-6);
+    folder.write("radii", "C 2.0\n");
+    assert_near(area(), 4.0 * PI * 3.4 * 3.4, 1e-6);
+}
+
+#[test]
+fn errors_name_remedies() {
+    let text = pdb(&[Record { element: "X", name: "Q", ..Record::carbon(1, [0.0; 3]) }]);
+    assert_outcome("tess3", &["--sasa", "-"], text.as_bytes(), 2, "state it in a file for --radii");
+    let carbon = pdb(&[Record::carbon(1, [0.0; 3])]);
+    for (arguments, part) in [
+        (&["--radii", "bondi"][..], "--radii goes with --sasa"),
+        (&["--probe", "1"], "--probe goes with --sasa"),
+        (&["--sasa", "--probe", "1.23456"], "three decimals"),
+        (&["--sasa", "--probe=-1"], "--probe"),
+        (&["--sasa", "--probe", "nan"], "--probe"),
+        (&["--sasa", "--radii", "nowhere"], "expected a file of radii, or one of protor, bondi, united"),
+        (&["--contact-areas", "--per", "molecule"], "a molecule has no pairs"),
+        (&["--within", "3"], "--contact-areas"),
+    ] {
+        assert_outcome("tess3", &[arguments, &["-"]].concat(), carbon.as_bytes(), 2, part);
+    }
+    assert_outcome("tess3", &["--sasa", "-"], b"1 2 3\n4 5 6\n", 2, "points have no elements");
+}
