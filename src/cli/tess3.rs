@@ -41,6 +41,10 @@ Examples:
     tess3 1abc.cif --assembly 1 --classes polymer,ligand -o 1abc.spm
   Tetrahedra with circumradius and volume; only those of the alpha complex of radius 4 Å:
     tess3 1abc.pdb --hetatm off --alpha 4 --table | sort -gk10
+  Solvent-accessible area of each residue, areas of contacts between chains, and pockets:
+    tess3 1abc.cif.gz --classes polymer --sasa --per residue -o sasa.tsv
+    tess3 1abc.cif.gz --classes polymer --contact-areas --between chains -o interface.tsv
+    tess3 1abc.cif.gz --classes polymer --pockets -o pockets.tsv
   Many structures, two at a time; later only what is new or changed:
     find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2
     find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2 --resume
@@ -58,7 +62,8 @@ const OUT_OF_MEMORY: &str = "tess3: not enough memory: take fewer points, or few
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
 /// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF, VTK and
-/// LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table. The result is exact and
+/// LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table, also of areas, volumes, contacts and pockets of
+/// atoms as balls. The result is exact and
 /// canonical: it depends on the set of points only.
 #[derive(Debug, Parser)]
 #[command(name = "tess3", version, after_help = EXAMPLES)]
