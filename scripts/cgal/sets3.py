@@ -1,4 +1,7 @@
-"""Point sets in 3D for comparisons, most of them degenerate. Each function makes about `count` points."""
+"""Point sets in 3D for comparisons, most of them degenerate, and weights for them.
+
+Each function of FAMILIES makes about `count` points; each of WEIGHTS makes one weight per point.
+"""
 
 import itertools
 import math
@@ -188,3 +191,54 @@ FAMILIES = [
     rotated_lattice, turned_lattice, cospherical, nested_cubes, coplanar_pieces, tent, flat, collinear_runs,
     duplicates, clusters, extreme, mixed_scales, surface, few,
 ]  # fmt: skip
+
+
+def square_of_spacing(points):
+    """The square of the mean distance between neighbours, if the points filled their box."""
+    sides = [max(axis) - min(axis) for axis in zip(*points)]
+    spacing = max(sides, default=0) / max(1, len(points)) ** (1 / 3)
+    return spacing * spacing
+
+
+def equal(rng, points):
+    return [rng.uniform(-1, 1) * square_of_spacing(points)] * len(points)
+
+
+def small(rng, points):
+    """Random weights that hide few points."""
+    square = square_of_spacing(points)
+    return [rng.uniform(-0.2, 0.2) * square for _ in points]
+
+
+def large(rng, points):
+    """Random weights that hide many points."""
+    square = rng.choice([3, 30, 1000]) * square_of_spacing(points)
+    return [rng.random() * square for _ in points]
+
+
+def integer(rng, points):
+    return [rng.randrange(3) for _ in points]
+
+
+def lifted_to_planes(rng, points):
+    """Weights that lift the points to one horizontal hyperplane, or to three: exactly so, if the squares of
+    their distances from the origin are exact."""
+    steps = rng.choice([[0], [-1, 0, 1]])
+    return [sum(c * c for c in point) + rng.choice(steps) for point in points]
+
+
+def one_huge(rng, points):
+    """Equal weights but one, which may hide all other points or none."""
+    weights = [0.0] * len(points)
+    if points:
+        weights[rng.randrange(len(points))] = 10 ** rng.uniform(-1, 6) * square_of_spacing(points)
+    return weights
+
+
+WEIGHTS = [equal, small, large, integer, lifted_to_planes, one_huge]
+
+
+def with_weights(rng, points, weights):
+    """The points, each with its weight as its fourth number, of a function of WEIGHTS."""
+    finite = (min(max(float(weight), -1e307), 1e307) for weight in weights(rng, points))
+    return [(*point, weight) for point, weight in zip(points, finite)]

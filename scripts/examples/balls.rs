@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (index, cell) in cells.cells.iter().enumerate() {
         writeln!(output, "cell {index} {} {}", cell.area, cell.volume)?;
     }
-    for contact in &cells.contacts {
+    for contact in cells.contacts.iter() {
         let [i, j] = contact.balls;
         writeln!(output, "contact {i} {j} {}", contact.area)?;
     }

@@ -72,7 +72,7 @@ fn two_balls() {
         let shared = if face > 0.0 { lens(r, s, d) } else { 0.0 };
         let outer = if d <= (r - s).abs() { ball_volume(r.max(s)) } else { ball_volume(r) + ball_volume(s) };
         assert_near(volume(&cells), outer - shared, 1e-12 * 32.0, "volume");
-        let found = cells.contacts.first().map_or(0.0, |contact| contact.area);
+        let found = cells.contacts.iter().next().map_or(0.0, |contact| contact.area);
         assert_near(found, face, 1e-12 * 12.0, "face");
     }
 }
@@ -163,7 +163,7 @@ fn random_balls_against_sampling() {
         for i in 0..count {
             assert_sphere(&mut random, i, &centres, &radii, &cells);
         }
-        for contact in &cells.contacts {
+        for contact in cells.contacts.iter() {
             let [i, j] = contact.balls.map(|ball| ball as usize);
             let (rho, mut point_in_disk) = disk(&mut random, [centres[i], centres[j]], [radii[i], radii[j]]);
             let samples = 4_000;

@@ -17,6 +17,7 @@
 //! exclusion gives the same sums, of which the faces are the parts that users ask for.
 
 mod centre;
+mod contacts;
 mod face;
 mod pockets;
 mod shares;
@@ -25,6 +26,7 @@ mod tests;
 mod tile;
 mod tiles;
 
+pub use contacts::Contacts;
 pub use pockets::{Pocket, pockets};
 
 use crate::predicates::Point3;
@@ -68,7 +70,7 @@ pub struct Cells {
     /// The cells, one for each ball.
     pub cells: Vec<Cell>,
     /// The faces wanted, in the order of their balls.
-    pub contacts: Vec<Contact>,
+    pub contacts: Contacts,
 }
 
 /// Measures the cells of balls. Faces are listed if `contacts_above` is given and their area is greater.
@@ -89,7 +91,7 @@ pub struct Cells {
 ///
 /// let balls = Balls { centres: &[[0.0; 3], [1.0, 0.0, 0.0]], radii: &[1.0, 1.0] };
 /// let cells = measure(balls, Some(0.0), NonZeroUsize::MIN)?;
-/// assert!((cells.contacts[0].area - 0.75 * PI).abs() < 1e-14);
+/// assert!((cells.contacts.iter().map(|contact| contact.area).sum::<f64>() - 0.75 * PI).abs() < 1e-14);
 /// assert!((cells.cells[0].area - 3.0 * PI).abs() < 1e-13);
 /// assert!((cells.cells[0].volume + cells.cells[1].volume - 9.0 / 4.0 * PI).abs() < 1e-13);
 /// # Ok::<(), spmesh_core::error::Error>(())
@@ -104,18 +106,18 @@ fn in_tiles(
     threads: NonZeroUsize,
     tile_max: usize,
 ) -> Result<Cells> {
-    let mut all = Cells { cells: vec![Cell::default(); balls.centres.len()], contacts: Vec::new() };
     let tiles = tiles::cut(balls, tile_max);
     let measured = parallel::map(threads, tiles.iter(), |members| {
         let tile = Tile::new(balls, members)?;
         Ok(tile.measure(contacts_above))
     })?;
+    let mut cells = vec![Cell::default(); balls.centres.len()];
+    let mut parts = Vec::with_capacity(tiles.len());
     for (members, part) in tiles.iter().zip(measured) {
         for (&ball, cell) in members.core.iter().zip(part.cells) {
-            all.cells[ball as usize] = cell;
+            cells[ball as usize] = cell;
         }
-        all.contacts.extend(part.contacts);
+        parts.push(part.contacts);
     }
-    all.contacts.sort_unstable_by_key(|contact| contact.balls);
-    Ok(all)
+    Ok(Cells { cells, contacts: Contacts::of_tiles(balls.centres.len(), &tiles, parts) })
 }

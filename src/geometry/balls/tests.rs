@@ -24,14 +24,14 @@ fn tiles_make_no_difference() {
     for (tile_max, threads) in [(200, 1), (200, 3), (17, 2), (1, 1)] {
         let threads = NonZeroUsize::new(threads).expect("positive");
         let tiled = in_tiles(balls, Some(1e-9), threads, tile_max).expect("finite balls");
-        let differs = whole.contacts.iter().zip(&tiled.contacts).find(|(p, q)| p.balls != q.balls);
+        let differs = whole.contacts.iter().zip(tiled.contacts.iter()).find(|(p, q)| p.balls != q.balls);
         assert_eq!(differs, None, "tiles of {tile_max}");
         assert_eq!(tiled.contacts.len(), whole.contacts.len(), "tiles of {tile_max}");
         for (found, expected) in tiled.cells.iter().zip(&whole.cells) {
             assert!((found.area - expected.area).abs() < 1e-11, "{found:?} {expected:?}");
             assert!((found.volume - expected.volume).abs() < 1e-11, "{found:?} {expected:?}");
         }
-        for (found, expected) in tiled.contacts.iter().zip(&whole.contacts) {
+        for (found, expected) in tiled.contacts.iter().zip(whole.contacts.iter()) {
             assert!((found.area - expected.area).abs() < 1e-11, "{found:?} {expected:?}");
         }
     }

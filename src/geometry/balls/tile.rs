@@ -3,7 +3,7 @@
 use super::centre::{difference, orthocentre};
 use super::face::{Face, Pair, Side};
 use super::tiles::Members;
-use super::{Balls, Cell, Cells, Contact};
+use super::{Balls, Cell, Contact};
 use crate::delaunay3::{Kernel, Ring, Tetrahedralization, Tetrahedron};
 use crate::predicates::Point3;
 use spmesh_core::error::Result;
@@ -13,6 +13,14 @@ use std::f64::consts::PI;
 
 /// Corners of a large tetrahedron, in directions from the middle of the balls.
 const OUTPOSTS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+
+/// What a tile has of the result.
+pub(super) struct Part {
+    /// The cells of the core.
+    pub(super) cells: Vec<Cell>,
+    /// Contacts whose lesser ball is in the core, in any order.
+    pub(super) contacts: Vec<Contact>,
+}
 
 /// Share of its disk below which a face is taken as empty.
 const NOISE: f64 = 1e-12;
@@ -116,7 +124,7 @@ impl<'t> Tile<'t> {
     }
 
     /// The cells of the core, and their contacts with greater balls.
-    pub(super) fn measure(&self, contacts_above: Option<f64>) -> Cells {
+    pub(super) fn measure(&self, contacts_above: Option<f64>) -> Part {
         let mut cells = vec![Cell::default(); self.members.core.len()];
         // Solid angles of what is exposed.
         let mut angles = vec![0.0; self.places.len()];
@@ -158,7 +166,8 @@ impl<'t> Tile<'t> {
             }
         }
         cells.iter_mut().for_each(|cell| cell.volume = cell.volume.max(0.0));
-        Cells { cells, contacts }
+        contacts.shrink_to_fit();
+        Part { cells, contacts }
     }
 
     /// The face at an edge whose ends are balls; `see` gets each side of its polygon.

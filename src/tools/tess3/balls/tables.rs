@@ -8,7 +8,7 @@ use super::{BallOptions, Level, Molecule};
 use crate::number::write_number;
 use crate::tables::write_error;
 use spmesh_core::error::Result;
-use spmesh_geometry::balls::{Cell, Contact};
+use spmesh_geometry::balls::{Cell, Contact, Contacts};
 
 /// Bytes of rows that are buffered before they are written.
 const ROWS_LEN: usize = 1 << 16;
@@ -122,7 +122,7 @@ pub(super) struct ContactTable<'t> {
 }
 
 impl ContactTable<'_> {
-    pub(super) fn write(&self, contacts: &[Contact], output: &mut impl Write) -> Result<()> {
+    pub(super) fn write(&self, contacts: &Contacts, output: &mut impl Write) -> Result<()> {
         let mut rows = Rows::new(output);
         let wanted = contacts.iter().filter(|contact| self.is_wanted(contact));
         if self.options.level == Level::Atom {
