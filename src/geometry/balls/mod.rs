@@ -82,7 +82,7 @@ pub struct Cells {
 /// As [`crate::delaunay3::Kernel::triangulate_weighted`].
 ///
 /// Cost: O(n) for atoms of molecules, about twice the time of the triangulation. Memory: 16 bytes per ball and per
-/// contact, and for each thread that of a tile, 50 MB.
+/// contact, and for each thread that of a tile, 8 MB.
 ///
 /// ```
 /// use spmesh_geometry::balls::{Balls, measure};

@@ -4,7 +4,7 @@ use super::Balls;
 
 /// Greatest number of balls of a tile, without those around it. Larger tiles have fewer of these, but need more
 /// memory.
-pub(super) const TILE_MAX: usize = 100_000;
+pub(super) const TILE_MAX: usize = 10_000;
 
 /// The balls of a tile, as indices of all balls.
 #[derive(Debug, Default)]
