@@ -5,6 +5,7 @@
 
 mod alpha;
 mod exact;
+pub mod filtration;
 pub mod heap;
 mod job;
 mod mesh;
