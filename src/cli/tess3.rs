@@ -23,7 +23,7 @@ use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_io::source::structure::{Format, Structure, read_structure};
 use spmesh_tess3::sweep::{News, Outcome, Sweep, sweep};
-use spmesh_tess3::{Options, Product, Radius, Stats};
+use spmesh_tess3::{Arithmetic, Options, Product, Radius, Stats};
 
 const SUMMARY_NAME: &str = "summary.tsv";
 
@@ -36,6 +36,8 @@ Examples:
     tess3 1abc.pdb --chain A,B --atoms ca --contacts -o contacts.tsv
   Tetrahedra with circumradius and volume; only those of the alpha complex of radius 4 Å:
     tess3 1abc.pdb --hetatm off --alpha 4 --table | sort -gk10
+  Persistent homology, with GUDHI or another program that reads lists of simplices:
+    tess3 1abc.pdb --filtration -o 1abc.txt
   Many structures, two at a time; later only what is new or changed:
     find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2
     find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2 --resume
@@ -76,6 +78,12 @@ pub struct Flags {
     /// Write a table of the edges: pairs of atoms, distance (Å), and the number of tetrahedra around
     #[arg(long)]
     contacts: bool,
+
+    /// Write the filtration of the alpha complex: each simplex with the square of the radius (Å²) from which on it
+    /// belongs to the complex, in an order that programs for persistent homology take. A line has the dimension,
+    /// the vertices, counted from 0 in the selection, the value, and a bound on its error
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha"])]
+    filtration: bool,
 
     /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere
     /// of at most that radius
@@ -199,7 +207,12 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     let options = flags.options()?;
     let is_binary = options.product == Product::Mesh;
     check_apart([input.as_path()], &[("--output", &flags.output)])?;
-    endings::check(&flags.output, &[if is_binary { endings::STREAM } else { endings::TABLE }])?;
+    let ending = match options.product {
+        Product::Mesh => endings::STREAM,
+        Product::Filtration => endings::NUMBERS,
+        Product::Tetrahedra | Product::Contacts => endings::TABLE,
+    };
+    endings::check(&flags.output, &[ending])?;
     // Fail before the work if the output cannot be created.
     let mut output = Some(Output::create(&flags.output, is_binary)?);
     let started = Instant::now();
@@ -222,7 +235,7 @@ fn run_one(flags: &Flags) -> Result<Finished> {
 /// Refuses runs that need several outputs.
 fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Result<()> {
     let models = structure.models.len();
-    if options.product == Product::Mesh && flags.selection.wants_all_models() && models > 1 {
+    if options.product.is_per_model() && flags.selection.wants_all_models() && models > 1 {
         let message = format!("{models} models need a folder for their meshes: --out-dir FOLDER");
         return Err(Error::usage(message).of_input(&structure.name));
     }
@@ -282,15 +295,20 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
 
 impl Flags {
     fn options(&self) -> Result<Options> {
-        let product = match (self.table, self.contacts) {
-            (true, _) => Product::Tetrahedra,
-            (_, true) => Product::Contacts,
+        let product = match (self.table, self.contacts, self.filtration) {
+            (true, ..) => Product::Tetrahedra,
+            (_, true, _) => Product::Contacts,
+            (_, _, true) => Product::Filtration,
             _ => Product::Mesh,
         };
+        let method = self.method.method()?;
+        if product == Product::Filtration && method.arithmetic != Arithmetic::Exact {
+            return Err(Error::usage("--filtration needs --arithmetic exact"));
+        }
         Ok(Options {
             selection: self.selection.selection(),
             alpha: self.alpha.clone(),
-            method: self.method.method()?,
+            method,
             compress: self.compression.of_output(product == Product::Mesh)?,
             product,
         })
@@ -304,9 +322,13 @@ impl Flags {
         }
         text += &self.method.to_string();
         let compress = self.compression.of_stream();
-        for (flag, name) in
-            [(self.table, " --table"), (self.contacts, " --contacts"), (compress, " --compress")]
-        {
+        let names = [
+            (self.table, " --table"),
+            (self.contacts, " --contacts"),
+            (self.filtration, " --filtration"),
+            (compress, " --compress"),
+        ];
+        for (flag, name) in names {
             text += if flag { name } else { "" };
         }
         text

@@ -5,6 +5,7 @@ use std::io::Write;
 use std::time::Instant;
 
 use super::alpha::AlphaComplex;
+use super::filtration::Filtration;
 use super::mesh::write_mesh;
 use super::tables::{CONTACTS, Rows, TETRAHEDRA, write_error};
 use super::{Arithmetic, Options, Product, Report, selection};
@@ -94,6 +95,13 @@ impl Job<'_> {
         match (selected, self.options.product) {
             (Some(selected), Product::Tetrahedra | Product::Contacts) => {
                 self.write_table(&model, selected, &mesh, &mut report)?;
+            }
+            (Some(selected), Product::Filtration) => {
+                // Balls of equal size, so far.
+                let weights: Option<&[f64]> = None;
+                let mut output = (self.open)(Some(model.name))?;
+                Filtration::new(selected.points(), weights, &mesh)?.write(&mut output, model.scale())?;
+                output.commit()?;
             }
             _ => self.write_mesh(&model, mesh, &mut report)?,
         }

@@ -39,6 +39,16 @@ pub enum Product {
     Tetrahedra,
     /// A table of the edges.
     Contacts,
+    /// The filtration of the alpha complex, one per model.
+    Filtration,
+}
+
+impl Product {
+    /// Whether each model has an output of its own.
+    #[must_use]
+    pub fn is_per_model(self) -> bool {
+        matches!(self, Product::Mesh | Product::Filtration)
+    }
 }
 
 /// What to triangulate, and what to write of it.
