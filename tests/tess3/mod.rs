@@ -4,6 +4,7 @@ mod alpha;
 #[cfg(feature = "experiments")]
 mod experiments;
 mod failures;
+mod filtration;
 mod meshes;
 mod molecules;
 mod selections;

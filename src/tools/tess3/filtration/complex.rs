@@ -74,7 +74,9 @@ impl Complex<'_> {
                 let own = [t as u32, side as u32];
                 let corners = [Some(own), beyond.map(|corner| [corner.tetrahedron, corner.corner])];
                 let corners = corners.into_iter().flatten();
-                let opposite = corners.clone().map(|[t, corner]| mesh.tetrahedra()[t as usize].vertices[corner as usize]);
+                let opposite = corners
+                    .clone()
+                    .map(|[t, corner]| mesh.tetrahedra()[t as usize].vertices[corner as usize]);
                 let is_attached = has_tetrahedra && self.is_attached(&vertices, opposite);
                 let coface = is_attached.then(|| self.least(corners.clone().map(|[t, _]| t)));
                 let number = self.add(&vertices, coface);

@@ -43,7 +43,12 @@ impl Decimals {
     }
 
     /// Appends a value and the bound on its error: half a unit of the last digit, or 0 if it is exact.
-    pub(super) fn write(&self, text: &mut Vec<u8>, value: &Value, exact: impl FnOnce() -> Fraction<BigInt>) -> std::io::Result<()> {
+    pub(super) fn write(
+        &self,
+        text: &mut Vec<u8>,
+        value: &Value,
+        exact: impl FnOnce() -> Fraction<BigInt>,
+    ) -> std::io::Result<()> {
         if let Some(decimal) = self.fast(value) {
             if value.high < 0.0 {
                 text.push(b'-');
@@ -60,7 +65,8 @@ impl Decimals {
     /// The digits of a magnitude, if the rounded value tells them and that they are not exact.
     fn fast(&self, value: &Value) -> Option<Decimal> {
         let [numerator, denominator] = self.scale.each_ref().map(double);
-        let [high, low] = (Double { high: value.high, low: value.low, error: 0.0 } * numerator).over(denominator);
+        let [high, low] =
+            (Double { high: value.high, low: value.low, error: 0.0 } * numerator).over(denominator);
         let value = if high < 0.0 { [-high, -low] } else { [high, low] };
         let first_digit = value[0].log10().floor();
         if !(-20.0..30.0).contains(&first_digit) {

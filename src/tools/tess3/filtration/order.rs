@@ -53,7 +53,9 @@ pub(super) fn order(sites: &Sites<'_>, table: &Table) -> Order {
 fn are_equal(sites: &Sites<'_>, table: &Table, run: &[u32]) -> bool {
     let carrier = |number: u32| table.carriers[number as usize];
     let fraction = |number: u32| sites.fraction(&table.simplices[carrier(number) as usize]);
-    let Some((&first, others)) = run.split_first().filter(|(_, others)| !others.is_empty()) else { return true };
+    let Some((&first, others)) = run.split_first().filter(|(_, others)| !others.is_empty()) else {
+        return true;
+    };
     let mut equal = carrier(first);
     let mut exact = None;
     others.iter().all(|&number| {

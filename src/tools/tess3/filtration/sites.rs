@@ -39,7 +39,8 @@ pub(super) struct Sites<'p> {
 impl<'p> Sites<'p> {
     pub(super) fn new(points: &'p [Point3], weights: Option<&'p [f64]>) -> Self {
         let of_points = points.iter().flatten().filter_map(|&coordinate| last_bit(coordinate)).min();
-        let of_weights = weights.iter().flat_map(|weights| weights.iter()).filter_map(|&weight| last_bit(weight));
+        let of_weights =
+            weights.iter().flat_map(|weights| weights.iter()).filter_map(|&weight| last_bit(weight));
         let of_weights = of_weights.min().map(|bit| bit.div_euclid(2));
         let exponent = of_points.into_iter().chain(of_weights).min().unwrap_or(0);
         Sites { points, weights, exponent }
