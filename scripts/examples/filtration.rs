@@ -1,5 +1,5 @@
-//! Writes the filtration of weighted points: lines of `x y z weight` from stdin; without weights if there are three
-//! columns. For comparison with other programs.
+//! Writes the filtration of weighted points: lines of `x y z weight` from stdin; without weights if there are
+//! three columns. For comparison with other programs.
 
 use spmesh_geometry::delaunay3::{triangulate, triangulate_weighted};
 use spmesh_tess3::filtration::Filtration;

@@ -79,9 +79,9 @@ pub struct Flags {
     #[arg(long)]
     contacts: bool,
 
-    /// Write the filtration of the alpha complex: each simplex with the square of the radius (Å²) from which on it
-    /// belongs to the complex, in an order that programs for persistent homology take. A line has the dimension,
-    /// the vertices, counted from 0 in the selection, the value, and a bound on its error
+    /// Write the filtration of the alpha complex: each simplex with the square of the radius (Å²) from which
+    /// on it belongs to the complex, in an order that programs for persistent homology take. A line has the
+    /// dimension, the vertices, counted from 0 in the selection, the value, and a bound on its error
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha"])]
     filtration: bool,
 

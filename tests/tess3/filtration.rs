@@ -1,5 +1,5 @@
-//! Filtrations by their definition, in rational numbers: the value of a simplex is the least power of a point from
-//! its corners that is the same for all of them and no greater than that from any other point.
+//! Filtrations by their definition, in rational numbers: the value of a simplex is the least power of a point
+//! from its corners that is the same for all of them and no greater than that from any other point.
 
 use super::molecules::{Record, cloud, pdb};
 use crate::programs::{outcome, run};
@@ -57,21 +57,23 @@ fn determinant(rows: &[Vec<BigInt>]) -> BigInt {
     (0..first.len()).map(|column| if column % 2 == 0 { term(column) } else { -term(column) }).sum()
 }
 
-fn dot(p: [i64; 3], q: [i64; 3]) -> i64 {
-    (0..3).map(|axis| p[axis] * q[axis]).sum()
+fn dot(p: [i64; 3], q: [i64; 3]) -> i128 {
+    (0..3).map(|axis| i128::from(p[axis]) * i128::from(q[axis])).sum()
 }
 
 fn minus(p: Ball, q: Ball) -> [i64; 3] {
     [0, 1, 2].map(|axis| p[axis] - q[axis])
 }
 
-/// The orthocentre of some balls in the flat of their centres, and its power: times a common denominator. `None` if
-/// the flat has less dimension than it could have. By Cramer's rule for Gram's matrix.
+/// The orthocentre of some balls in the flat of their centres, and its power: times a common denominator.
+/// `None` if the flat has less dimension than it could have. By Cramer's rule for Gram's matrix.
 fn orthocentre(balls: &[Ball]) -> Option<([BigInt; 3], Rational, BigInt)> {
     let a = balls[0];
     let sides: Vec<[i64; 3]> = balls[1..].iter().map(|&ball| minus(ball, a)).collect();
-    let lifts =
-        balls[1..].iter().zip(&sides).map(|(ball, &side)| BigInt::from(dot(side, side) - ball[3] + a[3]));
+    let lifts = balls[1..]
+        .iter()
+        .zip(&sides)
+        .map(|(ball, &side)| BigInt::from(dot(side, side) - i128::from(ball[3] - a[3])));
     let lifts: Vec<BigInt> = lifts.collect();
     let gram: Vec<Vec<BigInt>> =
         sides.iter().map(|&p| sides.iter().map(|&q| BigInt::from(2 * dot(p, q))).collect()).collect();
@@ -98,8 +100,8 @@ fn power(centre: &[BigInt; 3], denominator: &BigInt, ball: Ball) -> Rational {
     Rational::new(square - &square_of_denominator * ball[3], square_of_denominator)
 }
 
-/// The value of a simplex by the definition; `None` if it has no such point. The least is at an orthocentre of the
-/// simplex or of one that it is a face of.
+/// The value of a simplex by the definition; `None` if it has no such point. The least is at an orthocentre
+/// of the simplex or of one that it is a face of.
 fn value(all: &[Ball], simplex: &[usize]) -> Option<Rational> {
     let mut least: Option<Rational> = None;
     let mut supersets = vec![simplex.to_vec()];
@@ -183,8 +185,8 @@ fn check(balls: &[Ball], is_weighted: bool) -> bool {
     lines.iter().zip(&exact).any(is_attached)
 }
 
-/// Triangulations of convex sets have the Euler characteristic 1, and a facet has one or two simplices of greatest
-/// dimension. All points are there but hidden ones.
+/// Triangulations of convex sets have the Euler characteristic 1, and a facet has one or two simplices of
+/// greatest dimension. All points are there but hidden ones.
 fn check_is_ball(lines: &[Line], balls: &[Ball]) {
     let count = |corners: usize| lines.iter().filter(|line| line.vertices.len() == corners).count() as i64;
     assert_eq!(count(1) - count(2) + count(3) - count(4), 1, "{balls:?}");
@@ -254,6 +256,31 @@ fn points_in_a_plane_on_a_line_and_at_one_place() {
         }
         check(&balls, round % 2 == 1);
     }
+}
+
+#[test]
+fn congruent_simplices_have_equal_values_however_they_are_computed() {
+    let corners = [[0, 0, 0], [123_457, 3_001, 20_011], [70_003, 110_017, -9_973], [31_013, 40_009, 99_991]];
+    let mut balls: Vec<Ball> = Vec::new();
+    for (copy, order) in (0..3).zip([[0, 1, 2, 3], [2, 0, 3, 1], [3, 2, 1, 0]]) {
+        // Axes are cycled, which is a rotation; the copies are far apart.
+        let turned =
+            order.map(|i| [0, 1, 2].map(|axis| corners[i][(axis + copy) % 3] + 1_000_000 * copy as i64));
+        balls.extend(turned.map(|[x, y, z]| [x, y, z, 0]));
+    }
+    check(&balls, false);
+    check(&balls, true);
+}
+
+#[test]
+fn values_that_differ_by_less_than_rounding_are_told_apart() {
+    // The squares of these two edges are 2^80 + 1 and 2^80.
+    let (near, far) = (1 << 40, 1 << 42);
+    let balls = [[0, 0, 0, 0], [near, 1, 0, 0], [0, far, 0, 0], [near, far, 0, 0]];
+    check(&balls, false);
+    let position =
+        |wanted: [usize; 2]| filtration(&balls, false).0.iter().position(|line| line.vertices == wanted);
+    assert!(position([2, 3]) < position([0, 1]));
 }
 
 fn of_text(text: &str) -> String {

@@ -97,7 +97,7 @@ impl Job<'_> {
                 self.write_table(&model, selected, &mesh, &mut report)?;
             }
             (Some(selected), Product::Filtration) => {
-                // Balls of equal size, so far.
+                // Atoms count as points. With radii, the mesh is that of these weights, too.
                 let weights: Option<&[f64]> = None;
                 let mut output = (self.open)(Some(model.name))?;
                 Filtration::new(selected.points(), weights, &mesh)?.write(&mut output, model.scale())?;

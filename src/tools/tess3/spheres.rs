@@ -21,8 +21,8 @@ fn sphere<T: Number>([a, b, c, d]: &[Vector<T>; 4]) -> (Vector<T>, T) {
     orthosphere(&sides, &lifts)
 }
 
-/// n and D of a tetrahedron of b, c, d and the origin, given their lifts: b², c² and d², less the weights if there
-/// are any.
+/// n and D of a tetrahedron of b, c, d and the origin, given their lifts: b², c² and d², less the weights if
+/// there are any.
 pub(super) fn orthosphere<T: Number>(
     [b, c, d]: &[Vector<T>; 3],
     [of_b, of_c, of_d]: &[T; 3],

@@ -1,9 +1,9 @@
 //! The simplices of a triangulation and their values.
 //!
-//! A simplex is attached if a vertex is in conflict with its least orthosphere; its value is then the least of its
-//! cofaces with one more vertex. Otherwise it is the power of its own orthocentre. So each value is the power of
-//! the orthocentre of some simplex, the carrier of the value. Vertices next to the simplex (its link) tell whether
-//! it is attached.
+//! A simplex is attached if a vertex is in conflict with its least orthosphere; its value is then the least
+//! of its cofaces with one more vertex. Otherwise it is the power of its own orthocentre. So each value is
+//! the power of the orthocentre of some simplex, the carrier of the value. Vertices next to the simplex (its
+//! link) tell whether it is attached.
 
 use super::sites::{NONE, Simplex, Sites};
 use super::value::Value;

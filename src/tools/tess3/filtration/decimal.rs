@@ -29,6 +29,8 @@ struct Decimal {
 pub(super) struct Decimals {
     /// Squares of numerator and denominator of the scale.
     scale: [BigInt; 2],
+    /// The same, rounded.
+    rounded_scale: [Double; 2],
     /// Exponent of four of the unit of fractions.
     exponent: i32,
     powers: Vec<Double>,
@@ -38,8 +40,10 @@ impl Decimals {
     /// `scale` stands for the shortest decimal that is rounded to it: world units per stored unit.
     pub(super) fn new(scale: f64, exponent: i32) -> Self {
         let scale: Radius = scale.to_string().parse().expect("a scale is a positive number");
+        let scale = scale.squares_in(0);
+        let rounded_scale = scale.each_ref().map(double);
         let powers = (0..40).map(|power| double(&BigInt::from(10).pow(power))).collect();
-        Decimals { scale: scale.squares_in(0), exponent, powers }
+        Decimals { scale, rounded_scale, exponent, powers }
     }
 
     /// Appends a value and the bound on its error: half a unit of the last digit, or 0 if it is exact.
@@ -64,7 +68,7 @@ impl Decimals {
 
     /// The digits of a magnitude, if the rounded value tells them and that they are not exact.
     fn fast(&self, value: &Value) -> Option<Decimal> {
-        let [numerator, denominator] = self.scale.each_ref().map(double);
+        let [numerator, denominator] = self.rounded_scale;
         let [high, low] =
             (Double { high: value.high, low: value.low, error: 0.0 } * numerator).over(denominator);
         let value = if high < 0.0 { [-high, -low] } else { [high, low] };
@@ -130,7 +134,8 @@ impl Decimals {
     }
 }
 
-/// Fractions of the last digit that are left to exact arithmetic. A [`Value`] errs by less than a tenth of this.
+/// Fractions of the last digit that are left to exact arithmetic. A [`Value`] errs by less than a tenth of
+/// this.
 const UNSURE: f64 = 1e-3;
 const _: () = assert!(ERROR * (LIMIT as f64) < UNSURE / 10.0);
 

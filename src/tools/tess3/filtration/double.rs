@@ -17,7 +17,8 @@ pub(super) struct Double {
 const SPLITTER: f64 = ((1u64 << 27) + 1) as f64;
 
 /// With u = 2^-53, a sum of pairs errs by at most 4 u² times the magnitudes of its terms, and a product by at
-/// most 9 u² times its magnitude, both generously: see the derivation in `predicates/pairs.rs` of the geometry.
+/// most 9 u² times its magnitude, both generously: see the derivation in `predicates/pairs.rs` of the
+/// geometry.
 const OF_SUM: f64 = f64::EPSILON * f64::EPSILON;
 const OF_PRODUCT: f64 = 3.0 * f64::EPSILON * f64::EPSILON;
 

@@ -1,8 +1,9 @@
 //! Sets of points in a plane, on a line or at one place, which have no tetrahedra.
 //!
 //! As many points are added as it takes to span the space, which is as few as possible. The flat of the given
-//! points then touches the convex hull of all in a face. So the regular tetrahedralization of all contains that of
-//! the given points, in which none is hidden that was not before, whatever the weights of the others are.
+//! points then touches the convex hull of all in a face. So the regular tetrahedralization of all contains
+//! that of the given points, in which none is hidden that was not before, whatever the weights of the others
+//! are.
 
 use std::borrow::Cow;
 

@@ -1,15 +1,15 @@
-//! The filtration of the alpha complex: each simplex of the Delaunay tetrahedralization with the square of the
-//! radius from which on it belongs to the alpha complex, in an order in which faces come before cofaces.
+//! The filtration of the alpha complex: each simplex of the Delaunay tetrahedralization with the square of
+//! the radius from which on it belongs to the alpha complex, in an order in which faces come before cofaces.
 //!
-//! With weights, which are squares of radii of balls, the tetrahedralization is the regular one, and values are
-//! powers of orthocentres: at the value t, the complex is that of the balls whose squared radii are greater by t.
-//! Hidden points and duplicates are in no simplex.
+//! With weights, which are squares of radii of balls, the tetrahedralization is the regular one, and values
+//! are powers of orthocentres: at the value t, the complex is that of the balls whose squared radii are
+//! greater by t. Hidden points and duplicates are in no simplex.
 //!
-//! All decisions are exact: what is attached, and the order. Text has 17 digits of values, which are rounded once,
-//! unless a value is a shorter decimal number.
+//! All decisions are exact: what is attached, and the order. Text has 17 digits of values, which are rounded
+//! once, unless a value is a shorter decimal number.
 //!
-//! Source: Edelsbrunner and Mücke, "Three-dimensional alpha shapes", 1994; with weights Edelsbrunner, "The union
-//! of balls and its dual shape", 1995.
+//! Source: Edelsbrunner and Mücke, "Three-dimensional alpha shapes", 1994; with weights Edelsbrunner, "The
+//! union of balls and its dual shape", 1995.
 
 mod complex;
 mod decimal;
@@ -42,11 +42,11 @@ pub struct Filtration<'p> {
 }
 
 impl<'p> Filtration<'p> {
-    /// The filtration of points with weights, if there are any, and their exact tetrahedralization: the Delaunay
-    /// or the regular one.
+    /// The filtration of points with weights, if there are any, and their exact tetrahedralization: the
+    /// Delaunay or the regular one.
     ///
-    /// Domain: `weights` has a weight for each point, in the square of the unit of coordinates. Points in a plane,
-    /// whose tetrahedralization is empty, are fine.
+    /// Domain: `weights` has a weight for each point, in the square of the unit of coordinates. Points in a
+    /// plane, whose tetrahedralization is empty, are fine.
     ///
     /// Cost: O(n log n) for n simplices. Memory: about 1.6 kB per point for points spread evenly in space.
     ///
@@ -64,9 +64,10 @@ impl<'p> Filtration<'p> {
         Ok(Filtration { sites, table, order })
     }
 
-    /// Writes a line for each simplex: its dimension, the indices of its vertices (from 0, increasing), its value,
-    /// and a bound on the error of the value as it is written. Values are in squares of `scale`, which is the world
-    /// units per unit of the coordinates and stands for the shortest decimal that is rounded to it.
+    /// Writes a line for each simplex: its dimension, the indices of its vertices (from 0, increasing), its
+    /// value, and a bound on the error of the value as it is written. Values are in squares of `scale`, which
+    /// is the world units per unit of the coordinates and stands for the shortest decimal that is rounded to
+    /// it.
     ///
     /// Lines are in order of values, and those of equal values by dimension, then by vertices.
     ///

@@ -18,8 +18,8 @@ pub(super) struct Order {
 
 /// Sorts the simplices of a table.
 ///
-/// Rounded values decide where they can. What is left are runs of values in doubt, nearly all of which are equal
-/// in truth; to see this takes one comparison for each.
+/// Rounded values decide where they can. What is left are runs of values in doubt, nearly all of which are
+/// equal in truth; to see this takes one comparison for each.
 ///
 /// Memory: 8 bytes per simplex; more only where values differ in no more than their last bits.
 pub(super) fn order(sites: &Sites<'_>, table: &Table) -> Order {

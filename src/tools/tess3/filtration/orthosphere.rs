@@ -1,14 +1,14 @@
 //! The least orthospheres of simplices: their powers, and who is in conflict with them.
 //!
-//! A point x has the power |x - p|² - w from a point p of weight w. All corners of a simplex have the same power
-//! from the points of a flat that is orthogonal to it; the point where this flat meets the simplex's own is the
-//! orthocentre. Without weights it is the centre of the least circumscribed sphere, and the power is the square
-//! of its radius. Another point is in conflict if the orthocentre's power from it is less.
+//! A point x has the power |x - p|² - w from a point p of weight w. All corners of a simplex have the same
+//! power from the points of a flat that is orthogonal to it; the point where this flat meets the simplex's
+//! own is the orthocentre. Without weights it is the centre of the least circumscribed sphere, and the power
+//! is the square of its radius. Another point is in conflict if the orthocentre's power from it is less.
 //!
 //! In the formulas the first corner a is the origin, and the lift of a point p is P = p² - (w_p - w_a). The
-//! orthocentre of 0, b, c, d is n / 2 D with n = B (c × d) + C (d × b) + E (b × c) and D = det(b, c, d). That of
-//! 0, b, c is (β b + γ c) / 2 W with β = B c² - C bc, γ = C b² - B bc and W = (b × c)². That of 0, b is
-//! B b / 2 b².
+//! orthocentre of 0, b, c, d is n / 2 D with n = B (c × d) + C (d × b) + E (b × c) and D = det(b, c, d). That
+//! of 0, b, c is (β b + γ c) / 2 W with β = B c² - C bc, γ = C b² - B bc and W = (b × c)². That of 0, b is B
+//! b / 2 b².
 
 use crate::exact::{Number, Vector, cross, difference, dot, square};
 use crate::spheres::{four_times, orthosphere, twice};

@@ -58,7 +58,8 @@ impl Value {
         if numerator.sign() == Sign::Minus { Value { high: -high, low: -low } } else { Value { high, low } }
     }
 
-    /// An order of rounded values that contradicts that of the values only if they are [in doubt](Value::is_in_doubt).
+    /// An order of rounded values that contradicts that of the values only if they are [in
+    /// doubt](Value::is_in_doubt).
     pub(super) fn rounded_order(&self, other: &Value) -> Ordering {
         self.high.total_cmp(&other.high).then(self.low.total_cmp(&other.low))
     }
