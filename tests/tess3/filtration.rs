@@ -319,7 +319,7 @@ fn the_filtration_is_independent_of_the_order_of_atoms() {
     let rename = |vertex: usize| atoms.len() - 1 - vertex;
     let values = |atoms: &[Record], name: &dyn Fn(usize) -> usize| -> BTreeMap<Vec<usize>, String> {
         let text = of_text(&pdb(atoms));
-        let value = text.lines().map(|line| line.rsplitn(3, ' ').nth(1).unwrap().to_string());
+        let value = text.lines().map(|line| line.rsplit(' ').nth(1).unwrap().to_string());
         let mut renamed: Vec<Vec<usize>> =
             lines(&text).into_iter().map(|line| line.vertices.into_iter().map(name).collect()).collect();
         renamed.iter_mut().for_each(|vertices| vertices.sort_unstable());

@@ -68,8 +68,9 @@ impl Value {
     pub(super) fn is_in_doubt(&self, greater: &Value) -> bool {
         let error = |value: &Value| value.high.abs() * (4.0 * ERROR) + TINY;
         let room = (greater.high - self.high) + (greater.low - self.low);
-        // Written so that infinite values are in doubt.
-        !(room > error(self) + error(greater))
+        // False also for values that overflow, with which the room is no number.
+        let is_certain = room > error(self) + error(greater);
+        !is_certain
     }
 }
 
