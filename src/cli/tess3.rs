@@ -26,7 +26,7 @@ use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_io::source::structure::{Format, Structure, read_structure};
 use spmesh_tess3::sweep::{News, Outcome, Sweep, sweep};
-use spmesh_tess3::{Options, Product, Radius, Stats};
+use spmesh_tess3::{Arithmetic, Options, Product, Radius, Stats};
 
 const SUMMARY_NAME: &str = "summary.tsv";
 
@@ -45,6 +45,8 @@ Examples:
     tess3 1abc.cif.gz --classes polymer --sasa --per residue -o sasa.tsv
     tess3 1abc.cif.gz --classes polymer --contact-areas --between chains -o interface.tsv
     tess3 1abc.cif.gz --classes polymer --pockets -o pockets.tsv
+  Persistent homology, with GUDHI or another program that reads lists of simplices:
+    tess3 1abc.pdb --filtration -o 1abc.txt
   Many structures, two at a time; later only what is new or changed:
     find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2
     find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2 --resume
@@ -86,6 +88,12 @@ pub struct Flags {
     /// Write a table of the edges: pairs of atoms, distance (Å), and the number of tetrahedra around
     #[arg(long)]
     contacts: bool,
+
+    /// Write the filtration of the alpha complex: each simplex with the square of the radius (Å²) from which
+    /// on it belongs to the complex, in an order that programs for persistent homology take. A line has the
+    /// dimension, the vertices, counted from 0 in the selection, the value, and a bound on its error
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha"])]
+    filtration: bool,
 
     /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere
     /// of at most that radius
@@ -214,7 +222,12 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     let is_binary = options.product == Product::Mesh;
     let inputs = std::iter::once(input.as_path()).chain(flags.balls.file());
     check_apart(inputs, &[("--output", &flags.output)])?;
-    endings::check(&flags.output, &[if is_binary { endings::STREAM } else { endings::TABLE }])?;
+    let ending = match options.product {
+        Product::Mesh => endings::STREAM,
+        Product::Filtration => endings::NUMBERS,
+        _ => endings::TABLE,
+    };
+    endings::check(&flags.output, &[ending])?;
     // Fail before the work if the output cannot be created.
     let mut output = Some(Output::create(&flags.output, is_binary)?);
     let started = Instant::now();
@@ -239,7 +252,7 @@ fn run_one(flags: &Flags) -> Result<Finished> {
 /// Refuses runs that need several outputs.
 fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Result<()> {
     let models = structure.models.len();
-    if options.product == Product::Mesh && flags.selection.wants_all_models() && models > 1 {
+    if options.product.is_per_model() && flags.selection.wants_all_models() && models > 1 {
         let message = format!("{models} models need a folder for their meshes: --out-dir FOLDER");
         return Err(Error::usage(message).of_input(&structure.name));
     }
@@ -298,20 +311,26 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
 
 impl Flags {
     fn options(&self) -> Result<Options> {
-        let product = match (self.balls.product(), self.table, self.contacts) {
+        let product = match (self.balls.product(), self.table, self.contacts, self.filtration) {
             (Some(product), ..) => product,
-            (_, true, _) => Product::Tetrahedra,
-            (_, _, true) => Product::Contacts,
+            (_, true, ..) => Product::Tetrahedra,
+            (_, _, true, _) => Product::Contacts,
+            (.., true) => Product::Filtration,
             _ => Product::Mesh,
         };
+        let method = self.method.method()?;
+        if product == Product::Filtration && method.arithmetic != Arithmetic::Exact {
+            return Err(Error::usage("--filtration needs --arithmetic exact"));
+        }
         // A sweep has threads for its files.
         let threads = if self.out_dir.is_some() { 1 } else { self.threads() };
-        let balls = self.balls.options(NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN))?;
+        let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
+        let balls = self.balls.options(self.filtration, threads)?;
         Ok(Options {
             selection: self.selection.selection(),
             assembly: self.selection.assembly().map(str::to_string),
             alpha: self.alpha.clone(),
-            method: self.method.method()?,
+            method,
             compress: self.compression.of_output(product == Product::Mesh)?,
             product,
             balls,
@@ -330,9 +349,13 @@ impl Flags {
         }
         text += &self.method.to_string();
         let compress = self.compression.of_stream();
-        for (flag, name) in
-            [(self.table, " --table"), (self.contacts, " --contacts"), (compress, " --compress")]
-        {
+        let names = [
+            (self.table, " --table"),
+            (self.contacts, " --contacts"),
+            (self.filtration, " --filtration"),
+            (compress, " --compress"),
+        ];
+        for (flag, name) in names {
             text += if flag { name } else { "" };
         }
         text + options.balls.as_ref().map_or("", |balls| &balls.text)

@@ -205,6 +205,24 @@ fn a_cage_of_carbon_has_a_void() {
 }
 
 #[test]
+fn filtrations_take_radii_as_weights() {
+    let text = pdb(&[Record::carbon(1, [0.0; 3]), Record::carbon(2, [1.5, 0.0, 0.0])]);
+    let output = run("tess3", &["--filtration", "--radii", "bondi", "-"], text.as_bytes());
+    assert!(output.status.success(), "{:?}", outcome(&output));
+    // Squares of radii, negative, and the power of the middle between the atoms: 0.75² - 1.7².
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), "0 0 -2.89 0\n0 1 -2.89 0\n1 0 1 -2.3275 0\n");
+    let plain = run("tess3", &["--filtration", "-"], text.as_bytes());
+    assert!(String::from_utf8(plain.stdout).unwrap().ends_with("1 0 1 0.5625 0\n"));
+    assert_outcome(
+        "tess3",
+        &["--filtration", "--probe", "1", "-"],
+        text.as_bytes(),
+        2,
+        "--probe needs --radii",
+    );
+}
+
+#[test]
 fn radii_of_a_file() {
     let folder = Folder::new();
     let radii = folder.write("radii", "C 1.0\n");

@@ -7,6 +7,7 @@ mod classes;
 #[cfg(feature = "experiments")]
 mod experiments;
 mod failures;
+mod filtration;
 mod meshes;
 mod molecules;
 mod pipes;

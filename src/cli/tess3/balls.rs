@@ -21,30 +21,30 @@ const PROBE_MAX: f64 = 100.0;
 pub(super) struct BallFlags {
     /// Write a table of areas: the part of each sphere that no other ball covers (Å²); with --probe the
     /// solvent-accessible surface
-    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha"])]
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration"])]
     sasa: bool,
 
     /// Write a table of volumes: the part of each ball that is nearest to its atom by power distance (Å³);
     /// together they are the volume of the union. With --sasa, one table has both
-    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha"])]
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration"])]
     volumes: bool,
 
     /// Write a table of contacts: the area of the face between two cells, inside of both balls (Å²)
-    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "sasa", "volumes"])]
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
     contact_areas: bool,
 
     /// Write a table of pockets and voids, the largest first: spaces that a probe fits in and does not leave the
     /// straight way (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
-    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "sasa", "volumes", "contact_areas"])]
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes", "contact_areas"])]
     pockets: bool,
 
-    /// Radii of atoms: protor (united atoms, Tsai et al. 1999), bondi (by element), united (Chothia 1976), or a file
+    /// Radii of atoms, also for a filtration with weights: protor (united atoms, Tsai et al. 1999), bondi (by element), united (Chothia 1976), or a file
     /// with lines RESIDUE ATOM RADIUS or ELEMENT RADIUS [default: protor]
     #[arg(long, value_name = "NAME|FILE")]
     radii: Option<String>,
 
     /// Radius of a probe that is added to each radius (Å), to three decimals; 0 for the van der Waals surface
-    /// [default: 1.4]
+    /// [default: 1.4; of --filtration 0]
     #[arg(long, value_name = "RADIUS", value_parser = parse_probe)]
     probe: Option<u32>,
 
@@ -110,8 +110,9 @@ impl BallFlags {
     ///
     /// # Errors
     /// Those of reading radii; usage, if there is nothing to measure.
-    pub(super) fn options(&self, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
-        if self.product().is_none() {
+    pub(super) fn options(&self, is_filtration: bool, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
+        let has_weights = is_filtration && self.radii.is_some() && self.per.is_none();
+        if self.product().is_none() && !has_weights {
             let idle = [
                 ("--radii", self.radii.is_some()),
                 ("--probe", self.probe.is_some()),
@@ -119,7 +120,11 @@ impl BallFlags {
             ];
             return match idle.into_iter().find(|(_, is_given)| *is_given) {
                 Some((flag, _)) => {
-                    let remedy = "goes with --sasa, --volumes, --contact-areas or --pockets";
+                    let remedy = match (is_filtration, flag) {
+                        (true, "--probe") => "needs --radii",
+                        (true, _) => "does not go with --filtration",
+                        _ => "goes with --sasa, --volumes, --contact-areas or --pockets",
+                    };
                     Err(Error::usage(format!("{flag} {remedy}")))
                 }
                 None => Ok(None),
@@ -132,7 +137,7 @@ impl BallFlags {
             ));
         }
         let NamedRadii { radii, text } = NamedRadii::load(self.radii.as_deref().unwrap_or("protor"))?;
-        let probe = self.probe.unwrap_or(1_400);
+        let probe = self.probe.unwrap_or(if has_weights { 0 } else { 1_400 });
         let mut options = BallOptions {
             radii,
             probe,

@@ -35,7 +35,8 @@ impl Contacts {
         let whole = (self.part_of.is_empty() && !rest.is_empty()).then_some((u32::MAX, 0));
         let by_ball = (0..).zip(self.part_of.iter().map(|&part| part as usize));
         whole.into_iter().chain(by_ball).flat_map(move |(ball, part)| {
-            let end = rest[part].iter().position(|contact| contact.balls[0] > ball).unwrap_or(rest[part].len());
+            let end =
+                rest[part].iter().position(|contact| contact.balls[0] > ball).unwrap_or(rest[part].len());
             let (taken, left) = rest[part].split_at(end);
             rest[part] = left;
             taken

@@ -216,12 +216,12 @@ impl<'t> Search<'t> {
             let vertices = self.tile.tetrahedra()[t].vertices;
             balls.extend(vertices.iter().filter_map(|&v| self.tile.ball(v)));
             free.add(1.0, self.free_part(t, edges));
-            for corner in 0..4 {
+            for (corner, facet) in TETRAHEDRON_FACETS.into_iter().enumerate() {
                 let other =
                     self.tile.tetrahedra()[t].neighbour(corner).map(|other| other.tetrahedron as usize);
                 let is_outside = other.is_none_or(|other| self.states[other] == State::Outside);
                 if is_outside && !self.is_closed(t, corner) {
-                    mouths.push(TETRAHEDRON_FACETS[corner].map(|i| vertices[i]));
+                    mouths.push(facet.map(|i| vertices[i]));
                 }
             }
         }
@@ -242,8 +242,7 @@ impl<'t> Search<'t> {
         let points = vertices.map(|v| self.tile.point(v));
         let radii = vertices.map(|v| self.tile.radius(v));
         let mut free = Measure { area: 0.0, volume: volume(points) };
-        for corner in 0..4 {
-            let others = TETRAHEDRON_FACETS[corner];
+        for (corner, others) in TETRAHEDRON_FACETS.into_iter().enumerate() {
             let share = solid_angle(points[corner], others.map(|i| points[i])) / (4.0 * PI);
             let whole = ball(radii[corner]);
             free.area += share * whole.area;

@@ -67,10 +67,8 @@ impl Box3 {
         let mut sides = Box3 { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
         for &ball in members {
             let (centre, radius) = (balls.centres[ball as usize], balls.radii[ball as usize]);
-            for axis in 0..3 {
-                sides.min[axis] = sides.min[axis].min(centre[axis] - radius);
-                sides.max[axis] = sides.max[axis].max(centre[axis] + radius);
-            }
+            sides.min = [0, 1, 2].map(|axis| sides.min[axis].min(centre[axis] - radius));
+            sides.max = [0, 1, 2].map(|axis| sides.max[axis].max(centre[axis] + radius));
         }
         sides
     }

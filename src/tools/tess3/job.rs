@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use super::alpha::AlphaComplex;
 use super::balls::{BallOptions, Molecule};
+use super::filtration::Filtration;
 use super::mesh::write_mesh;
 use super::tables::{CONTACTS, Rows, TETRAHEDRA, write_error};
 use super::{Arithmetic, Options, Product, Report, selection};
@@ -90,21 +91,33 @@ impl Job<'_> {
         let selected =
             plain.is_none().then(|| selection::select(structure, &self.options.selection)).transpose()?;
         let selected = selected.as_ref();
+        let mut report = Report::new(name.number, selected.map_or(0, |selected| selected.points().len()));
+        let mut weights = None;
         if let (Some(balls), Some(selected)) = (self.options.balls.clone(), selected) {
             let molecule = Molecule { number: name.number, selected, scale: scale(structure.coordinates) };
-            return self.write_balls(&balls, &molecule, started);
+            if self.options.product != Product::Filtration {
+                return self.write_balls(&balls, &molecule, started);
+            }
+            weights = Some(molecule.weights(&balls, &mut report)?);
         }
         let points = match (plain, selected) {
             (Some(points), _) => Cow::Owned(points),
             (None, selected) => Cow::Borrowed(selected.map_or(&[][..], Selected::points)),
         };
-        let mut report = Report::new(name.number, points.len());
-        let mesh = self.options.method.triangulate(points, &mut report)?;
+        report.atoms = points.len() as u64;
+        let mesh = self.options.method.triangulate(points, weights.as_deref(), &mut report)?;
         report.times.triangulate = started.elapsed();
         let model = Model { name, coordinates: structure.coordinates, selected };
         match (selected, self.options.product) {
             (Some(selected), Product::Tetrahedra | Product::Contacts) => {
                 self.write_table(&model, selected, &mesh, &mut report)?;
+            }
+            (Some(selected), Product::Filtration) => {
+                // Atoms count as points.
+                let mut output = (self.open)(Some(model.name))?;
+                Filtration::new(selected.points(), weights.as_deref(), &mesh)?
+                    .write(&mut output, model.scale())?;
+                output.commit()?;
             }
             _ => self.write_mesh(&model, mesh, &mut report)?,
         }

@@ -6,6 +6,7 @@
 mod alpha;
 mod balls;
 mod exact;
+pub mod filtration;
 pub mod heap;
 mod job;
 mod mesh;
@@ -46,6 +47,16 @@ pub enum Product {
     ContactAreas,
     /// A table of the pockets and voids between them.
     Pockets,
+    /// The filtration of the alpha complex, one per model.
+    Filtration,
+}
+
+impl Product {
+    /// Whether each model has an output of its own.
+    #[must_use]
+    pub fn is_per_model(self) -> bool {
+        matches!(self, Product::Mesh | Product::Filtration)
+    }
 }
 
 /// What to triangulate, and what to write of it.

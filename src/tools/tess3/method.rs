@@ -54,18 +54,19 @@ pub struct Method {
 }
 
 impl Method {
-    /// Triangulates, and records counts and times in `report`.
+    /// Triangulates, with weights only in exact arithmetic, and records counts and times in `report`.
     ///
     /// # Errors
     /// Those of the kernels; usage, if a build without experiments is asked for floating-point arithmetic.
     pub(super) fn triangulate(
         &self,
         points: Cow<[Point3]>,
+        weights: Option<&[f64]>,
         report: &mut Report,
     ) -> Result<Tetrahedralization> {
         let input_bytes = size_of_val(&points[..]) as u64;
         let (mesh, peak) = peak_during(|| match self.arithmetic {
-            Arithmetic::Exact => self.exactly(points, report),
+            Arithmetic::Exact => self.exactly(points, weights, report),
             Arithmetic::Float { check_signs } => self.in_floating_point(&points, check_signs, report),
         });
         let mesh = mesh?;
@@ -76,14 +77,22 @@ impl Method {
         Ok(mesh)
     }
 
-    fn exactly(&self, points: Cow<[Point3]>, report: &mut Report) -> Result<Tetrahedralization> {
+    fn exactly(
+        &self,
+        points: Cow<[Point3]>,
+        weights: Option<&[f64]>,
+        report: &mut Report,
+    ) -> Result<Tetrahedralization> {
         let mut kernel = Kernel::new();
         kernel.curve = self.curve;
         kernel.sequence = self.sequence;
         kernel.by_bit_levels = self.by_bit_levels;
         kernel.is_timed = self.is_timed;
         let mut mesh = Tetrahedralization::default();
-        kernel.triangulate(points, &mut mesh)?;
+        match weights {
+            Some(weights) => kernel.triangulate_weighted(points, weights, &mut mesh)?,
+            None => kernel.triangulate(points, &mut mesh)?,
+        }
         let stats = mesh.stats;
         report.created = stats.created;
         report.in_sphere_tests = stats.insphere_tests;

@@ -16,17 +16,27 @@ use spmesh_geometry::predicates::{Point3, Sign};
 
 /// n and D of a tetrahedron.
 fn sphere<T: Number>([a, b, c, d]: &[Vector<T>; 4]) -> (Vector<T>, T) {
-    let (b, c, d) = (difference(b, a), difference(c, a), difference(d, a));
-    let (bc, cd, db) = (cross(&b, &c), cross(&c, &d), cross(&d, &b));
-    let n = sum(&sum(&times(&square(&b), &cd), &times(&square(&c), &db)), &times(&square(&d), &bc));
-    (n, dot(&b, &cd))
+    let sides = [difference(b, a), difference(c, a), difference(d, a)];
+    let lifts = [square(&sides[0]), square(&sides[1]), square(&sides[2])];
+    orthosphere(&sides, &lifts)
 }
 
-fn twice<T: Number>(value: T) -> T {
+/// n and D of a tetrahedron of b, c, d and the origin, given their lifts: b², c² and d², less the weights if
+/// there are any.
+pub(super) fn orthosphere<T: Number>(
+    [b, c, d]: &[Vector<T>; 3],
+    [of_b, of_c, of_d]: &[T; 3],
+) -> (Vector<T>, T) {
+    let (bc, cd, db) = (cross(b, c), cross(c, d), cross(d, b));
+    let n = sum(&sum(&times(of_b, &cd), &times(of_c, &db)), &times(of_d, &bc));
+    (n, dot(b, &cd))
+}
+
+pub(super) fn twice<T: Number>(value: T) -> T {
     value.clone() + value
 }
 
-fn four_times<T: Number>(value: T) -> T {
+pub(super) fn four_times<T: Number>(value: T) -> T {
     twice(twice(value))
 }
 

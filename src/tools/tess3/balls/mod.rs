@@ -109,6 +109,14 @@ impl Molecule<'_> {
             .collect()
     }
 
+    /// The weights of all atoms: squares of their radii, in stored units.
+    ///
+    /// # Errors
+    /// If an atom has no radius.
+    pub(super) fn weights(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
+        Ok(self.radii(options, report)?.into_iter().map(|radius| radius * radius).collect())
+    }
+
     fn measure(&self, options: &BallOptions, wants_contacts: bool, report: &mut Report) -> Result<Cells> {
         let radii = self.radii(options, report)?;
         let balls = Balls { centres: self.selected.points(), radii: &radii };

@@ -158,7 +158,7 @@ fn has_distinct_numbers(structure: &Structure) -> bool {
 /// Stem, model and the extension of the product.
 fn output_name(stem: &Path, product: Product, model: Option<i64>) -> PathBuf {
     let mut name = stem.as_os_str().to_os_string();
-    if let Some(number) = model.filter(|_| product == Product::Mesh) {
+    if let Some(number) = model.filter(|_| product.is_per_model()) {
         name.push(format!(".model{number}"));
     }
     name.push(ending(product));
@@ -173,6 +173,7 @@ fn ending(product: Product) -> &'static str {
         Product::Cells => ".cells.tsv",
         Product::ContactAreas => ".contact-areas.tsv",
         Product::Pockets => ".pockets.tsv",
+        Product::Filtration => ".filtration.txt",
     }
 }
 
