@@ -85,7 +85,8 @@ pub struct Flags {
     #[arg(long, conflicts_with = "contacts")]
     table: bool,
 
-    /// Write a table of the edges: pairs of atoms, distance (Å), and the number of tetrahedra around
+    /// Write a table of the edges, neighbours of any distance: pairs of atoms, distance (Å), and the number of
+    /// tetrahedra around
     #[arg(long)]
     contacts: bool,
 

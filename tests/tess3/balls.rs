@@ -205,6 +205,21 @@ fn a_cage_of_carbon_has_a_void() {
 }
 
 #[test]
+fn what_users_may_not_expect_is_noticed() {
+    let hydrogen = |serial, at| Record { element: "H", name: "H", ..Record::carbon(serial, at) };
+    let text = pdb(&[Record::carbon(1, [0.0; 3]), hydrogen(2, [0.3, 0.0, 0.0])]);
+    let notices = |arguments: &[&str]| outcome(&run("tess3", arguments, text.as_bytes())).1;
+    let united = notices(&["--sasa", "-"]);
+    assert!(united.contains("1 hydrogen counts twice"), "{united}");
+    assert!(united.contains("1 of 2 atoms has no cell"), "{united}");
+    let bondi = notices(&["--sasa", "--radii", "bondi", "-"]);
+    assert!(!bondi.contains("twice"), "{bondi}");
+    // An error leaves no line of columns.
+    let unknown = pdb(&[Record { element: "X", name: "Q", ..Record::carbon(1, [0.0; 3]) }]);
+    assert!(run("tess3", &["--sasa", "-"], unknown.as_bytes()).stdout.is_empty());
+}
+
+#[test]
 fn filtrations_take_radii_as_weights() {
     let text = pdb(&[Record::carbon(1, [0.0; 3]), Record::carbon(2, [1.5, 0.0, 0.0])]);
     let output = run("tess3", &["--filtration", "--radii", "bondi", "-"], text.as_bytes());
@@ -257,7 +272,9 @@ fn errors_name_remedies() {
         (&["--sasa", "--probe", "nan"], "--probe"),
         (&["--sasa", "--radii", "nowhere"], "expected a file of radii, or one of protor, bondi, united"),
         (&["--contact-areas", "--per", "molecule"], "a molecule has no pairs"),
-        (&["--within", "3"], "--contact-areas"),
+        (&["--within", "3"], "--within goes with --contact-areas"),
+        (&["--contacts", "--between", "chains"], "--between goes with --contact-areas"),
+        (&["--sasa", "--min-area", "3"], "--min-area goes with --contact-areas"),
     ] {
         assert_outcome("tess3", &[arguments, &["-"]].concat(), carbon.as_bytes(), 2, part);
     }

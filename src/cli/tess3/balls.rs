@@ -19,8 +19,8 @@ const PROBE_MAX: f64 = 100.0;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Atoms as balls")]
 pub(super) struct BallFlags {
-    /// Write a table of areas: the part of each sphere that no other ball covers (Å²); with --probe the
-    /// solvent-accessible surface
+    /// Write a table of areas: the part of each sphere that no other ball covers (Å²). By default this is the
+    /// solvent-accessible surface, with --probe 0 that of van der Waals
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration"])]
     sasa: bool,
 
@@ -29,12 +29,13 @@ pub(super) struct BallFlags {
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration"])]
     volumes: bool,
 
-    /// Write a table of contacts: the area of the face between two cells, inside of both balls (Å²)
+    /// Write a table of contacts: the area of the flat face between two cells, inside both balls (Å²); not the buried
+    /// area
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
     contact_areas: bool,
 
-    /// Write a table of pockets and voids, the largest first: spaces that a probe fits in and does not leave the
-    /// straight way (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
+    /// Write a table of pockets and voids, the largest first: spaces outside all balls whose way out narrows; voids
+    /// have none (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes", "contact_areas"])]
     pockets: bool,
 
@@ -48,16 +49,16 @@ pub(super) struct BallFlags {
     #[arg(long, value_name = "RADIUS", value_parser = parse_probe)]
     probe: Option<u32>,
 
-    /// What a row is about [default: atom; of --pockets molecule]
+    /// Level of the rows; areas and volumes are summed [default: atom; of --pockets molecule]
     #[arg(long, value_enum, value_name = "LEVEL")]
     per: Option<LevelFlag>,
 
-    /// Only contacts of at least this area (Å²)
-    #[arg(long, value_name = "AREA", requires = "contact_areas", value_parser = parse_positive)]
+    /// Only rows of at least this area (Å²); with --per, the sum
+    #[arg(long, value_name = "AREA", value_parser = parse_positive)]
     min_area: Option<f64>,
 
-    /// Only contacts of atoms at most this far apart (Å)
-    #[arg(long, value_name = "DISTANCE", requires = "contact_areas", value_parser = parse_positive)]
+    /// Only contacts of atoms whose centres are at most this far apart (Å)
+    #[arg(long, value_name = "DISTANCE", value_parser = parse_positive)]
     within: Option<f64>,
 
     /// Only contacts between different residues or chains
@@ -112,6 +113,7 @@ impl BallFlags {
     /// Those of reading radii; usage, if there is nothing to measure.
     pub(super) fn options(&self, is_filtration: bool, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
         let has_weights = is_filtration && self.radii.is_some() && self.per.is_none();
+        self.check_contacts_only()?;
         if self.product().is_none() && !has_weights {
             let idle = [
                 ("--radii", self.radii.is_some()),
@@ -123,7 +125,8 @@ impl BallFlags {
                     let remedy = match (is_filtration, flag) {
                         (true, "--probe") => "needs --radii",
                         (true, _) => "does not go with --filtration",
-                        _ => "goes with --sasa, --volumes, --contact-areas or --pockets",
+                        _ if flag == "--per" => "goes with --sasa, --volumes, --contact-areas or --pockets",
+                        _ => "goes with --sasa, --volumes, --contact-areas, --pockets or --filtration",
                     };
                     Err(Error::usage(format!("{flag} {remedy}")))
                 }
@@ -153,10 +156,25 @@ impl BallFlags {
                 }),
             },
             threads,
+            has_united_radii: matches!(&text[..], "protor" | "united"),
             text: String::new(),
         };
         options.text = self.text(&options, &text);
         Ok(Some(options))
+    }
+
+    /// Refuses flags that choose contacts where there are none. (To the parser, a flag that conflicts with another is
+    /// not required.)
+    fn check_contacts_only(&self) -> Result<()> {
+        let flags = [
+            ("--min-area", self.min_area.is_some()),
+            ("--within", self.within.is_some()),
+            ("--between", self.between.is_some()),
+        ];
+        match flags.into_iter().find(|(_, is_given)| *is_given && !self.contact_areas) {
+            Some((flag, _)) => Err(Error::usage(format!("{flag} goes with --contact-areas"))),
+            None => Ok(()),
+        }
     }
 
     fn level(&self) -> Level {

@@ -3,12 +3,12 @@
 use super::Contact;
 use super::tiles::Members;
 
-/// Contacts in the order of their balls, kept as tiles found them: one list would need all of them twice.
+/// Contacts in the order of their balls, kept by tile: merging the lists would double the memory.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Contacts {
     /// Those of each tile, in the order of their balls.
     parts: Vec<Vec<Contact>>,
-    /// For each ball the part that has the contacts whose lesser ball it is; empty if there is one part.
+    /// For each ball the part with the contacts in which it is the lesser ball; empty if there is one part.
     part_of: Vec<u32>,
 }
 

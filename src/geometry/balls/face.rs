@@ -3,13 +3,13 @@
 //!
 //! The foot of the centres in the plane is the middle of the disk. Seen from it, the face is divided at the corners
 //! of the polygon, and where its border crosses the circle: into triangles at the foot, where the border runs in
-//! the disk, and sectors, where it runs outside. Areas and solid angles of both have closed forms; parts that the
-//! polygon does not have come with the opposite sign.
+//! the disk, and sectors, where it runs outside. Areas and solid angles of both have closed forms; parts
+//! outside of the polygon have the opposite sign and cancel.
 
 use super::centre::{cross, difference, dot};
 use crate::predicates::Point3;
 
-/// Two balls whose spheres meet, and the plane of their power distance.
+/// Two balls whose spheres meet, and the plane of equal power.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pair {
     /// From the centre of the first to that of the second, of length 1.

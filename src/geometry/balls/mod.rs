@@ -1,7 +1,7 @@
 //! Unions of balls: areas, volumes and contacts of their cells.
 //!
-//! The power diagram of the balls divides their union into one cell for each: the points of the ball that no other
-//! ball has nearer by power distance. A cell is convex; it is bounded by part of its sphere, which is *exposed*,
+//! The power diagram of the balls divides their union into one cell for each: the points of the ball whose power
+//! distance from it is the least. A cell is convex; it is bounded by part of its sphere, which is *exposed*,
 //! and by flat faces, its *contacts* with other cells: what a polygon of the power diagram and a disk have in
 //! common. `face` measures one such face, as an area and as the solid angles under which the two centres see it;
 //! everything else follows:
@@ -10,7 +10,7 @@
 //!   and to 0 if it is outside, faces that the centre sees from behind being negative;
 //! * the volume is that of the cones over all parts, a third of height times area each.
 //!
-//! Whether two cells touch, and in what, depends only on balls that touch one of the two. So large sets are cut
+//! The face between two cells depends only on balls that overlap one of the two. So large sets are cut
 //! into tiles, each triangulated with the balls around it ([`tiles`]).
 //!
 //! Source: the cells are those of Edelsbrunner, "The union of balls and its dual shape", 1995; his inclusion and
@@ -46,7 +46,7 @@ pub struct Balls<'b> {
     pub radii: &'b [f64],
 }
 
-/// What the cell of a ball has. All zero if other balls leave nothing of it.
+/// Area and volume of the cell of a ball; zero if it is empty.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cell {
     /// Area of the exposed part of the sphere.
@@ -75,8 +75,8 @@ pub struct Cells {
 
 /// Measures the cells of balls. Faces are listed if `contacts_above` is given and their area is greater.
 ///
-/// Angles are rounded; areas and volumes have an error of about 1e-14 of those of their balls, and more where
-/// tetrahedra are flat almost. The result does not depend on the number of threads.
+/// Angles are rounded; areas and volumes have an error of about 1e-14 of their ball's, and more where
+/// tetrahedra are nearly flat. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// As [`crate::delaunay3::Kernel::triangulate_weighted`].

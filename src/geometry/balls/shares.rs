@@ -38,7 +38,7 @@ pub(super) fn lens([p, q]: [Point3; 2], radii: [f64; 2]) -> Measure {
     lens
 }
 
-/// Surface and volume of what three balls have in common, if their spheres meet in two points; nothing else.
+/// Surface and volume of what three balls have in common, if their spheres meet in two points; else zero.
 ///
 /// The tetrahedron of the centres and such a point lies in the union of the balls. So the shares of the balls in
 /// it, less those of the lenses, plus half of the wanted, are its volume; and its surface in the union is none.

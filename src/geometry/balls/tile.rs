@@ -67,7 +67,7 @@ impl<'t> Tile<'t> {
             let points = tetrahedron.vertices.map(|v| self.point(v));
             let weights = tetrahedron.vertices.map(|v| self.radius(v).powi(2));
             let (centre, power) = orthocentre(points, weights);
-            // Rounding may make a ball exposed that is not, which costs time only.
+            // Rounding may mark a ball that is not exposed; this costs time only.
             if power > -1e-6 * weights[0] {
                 tetrahedron.vertices.iter().for_each(|&v| may_be_exposed[v as usize] = true);
             }
@@ -100,7 +100,7 @@ impl<'t> Tile<'t> {
         self.centres[t]
     }
 
-    /// Calls `visit` with the ends of each edge whose balls share a face, be it without area.
+    /// Calls `visit` with the ends of each edge whose balls share a face, even one without area.
     pub(super) fn for_each_face(
         &self,
         is_wanted: impl Fn([u32; 2]) -> bool,

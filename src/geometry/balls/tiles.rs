@@ -11,7 +11,7 @@ pub(super) const TILE_MAX: usize = 10_000;
 pub(super) struct Members {
     /// Those of the tile.
     pub(super) core: Vec<u32>,
-    /// Those that reach a ball of the tile.
+    /// Others that reach the box of these.
     pub(super) around: Vec<u32>,
 }
 

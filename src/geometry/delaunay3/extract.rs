@@ -4,8 +4,9 @@ use super::complex::{Complex, DELETED};
 use super::tetrahedralization::{NONE, Tetrahedron, WORDS};
 
 /// Leaves the finite tetrahedra and vertices in the arrays of the complex; returns the number of facets of
-/// the hull.
-pub(super) fn extract(complex: &mut Complex) -> usize {
+/// the hull. Tells `see` the vertices of each finite tetrahedron.
+#[inline]
+pub(super) fn extract(complex: &mut Complex, mut see: impl FnMut([u32; 4])) -> usize {
     let mut holes = Vec::new();
     let mut hull_facets = 0;
     for t in complex.words_of_tetrahedra() {
@@ -16,6 +17,8 @@ pub(super) fn extract(complex: &mut Complex) -> usize {
             hull_facets += 1;
             let inside = complex.neighbour(side);
             complex.set_neighbour(inside, NONE);
+        } else {
+            see(complex.corners(t));
         }
     }
     holes.iter().for_each(|&t| complex.delete(t));

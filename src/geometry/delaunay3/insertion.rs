@@ -206,10 +206,13 @@ impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
         let (n_lift, m_lift) = (lift.next(), lift.previous());
         let plus = m_lift.times_plus(dot(e, next(dp)), d_lift * dot(e, nm));
         let value = plus - n_lift.times_plus(dot(e, previous(dp)), e_lift * dot(d, nm));
-        let p_greatest = self.greatest(p, lift);
-        let (n_greatest, m_greatest) = (p_greatest.next(), p_greatest.previous());
-        let others = self.greatest(d, d_lift).greater(self.greatest(e, e_lift));
-        let greatest = n_greatest.greater(m_greatest).greater(others);
+        let greatest = n_lift.greater(m_lift).greater(d_lift.greater(e_lift));
+        // Squares are greater than lifts by the spread of weights at most, and lifts are above its negative.
+        let greatest = if W::ARE_EQUAL {
+            greatest
+        } else {
+            greatest + L::splat(self.token, 2.0 * self.weights.spread())
+        };
         let square = greatest * greatest;
         let fifth = square * square * greatest;
         let bound = if W::ARE_EQUAL { INSPHERE_SQUARED_BOUND } else { POWER_SQUARED_BOUND };
@@ -217,23 +220,13 @@ impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
         value.where_greater(value * value, bound)
     }
 
-    /// The greatest magnitude of a square and a lift, for the bound of the filter.
-    #[inline(always)]
-    fn greatest(&self, p: [L; 3], lift: L) -> L {
-        if W::ARE_EQUAL {
-            return lift;
-        }
-        let opposite = L::splat(self.token, 0.0) - lift;
-        dot(p, p).greater(lift.greater(opposite))
-    }
-
     /// The translations of three vertices, column by column; arbitrary values for vertices of deleted
     /// tetrahedra.
     #[inline(always)]
     fn apexes(&self, from: Site, apexes: [u32; 3]) -> [L; 4] {
         let (infinite, at) = (self.complex.infinite(), from.at);
-        let apexes = apexes.map(|apex| apex.min(infinite));
-        let [u, v, w] = apexes.map(|apex| cast::<Vertex, [f64; 4]>(self.complex.vertices[apex as usize]));
+        let places = apexes.map(|apex| apex.min(infinite));
+        let [u, v, w] = places.map(|place| cast::<Vertex, [f64; 4]>(self.complex.vertices[place as usize]));
         let [x, y, z, _] = L::columns([L::new(self.token, u), L::new(self.token, v), L::new(self.token, w)]);
         let (x, y, z) = (
             x - L::splat(self.token, at[0]),
@@ -242,7 +235,7 @@ impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
         );
         let mut lift = dot([x, y, z], [x, y, z]);
         if !W::ARE_EQUAL {
-            let [k, l, m] = apexes.map(|apex| self.weights.of(apex));
+            let [k, l, m] = places.map(|place| self.weights.of(place));
             lift = lift - (L::new(self.token, [k, l, m, 0.0]) - L::splat(self.token, from.weight));
         }
         if apexes.contains(&infinite) {
@@ -290,6 +283,9 @@ impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
         let test = InSphere::new::<W>(self.complex.corners(t).map(|v| self.translate(v, at)));
         if test.value > 0.0 && test.is_certain::<W>() {
             return Ok((t, test.corners));
+        }
+        if !W::ARE_EQUAL && test.value < 0.0 && test.is_certain::<W>() && test.has_origin_inside() {
+            return Err(t);
         }
         let t = walk_exactly(&self.complex, self.weights, t, at, self.predicates);
         if !W::ARE_EQUAL && !is_in_conflict(&self.complex, self.weights, t, at, self.predicates) {

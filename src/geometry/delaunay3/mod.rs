@@ -36,6 +36,7 @@ pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vert
 use crate::order::{Curve, Insertions, Sequence, SpatialOrder, Suffixes};
 use crate::predicates::{Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3};
 use build::{Build, Built};
+use complex::Complex;
 use insertion::Cavity;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use std::borrow::Cow;
@@ -125,16 +126,14 @@ impl Kernel {
         self.take_sorted(points, &extent, mesh);
         self.take_heaviest(weights, mesh);
         let of_vertices = mesh.vertices.iter().map(|vertex| weights[vertex.index as usize]).collect();
-        self.build(&extent, PerVertex::new(of_vertices), started, mesh)?;
-        mesh.hidden = hidden(mesh);
-        Ok(())
+        self.build(&extent, PerVertex::new(of_vertices), started, mesh)
     }
 
     /// Tetrahedralizes the vertices, which are in order.
-    fn build(
+    fn build<W: Weights>(
         &mut self,
         extent: &Extent<3>,
-        weights: impl Weights,
+        weights: W,
         started: Instant,
         mesh: &mut Tetrahedralization,
     ) -> Result<()> {
@@ -156,7 +155,11 @@ impl Kernel {
         };
         (mesh.vertices, mesh.tetrahedra) = match Arithmetic3::of(extent).run(build, &mut self.counts) {
             Built::Complex(mut complex) => {
-                mesh.hull_facets = extract::extract(&mut complex);
+                mesh.hull_facets = if W::ARE_EQUAL {
+                    extract::extract(&mut complex, |_| ())
+                } else {
+                    extract_with_hidden(&mut complex, &mut mesh.hidden)
+                };
                 (complex.vertices, complex.tetrahedra)
             }
             Built::Flat(mut vertices, tetrahedra) => {
@@ -294,16 +297,14 @@ fn checked_extent(points: &[Point3]) -> Result<Extent<3>> {
     Ok(extent)
 }
 
-/// The input points of the vertices that are in no tetrahedron, if there are any tetrahedra.
-fn hidden(mesh: &Tetrahedralization) -> Vec<u32> {
-    if mesh.tetrahedra.is_empty() {
-        return Vec::new();
-    }
-    let mut is_visible = vec![false; mesh.vertices.len()];
-    let corners = mesh.tetrahedra.iter().flat_map(|tetrahedron| tetrahedron.vertices);
-    corners.for_each(|v| is_visible[v as usize] = true);
-    let hidden = mesh.vertices.iter().zip(is_visible).filter(|(_, is_visible)| !is_visible);
-    hidden.map(|(vertex, _)| vertex.index).collect()
+/// [`extract::extract`]; adds the input points of the vertices that are in no tetrahedron to `hidden`.
+fn extract_with_hidden(complex: &mut Complex, hidden: &mut Vec<u32>) -> usize {
+    let mut is_visible = vec![false; complex.vertices.len()];
+    let hull_facets =
+        extract::extract(complex, |vertices| vertices.iter().for_each(|&v| is_visible[v as usize] = true));
+    let all = complex.vertices.iter().zip(is_visible);
+    hidden.extend(all.filter(|(_, is_visible)| !is_visible).map(|(vertex, _)| vertex.index));
+    hull_facets
 }
 
 impl<W: Weights> WithPredicates3 for Build<'_, W> {

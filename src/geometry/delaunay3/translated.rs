@@ -3,7 +3,7 @@
 use super::complex::Complex;
 use super::locate::Site;
 use super::weights::Weights;
-use crate::predicates::{Point3, insphere_is_certain, power_is_certain};
+use crate::predicates::{Point3, insphere_is_certain, orient3d_is_certain, power_is_certain};
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
 /// A vertex relative to the new point.
@@ -92,5 +92,12 @@ impl InSphere {
         } else {
             power_is_certain(self.value, self.greatest)
         }
+    }
+
+    /// The new point is certainly inside of the tetrahedron.
+    #[inline(always)]
+    pub(super) fn has_origin_inside(&self) -> bool {
+        let cube = self.greatest * self.greatest * self.greatest;
+        self.volumes.iter().all(|&volume| volume > 0.0 && orient3d_is_certain(volume, cube))
     }
 }

@@ -9,6 +9,9 @@ pub(super) trait Weights {
     fn of(&self, vertex: u32) -> f64;
 
     fn are_integers(&self) -> bool;
+
+    /// The greatest difference of two weights.
+    fn spread(&self) -> f64;
 }
 
 /// No weights.
@@ -27,6 +30,11 @@ impl Weights for Equal {
     fn are_integers(&self) -> bool {
         true
     }
+
+    #[inline(always)]
+    fn spread(&self) -> f64 {
+        0.0
+    }
 }
 
 /// Weights by vertex, in an array of their own: that of the vertices stays as dense as without them.
@@ -34,14 +42,17 @@ impl Weights for Equal {
 pub(super) struct PerVertex {
     weights: Vec<f64>,
     are_integers: bool,
+    spread: f64,
 }
 
 impl PerVertex {
     /// The weights of all vertices, that at infinity included, which has none of its own.
     pub(super) fn new(mut weights: Vec<f64>) -> PerVertex {
+        let fold = |of: fn(f64, f64) -> f64, start: f64| weights.iter().copied().fold(start, of);
+        let spread = fold(f64::max, f64::NEG_INFINITY) - fold(f64::min, f64::INFINITY);
         weights.push(0.0);
         let are_integers = weights.iter().all(|weight| weight.fract() == 0.0);
-        PerVertex { weights, are_integers }
+        PerVertex { weights, are_integers, spread }
     }
 }
 
@@ -56,5 +67,10 @@ impl Weights for PerVertex {
     #[inline(always)]
     fn are_integers(&self) -> bool {
         self.are_integers
+    }
+
+    #[inline(always)]
+    fn spread(&self) -> f64 {
+        self.spread
     }
 }

@@ -41,7 +41,8 @@ pub use extent::Extent;
 pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredicates, Width};
 pub use perturbation::lexicographic;
 pub(crate) use spatial::filter::{
-    INSPHERE_SQUARED_BOUND, POWER_SQUARED_BOUND, TINY, insphere_is_certain, power_is_certain,
+    INSPHERE_SQUARED_BOUND, POWER_SQUARED_BOUND, TINY, insphere_is_certain, orient3d_is_certain,
+    power_is_certain,
 };
 pub use spatial::{
     Arithmetic3, BoundedFloatPredicates3, FiniteFloatPredicates3, IntegerPredicates3, Predicates3,

@@ -162,11 +162,10 @@ impl Job<'_> {
     ) -> Result<Report> {
         let mut report = Report::new(molecule.number, molecule.selected.points().len());
         let product = self.options.product;
-        let table = self.table()?;
         match product {
-            Product::ContactAreas => molecule.write_contacts(balls, &mut report, table)?,
-            Product::Pockets => molecule.write_pockets(balls, &mut report, table)?,
-            _ => molecule.write_cells(balls, &mut report, table)?,
+            Product::ContactAreas => molecule.write_contacts(balls, &mut report, || self.table())?,
+            Product::Pockets => molecule.write_pockets(balls, &mut report, || self.table())?,
+            _ => molecule.write_cells(balls, &mut report, || self.table())?,
         }
         report.times.triangulate = started.elapsed();
         Ok(report)

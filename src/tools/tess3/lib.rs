@@ -91,11 +91,11 @@ pub struct Report {
     pub tetrahedra: u64,
     /// Facets of the convex hull.
     pub hull_facets: u64,
-    /// Cells were measured instead of a triangulation of the whole.
+    /// Balls were measured; counts of the triangulation are unknown.
     pub is_of_cells: bool,
-    /// Atoms that have no cell, as others cover them.
+    /// Atoms that have no cell in the power diagram, as others take all of it.
     pub without_cell: u64,
-    /// Hydrogens among the atoms that were measured.
+    /// Hydrogens that were measured with radii of heavy atoms that include them.
     pub hydrogens: u64,
     /// Tetrahedra that the kernel created, infinite ones included; most were replaced later.
     pub created: u64,
@@ -121,13 +121,17 @@ impl Report {
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut texts = Vec::new();
+        if self.hydrogens > 0 {
+            let counted = if self.hydrogens == 1 { "hydrogen counts" } else { "hydrogens count" };
+            let reason = "radii of heavy atoms include them: use --atoms heavy, or --radii bondi";
+            texts.push(format!("{} {counted} twice, as {reason}", self.hydrogens));
+        }
+        if self.without_cell > 0 {
+            let verb = if self.without_cell == 1 { "has" } else { "have" };
+            let (without, atoms) = (self.without_cell, self.atoms);
+            texts.push(format!("{without} of {atoms} atoms {verb} no cell: others take all of it"));
+        }
         if self.is_of_cells {
-            if self.without_cell > 0 {
-                texts.push(format!(
-                    "{} of {} atoms have no cell: others cover them",
-                    self.without_cell, self.atoms
-                ));
-            }
             return texts;
         }
         let merged = self.atoms - self.vertices;

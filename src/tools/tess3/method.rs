@@ -74,6 +74,7 @@ impl Method {
         report.vertices = mesh.vertices().len() as u64;
         report.tetrahedra = mesh.tetrahedra().len() as u64;
         report.hull_facets = mesh.hull_facets as u64;
+        report.without_cell = mesh.hidden.len() as u64;
         Ok(mesh)
     }
 

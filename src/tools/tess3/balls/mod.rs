@@ -33,10 +33,12 @@ pub struct BallOptions {
     pub level: Level,
     /// Whether rows of cells have the area of the surface.
     pub areas: bool,
-    /// Whether they have the volume.
+    /// Whether rows of cells have the volume.
     pub volumes: bool,
     /// Which contacts have rows.
     pub contacts: ContactFilter,
+    /// Radii of heavy atoms include their hydrogens.
+    pub has_united_radii: bool,
     /// Threads that measure a structure.
     pub threads: NonZeroUsize,
     /// The flags that asked for all this, for the summary of a sweep.
@@ -97,12 +99,13 @@ impl Molecule<'_> {
             return Err(Error::usage(message));
         };
         let mut finder = options.radii.finder(first.structure);
-        // Steps of structures are 0.001 Å or a lesser power of ten, so this is an integer for them.
+        // The unit of structures is 0.001 Å or a lesser power of ten, so this is an integer for them.
         let units = if self.scale == 1.0 { 1.0 / STEPS } else { (1.0 / (STEPS * self.scale)).round() };
         let atoms = (0..self.selected.points().len()).filter_map(|index| self.selected.atom(index));
         atoms
             .map(|atom| {
-                report.hydrogens += u64::from(matches!(atom.element(), "H" | "D"));
+                let is_hydrogen = matches!(atom.element(), "H" | "D");
+                report.hydrogens += u64::from(is_hydrogen && options.has_united_radii);
                 let steps = finder.steps_of(&atom)? + options.probe;
                 Ok(if self.scale == 1.0 { f64::from(steps) / STEPS } else { f64::from(steps) * units })
             })
@@ -127,52 +130,53 @@ impl Molecule<'_> {
         Ok(cells)
     }
 
-    /// Writes a row for each atom, residue or chain: the area and the volume of its cells.
+    /// Writes a row for each atom, residue or chain: the area and the volume of its cells. The output is opened when
+    /// they are measured.
     ///
     /// # Errors
     /// If an atom has no radius; those of writing.
-    pub(super) fn write_cells(
+    pub(super) fn write_cells<'o, W: Write + 'o>(
         &self,
         options: &BallOptions,
         report: &mut Report,
-        output: &mut impl Write,
+        open: impl FnOnce() -> Result<&'o mut W>,
     ) -> Result<()> {
         let cells = self.measure(options, false, report)?;
         let groups = Groups::new(self.selected, options.level);
-        CellTable { molecule: self, options, groups: &groups }.write(&cells.cells, output)
+        CellTable { molecule: self, options, groups: &groups }.write(&cells.cells, open()?)
     }
 
     /// Writes a row for each pocket and void, or for what is around them.
     ///
     /// # Errors
     /// As [`Molecule::write_cells`].
-    pub(super) fn write_pockets(
+    pub(super) fn write_pockets<'o, W: Write + 'o>(
         &self,
         options: &BallOptions,
         report: &mut Report,
-        output: &mut impl Write,
+        open: impl FnOnce() -> Result<&'o mut W>,
     ) -> Result<()> {
         let radii = self.radii(options, report)?;
         let found = balls::pockets(Balls { centres: self.selected.points(), radii: &radii })?;
         report.is_of_cells = true;
         report.vertices = report.atoms;
         let groups = Groups::new(self.selected, options.level);
-        PocketTable { molecule: self, level: options.level, groups: &groups }.write(&found, output)
+        PocketTable { molecule: self, level: options.level, groups: &groups }.write(&found, open()?)
     }
 
     /// Writes a row for each pair that shares a face.
     ///
     /// # Errors
     /// As [`Molecule::write_cells`].
-    pub(super) fn write_contacts(
+    pub(super) fn write_contacts<'o, W: Write + 'o>(
         &self,
         options: &BallOptions,
         report: &mut Report,
-        output: &mut impl Write,
+        open: impl FnOnce() -> Result<&'o mut W>,
     ) -> Result<()> {
         let cells = self.measure(options, true, report)?;
         let groups = Groups::new(self.selected, options.level);
-        ContactTable { molecule: self, options, groups: &groups }.write(&cells.contacts, output)
+        ContactTable { molecule: self, options, groups: &groups }.write(&cells.contacts, open()?)
     }
 }
 

@@ -17,7 +17,7 @@ const FILE_MAX: u64 = 1 << 24;
 pub struct NamedRadii {
     /// The radii.
     pub radii: Arc<Radii>,
-    /// The name of the table; of a file also its SHA-256, so that a changed file has another text.
+    /// The name of the table; for a file also its SHA-256, so that a changed file has another text.
     pub text: String,
 }
 

@@ -56,9 +56,11 @@ impl Line<'_> {
                 let Report { model, atoms, vertices, tetrahedra, hull_facets, .. } = report;
                 row.set("model", model.to_string());
                 row.set("atoms", atoms.to_string());
-                row.set("unique_points", vertices.to_string());
-                row.set("tetrahedra", tetrahedra.to_string());
-                row.set("hull_facets", hull_facets.to_string());
+                if !report.is_of_cells {
+                    row.set("unique_points", vertices.to_string());
+                    row.set("tetrahedra", tetrahedra.to_string());
+                    row.set("hull_facets", hull_facets.to_string());
+                }
                 row.set("output", output.to_string_lossy());
                 row.set("output_bytes", bytes.to_string());
                 row.set("warnings", warnings.join("; "));
