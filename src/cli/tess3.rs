@@ -345,6 +345,9 @@ impl Flags {
     /// The options that determine the content of the outputs, as text.
     fn options_text(&self, options: &Options) -> String {
         let mut text = self.selection.to_string();
+        if let Some(format) = self.from.and_then(|format| format.to_possible_value()) {
+            text += &format!(" --from {}", format.get_name());
+        }
         if let Some(radius) = &self.alpha {
             text += &format!(" --alpha {radius}");
         }

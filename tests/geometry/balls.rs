@@ -110,6 +110,29 @@ fn three_balls() {
     }
 }
 
+/// A centre in the planes of two faces sees them both edge on.
+#[test]
+fn centres_in_two_planes() {
+    // A quarter of the ball: dihedral angle of the planes through its centre.
+    let cells = measured(&[[0.0; 3], [1.0, 0.0, 1.0], [0.0, 0.0, 2.0]], &[1.5, 0.5, 1.5]);
+    assert_near(cells.cells[1].area, 4.0 * PI * 0.25 / 4.0, 1e-7, "a quarter of a sphere");
+    assert_near(cells.cells[1].volume, ball_volume(0.5) / 4.0, 1e-7, "a quarter of a ball");
+    let outer = measured(&[[0.0, 0.5, 0.0], [-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]], &[4.5, 4.0, 5.0]);
+    assert_near(outer.cells[1].area, 92.69, 0.01, "area");
+    assert_near(outer.cells[1].volume, 123.59, 0.01, "volume");
+}
+
+#[test]
+fn numbers_that_are_too_large_are_refused() {
+    for bad in [1e61, -1e154, 1e308] {
+        let balls = Balls { centres: &[[0.0; 3], [bad, 0.0, 0.0]], radii: &[1.0, 1.0] };
+        let error = measure(balls, None, NonZeroUsize::MIN).expect_err("too large");
+        assert!(error.to_string().contains("too large"), "{error}");
+    }
+    let far = measured(&[[0.0; 3], [1e59, 0.0, 0.0], [0.0, 1e59, 1e59]], &[1.0; 3]);
+    assert_near(area(&far), 12.0 * PI, 1e-9, "far apart");
+}
+
 #[test]
 fn lattices_have_cubes_as_cells() {
     for (step, offset) in [(1.0, 0.0), (1_000.0, 7.0), (0.1, 0.3)] {

@@ -244,7 +244,9 @@ fn radii_of_a_file() {
     let text = pdb(&[Record::carbon(1, [0.0; 3])]);
     let rows = table(&text, &["--sasa", "--radii", &radii, "--probe", "0.25"]);
     assert_near(rows.number(0, "area"), 4.0 * PI * 1.25 * 1.25, 1e-6);
-    // A sweep notices that the file has changed.
+    let comma = folder.write("comma", "C 1,7\n");
+    assert_outcome("tess3", &["--sasa", "--radii", &comma, "-"], text.as_bytes(), 3, "decimals of a radius");
+    // A sweep notices that the file has changed, and that its format is given.
     let input = folder.write("one.pdb", &text);
     let out = folder.path("out");
     let arguments = [&input[..], "--sasa", "--radii", &radii, "--out-dir", &out, "--resume"];
@@ -257,6 +259,8 @@ fn radii_of_a_file() {
     assert_near(area(), 4.0 * PI * 2.4 * 2.4, 1e-6);
     folder.write("radii", "C 2.0\n");
     assert_near(area(), 4.0 * PI * 3.4 * 3.4, 1e-6);
+    let output = run("tess3", &[&arguments[..], &["--from", "mmcif"]].concat(), b"");
+    assert_eq!(output.status.code(), Some(1), "{:?}", outcome(&output));
 }
 
 #[test]
@@ -272,6 +276,7 @@ fn errors_name_remedies() {
         (&["--sasa", "--probe", "nan"], "--probe"),
         (&["--sasa", "--radii", "nowhere"], "expected a file of radii, or one of protor, bondi, united"),
         (&["--contact-areas", "--per", "molecule"], "a molecule has no pairs"),
+        (&["--filtration", "--radii", "bondi", "--per", "atom"], "--per does not go with --filtration"),
         (&["--within", "3"], "--within goes with --contact-areas"),
         (&["--contacts", "--between", "chains"], "--between goes with --contact-areas"),
         (&["--sasa", "--min-area", "3"], "--min-area goes with --contact-areas"),

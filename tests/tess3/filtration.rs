@@ -337,3 +337,12 @@ fn one_filtration_per_model_and_nothing_else_with_it() {
         assert_eq!(outcome(&run("tess3", &arguments, two.as_bytes())).0, Some(2), "{other:?}");
     }
 }
+
+/// Digits that are rounded up to a power of ten.
+#[test]
+fn values_next_to_powers_of_ten_end() {
+    let text = "3\nc\nC 0 0 0\nC 1e-18 0 0\nC 1 1 1e-18\n";
+    let output = crate::programs::run("tess3", &["--filtration", "-"], text.as_bytes());
+    let lines = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && lines.lines().count() >= 5, "{lines}");
+}

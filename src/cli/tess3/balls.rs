@@ -112,8 +112,11 @@ impl BallFlags {
     /// # Errors
     /// Those of reading radii; usage, if there is nothing to measure.
     pub(super) fn options(&self, is_filtration: bool, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
-        let has_weights = is_filtration && self.radii.is_some() && self.per.is_none();
+        let has_weights = is_filtration && self.radii.is_some();
         self.check_contacts_only()?;
+        if is_filtration && self.per.is_some() {
+            return Err(Error::usage("--per does not go with --filtration"));
+        }
         if self.product().is_none() && !has_weights {
             let idle = [
                 ("--radii", self.radii.is_some()),
@@ -124,7 +127,6 @@ impl BallFlags {
                 Some((flag, _)) => {
                     let remedy = match (is_filtration, flag) {
                         (true, "--probe") => "needs --radii",
-                        (true, _) => "does not go with --filtration",
                         _ if flag == "--per" => "goes with --sasa, --volumes, --contact-areas or --pockets",
                         _ => "goes with --sasa, --volumes, --contact-areas, --pockets or --filtration",
                     };

@@ -79,7 +79,7 @@ impl Pair {
             self.add_sector(offset, [from, to], face);
             return;
         }
-        let [enter, leave] = [from, to].map(|at| at.clamp(-half_chord, half_chord));
+        let [enter, leave] = [from, to].map(|at| at.max(-half_chord).min(half_chord));
         if from < enter {
             self.add_sector(offset, [from, enter], face);
         }
@@ -148,7 +148,7 @@ impl Pair {
         let direction = cross(self.normal, lateral).map(|c| c / length);
         // Far corners are as good as infinite; products of larger numbers would overflow.
         let far = 1e15 * (self.radius + offset.abs());
-        let [from, to] = ends.map(|end| dot(end, direction).clamp(-far, far));
+        let [from, to] = ends.map(|end| dot(end, direction).max(-far).min(far));
         Some(Side { offset, from, to })
     }
 }

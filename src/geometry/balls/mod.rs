@@ -30,7 +30,7 @@ pub use contacts::Contacts;
 pub use pockets::{Pocket, pockets};
 
 use crate::predicates::Point3;
-use spmesh_core::error::Result;
+use spmesh_core::error::{Error, Result};
 use spmesh_core::parallel;
 use std::num::NonZeroUsize;
 use tile::Tile;
@@ -76,10 +76,11 @@ pub struct Cells {
 /// Measures the cells of balls. Faces are listed if `contacts_above` is given and their area is greater.
 ///
 /// Angles are rounded; areas and volumes have an error of about 1e-14 of their ball's, and more where
-/// tetrahedra are nearly flat. The result does not depend on the number of threads.
+/// tetrahedra are nearly flat, or centres nearly coincide: 1e-8 of theirs at 1e-7 of their radii, 1e-3 at 1e-12. Where
+/// a centre lies in the planes of two faces it is 1e-8. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// As [`crate::delaunay3::Kernel::triangulate_weighted`].
+/// As [`crate::delaunay3::Kernel::triangulate_weighted`]; usage, if a coordinate or radius is above 1e60.
 ///
 /// Cost: O(n) for atoms of molecules, about twice the time of the triangulation. Memory: 16 bytes per ball and per
 /// contact, and for each thread that of a tile, 8 MB.
@@ -97,7 +98,23 @@ pub struct Cells {
 /// # Ok::<(), spmesh_core::error::Error>(())
 /// ```
 pub fn measure(balls: Balls<'_>, contacts_above: Option<f64>, threads: NonZeroUsize) -> Result<Cells> {
+    check(balls)?;
     in_tiles(balls, contacts_above, threads, TILE_MAX)
+}
+
+/// Greatest magnitude of coordinates and radii: squares and products of squares stay finite.
+const GREATEST: f64 = 1e60;
+
+/// # Errors
+/// Usage, if a coordinate or radius is too large to be measured.
+fn check(balls: Balls<'_>) -> Result<()> {
+    let numbers = balls.centres.iter().flatten().chain(balls.radii);
+    match numbers.into_iter().find(|number| number.abs() > GREATEST) {
+        Some(number) => {
+            Err(Error::usage(format!("{number:e} is too large: balls are measured up to {GREATEST:e}")))
+        }
+        None => Ok(()),
+    }
 }
 
 fn in_tiles(

@@ -61,6 +61,7 @@ pub struct Pocket {
 ///
 /// Cost: that of the triangulation of all balls, on one thread. Memory: about 500 bytes per ball.
 pub fn pockets(balls: Balls<'_>) -> Result<Vec<Pocket>> {
+    super::check(balls)?;
     if balls.centres.is_empty() {
         return Ok(Vec::new());
     }

@@ -1,6 +1,6 @@
 //! The cells of the balls of one tile.
 
-use super::centre::{difference, orthocentre};
+use super::centre::{difference, dot, orthocentre};
 use super::face::{Face, Pair, Side};
 use super::tiles::Members;
 use super::{Balls, Cell, Contact};
@@ -22,6 +22,13 @@ pub(super) struct Part {
     pub(super) contacts: Vec<Contact>,
 }
 
+/// The edges of a tetrahedron.
+const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
+/// Square of the height of a centre over a plane below which it counts as in the plane, in four times the square of
+/// its radius.
+const PINCHED: f64 = 4e-14;
+
 /// Share of its disk below which a face is taken as empty.
 const NOISE: f64 = 1e-12;
 
@@ -31,11 +38,12 @@ const NOISE: f64 = 1e-12;
 /// few balls or balls in a plane are no special case. Outposts take nothing of the balls, as their own weight is
 /// zero.
 pub(super) struct Tile<'t> {
-    balls: Balls<'t>,
     members: &'t Members,
     mesh: Tetrahedralization,
     /// For each vertex of the mesh the place of its ball among the members; outposts are the last.
     places: Vec<u32>,
+    /// For each vertex the radius of its ball; 0 for outposts.
+    radii: Vec<f64>,
     /// For each tetrahedron its orthocentre.
     centres: Vec<Point3>,
     /// For each vertex: a corner of its cell in the diagram is outside of the ball, so that part of the sphere may
@@ -55,9 +63,39 @@ impl<'t> Tile<'t> {
         let mut mesh = Tetrahedralization::default();
         Kernel::new().triangulate_weighted(Cow::Owned(points), &weights, &mut mesh)?;
         let places = mesh.vertices().iter().map(|vertex| vertex.index).collect();
-        let mut tile = Tile { balls, members, mesh, places, centres: Vec::new(), may_be_exposed: Vec::new() };
+        let (radii, centres, may_be_exposed) = Default::default();
+        let mut tile = Tile { members, mesh, places, radii, centres, may_be_exposed };
+        let radius = |v| tile.ball(v).map_or(0.0, |ball: u32| balls.radii[ball as usize]);
+        tile.radii = (0..tile.places.len() as u32).map(radius).collect();
+        tile.swell_pinched();
         tile.find_centres();
         Ok(tile)
+    }
+
+    /// Makes balls larger, by a hundred millionth, whose centre lies in the planes of two faces or next to them. There
+    /// heights and offsets both vanish, and solid angles depend on their ratio, of which rounding leaves nothing.
+    fn swell_pinched(&mut self) {
+        let mut planes: Vec<Option<u32>> = vec![None; self.radii.len()];
+        let mut is_pinched = vec![false; self.radii.len()];
+        for tetrahedron in self.mesh.tetrahedra() {
+            for [i, j] in EDGES {
+                let [p, q] = [tetrahedron.vertices[i], tetrahedron.vertices[j]];
+                let between = difference(self.point(p), self.point(q));
+                let square = dot(between, between);
+                for [own, other] in [[p, q], [q, p]] {
+                    let [r, s] = [own, other].map(|v| self.radii[v as usize]);
+                    // Twice the product of height and distance.
+                    let height = square + (r - s) * (r + s);
+                    if height * height <= PINCHED * r * r * square {
+                        let plane = *planes[own as usize].get_or_insert(other);
+                        is_pinched[own as usize] |= plane != other;
+                    }
+                }
+            }
+        }
+        for (radius, is_pinched) in self.radii.iter_mut().zip(is_pinched) {
+            *radius *= if is_pinched { 1.0 + 1e-8 } else { 1.0 };
+        }
     }
 
     fn find_centres(&mut self) {
@@ -88,7 +126,7 @@ impl<'t> Tile<'t> {
     }
 
     pub(super) fn radius(&self, vertex: u32) -> f64 {
-        self.ball(vertex).map_or(0.0, |ball| self.balls.radii[ball as usize])
+        self.radii[vertex as usize]
     }
 
     pub(super) fn tetrahedra(&self) -> &[Tetrahedron] {

@@ -35,6 +35,10 @@ fn line(words: &[&[u8]], radii: &mut Radii) -> Result<()> {
             let radii = &mut radii.by_element;
             insert(radii, element, steps(radius)?, element.symbol())
         }
+        // Commas divide words, so "C 1,7" comes as three.
+        [_, atom, _] if atom.iter().all(u8::is_ascii_digit) => {
+            Err(unexpected(atom, "the name of an atom; decimals of a radius follow a point"))
+        }
         [residue, atom, radius] => {
             let key = [name(residue)?, name(atom)?];
             let shown = key.join(" ");
