@@ -269,7 +269,7 @@ pub fn triangulate(points: &[Point3]) -> Result<Tetrahedralization> {
 ///
 /// let points = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0], [1.0, 1.0, 1.0]];
 /// assert_eq!(triangulate_weighted(&points, &[0.0; 5])?.simplices().count(), 4);
-/// let mesh = triangulate_weighted(&points, &[9.0, 9.0, 9.0, 9.0, 0.0])?;
+/// let mesh = triangulate_weighted(&points, &[10.0, 10.0, 10.0, 10.0, 0.0])?;
 /// assert_eq!((mesh.simplices().count(), &mesh.hidden[..]), (1, &[4][..]));
 /// # Ok::<(), spmesh_core::error::Error>(())
 /// ```
