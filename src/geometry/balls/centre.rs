@@ -1,7 +1,7 @@
 //! Orthocentres of tetrahedra: the vertices of the power diagram.
 
 use crate::predicates::Point3;
-use crate::predicates::exact_integers::{decompose, integers_in, unit_of};
+use crate::predicates::exact_integers::{integers_in, unit_with_weights, weight_in};
 use num_bigint::BigInt;
 use num_traits::Signed;
 
@@ -33,17 +33,9 @@ pub(super) fn orthocentre(points: [Point3; 4], weights: [f64; 4]) -> (Point3, f6
 #[cold]
 #[inline(never)]
 fn exactly(points: [Point3; 4], weights: [f64; 4]) -> Point3 {
-    let of_weights = weights.map(|weight| [weight]);
-    let unit = unit_of(&points).min(unit_of(&of_weights).div_euclid(2));
+    let unit = unit_with_weights(&points, &weights);
     let [a, b, c, d] = points.map(|point| integers_in(point, unit));
-    let weights = weights.map(|weight| {
-        let (significand, exponent) = decompose(weight);
-        if significand == 0 {
-            BigInt::ZERO
-        } else {
-            BigInt::from(significand) << (exponent - 2 * unit) as usize
-        }
-    });
+    let weights = weights.map(|weight| weight_in(weight, unit));
     let minus = |p: &[BigInt; 3]| -> [BigInt; 3] { std::array::from_fn(|axis| &p[axis] - &a[axis]) };
     let product = |p: &[BigInt; 3], q: &[BigInt; 3]| &p[0] * &q[0] + &p[1] * &q[1] + &p[2] * &q[2];
     let minor = |p: &[BigInt; 3], q: &[BigInt; 3], i: usize, j: usize| &p[i] * &q[j] - &p[j] * &q[i];

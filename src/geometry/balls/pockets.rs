@@ -19,20 +19,11 @@ use super::shares::{
 };
 use super::tile::Tile;
 use super::tiles::Members;
+use crate::delaunay3::EDGES;
 use spmesh_core::error::Result;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
-
-/// The six edges of a tetrahedron as corners, and the two other corners.
-const EDGES: [([usize; 2], [usize; 2]); 6] = [
-    ([0, 1], [2, 3]),
-    ([0, 2], [1, 3]),
-    ([0, 3], [1, 2]),
-    ([1, 2], [0, 3]),
-    ([1, 3], [0, 2]),
-    ([2, 3], [0, 1]),
-];
 
 /// A pocket, or a void if it has no mouth.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -4,7 +4,7 @@ use super::centre::{difference, dot, orthocentre};
 use super::face::{Face, Pair, Side};
 use super::tiles::Members;
 use super::{Balls, Cell, Contact};
-use crate::delaunay3::{Kernel, Ring, Tetrahedralization, Tetrahedron};
+use crate::delaunay3::{EDGES, Kernel, Ring, Tetrahedralization, Tetrahedron};
 use crate::predicates::Point3;
 use spmesh_core::error::Result;
 use std::borrow::Cow;
@@ -21,9 +21,6 @@ pub(super) struct Part {
     /// Contacts whose lesser ball is in the core, in any order.
     pub(super) contacts: Vec<Contact>,
 }
-
-/// The edges of a tetrahedron.
-const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
 /// Square of the height of a centre over a plane below which it counts as in the plane, in four times the square of
 /// its radius.
@@ -78,7 +75,7 @@ impl<'t> Tile<'t> {
         let mut planes: Vec<Option<u32>> = vec![None; self.radii.len()];
         let mut is_pinched = vec![false; self.radii.len()];
         for tetrahedron in self.mesh.tetrahedra() {
-            for [i, j] in EDGES {
+            for ([i, j], _) in EDGES {
                 let [p, q] = [tetrahedron.vertices[i], tetrahedron.vertices[j]];
                 let between = difference(self.point(p), self.point(q));
                 let square = dot(between, between);

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 /// The corners of the six edges of a tetrahedron, and the two other corners: the way from the first of them to the
 /// second turns right-handed around the edge.
-const EDGES: [([usize; 2], [usize; 2]); 6] = [
+pub(crate) const EDGES: [([usize; 2], [usize; 2]); 6] = [
     ([0, 1], [2, 3]),
     ([0, 2], [3, 1]),
     ([0, 3], [1, 2]),

@@ -29,6 +29,7 @@ mod translated;
 mod weights;
 
 pub use corners::{CornerParts, Corners};
+pub(crate) use edges::EDGES;
 pub use edges::Ring;
 pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};

@@ -46,6 +46,21 @@ pub(crate) fn unit_of<const D: usize>(points: &[[f64; D]]) -> i32 {
     parts.filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0)
 }
 
+/// [`unit_of`] for points with weights, which are in the square of the unit.
+pub(crate) fn unit_with_weights<const N: usize, const D: usize>(
+    points: &[[f64; D]; N],
+    weights: &[f64],
+) -> i32 {
+    let least = weights.iter().map(|&weight| unit_of(&[[weight]])).min().unwrap_or(0);
+    unit_of(points).min(least.div_euclid(2))
+}
+
+/// A weight in the square of the unit, whose exponent is at most that of [`unit_with_weights`].
+pub(crate) fn weight_in(weight: f64, unit: i32) -> BigInt {
+    let [integer] = integers_in([weight], 2 * unit);
+    integer
+}
+
 /// The coordinates in the power of two with this exponent, which is at most that of any of them.
 pub(crate) fn integers_in<const D: usize>(point: [f64; D], unit: i32) -> [BigInt; D] {
     point.map(decompose).map(|(significand, exponent)| match significand {

@@ -10,7 +10,7 @@
 use super::filter::{lift, power_is_certain};
 use super::float::differences_from;
 use super::{Point3, PredicateCounts, Sign};
-use crate::predicates::exact_integers::{decompose, integers_in, unit_of};
+use crate::predicates::exact_integers::{integers_in, unit_with_weights, weight_in};
 use crate::predicates::forms::{Form, Insphere, lift as form_lift};
 use num_bigint::BigInt;
 
@@ -69,17 +69,9 @@ fn in_i128(
 /// The sign in arbitrary precision.
 fn in_big_integers([a, b, c, d]: [Point3; 4], e: Point3, weights: [f64; 5]) -> Sign {
     let points = [a, b, c, d, e];
-    // Weights are in the square of the unit of coordinates.
-    let of_weights = weights.map(|weight| [weight]);
-    let unit = unit_of(&points).min(unit_of(&of_weights).div_euclid(2));
+    let unit = unit_with_weights(&points, &weights);
     let integers = points.map(|point| integers_in(point, unit));
-    let weights = of_weights.map(|[weight]| {
-        let (significand, exponent) = decompose(weight);
-        match significand {
-            0 => BigInt::ZERO,
-            _ => BigInt::from(significand) << (exponent - 2 * unit) as usize,
-        }
-    });
+    let weights = weights.map(|weight| weight_in(weight, unit));
     let vectors: [[BigInt; 3]; 4] =
         std::array::from_fn(|i| std::array::from_fn(|axis| &integers[i][axis] - &integers[4][axis]));
     Sign::of(Insphere::value::<BigInt>(&vectors, |i| form_lift(&vectors[i]) - (&weights[i] - &weights[4])))
