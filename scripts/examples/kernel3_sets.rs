@@ -1,9 +1,8 @@
 //! Triangulates sets of points in 3D, one after another, for `scripts/check-cgal3`.
 //!
-//! On stdin, each set is its size as u32 and triples of f64; with `--weighted` quadruples, the last of which is the
-//! weight. On stdout go the numbers of tetrahedra and of
-//! hull facets as u32, and four u32 per tetrahedron, the indices of its points in the set. All numbers are
-//! little-endian.
+//! On stdin, each set is its size as u32 and triples of f64; with `--weighted` quadruples, the last of which
+//! is the weight. On stdout go the numbers of tetrahedra and of hull facets as u32, and four u32 per
+//! tetrahedron, the indices of its points in the set. All numbers are little-endian.
 
 use std::borrow::Cow;
 use std::io::{self, Read, Write};

@@ -83,10 +83,11 @@ const OUT_OF_MEMORY: &str = "spfinalize: not enough memory: give less --memory, 
 ///
 /// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, arrays of numpy (.npy), the
 /// vertices of PLY, OBJ or VTK (VTU, VTP, VTS or legacy), the atoms of PDB, mmCIF or XYZ of chemistry (those
-/// that tess3 takes by default), or numbers without a header (--raw), all of them plain or compressed (.gz), and writes a stream of points. Its tags name cells in which no later point
-/// lies. The points of a cell are held back and written together (chunked), unless --preserve is given. The
-/// input is read at least twice, and again if headers do not state its bounding box or if cells are crowded.
-/// Input that cannot be read again is spooled, as are decoded points where that is cheaper (--spool).
+/// that tess3 takes by default), or numbers without a header (--raw), all of them plain or compressed (.gz),
+/// and writes a stream of points. Its tags name cells in which no later point lies. The points of a cell are
+/// held back and written together (chunked), unless --preserve is given. The input is read at least twice,
+/// and again if headers do not state its bounding box or if cells are crowded. Input that cannot be read
+/// again is spooled, as are decoded points where that is cheaper (--spool).
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 pub struct Flags {

@@ -64,9 +64,9 @@ const OUT_OF_MEMORY: &str = "tess3: not enough memory: take fewer points, or few
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
 /// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF, VTK and
-/// LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table, also of areas, volumes, contacts and pockets of
-/// atoms as balls. The result is exact and
-/// canonical: it depends on the set of points only.
+/// LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table, also of areas, volumes,
+/// contacts and pockets of atoms as balls. The triangulation is exact and canonical: it depends on the set of
+/// points only.
 #[derive(Debug, Parser)]
 #[command(name = "tess3", version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -85,8 +85,8 @@ pub struct Flags {
     #[arg(long, conflicts_with = "contacts")]
     table: bool,
 
-    /// Write a table of the edges, neighbours of any distance: pairs of atoms, distance (Å), and the number of
-    /// tetrahedra around
+    /// Write a table of the edges, neighbours of any distance: pairs of atoms, distance (Å), and the number
+    /// of tetrahedra around
     #[arg(long)]
     contacts: bool,
 
@@ -113,8 +113,8 @@ pub struct Flags {
     #[arg(long, value_name = "FILE", requires = "out_dir")]
     lof: Option<PathBuf>,
 
-    /// Number of files of a sweep in parallel, or of threads that measure the balls of one structure [default: one
-    /// per core]
+    /// Number of files of a sweep in parallel, or of threads that measure the balls of one structure
+    /// [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 

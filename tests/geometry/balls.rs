@@ -1,4 +1,5 @@
-//! Cells of unions of balls against closed forms and against sampling, which share nothing with the power diagram.
+//! Cells of unions of balls against closed forms and against sampling, which share nothing with the power
+//! diagram.
 
 use spmesh_geometry::balls::{Balls, Cells, measure};
 use spmesh_reference::sets::Random;
@@ -77,8 +78,8 @@ fn two_balls() {
     }
 }
 
-/// Three balls whose spheres meet in two points, by the tetrahedron of the centres and one of these points: it lies
-/// in the union, so that the shares of balls, lenses and the common part add up to it.
+/// Three balls whose spheres meet in two points, by the tetrahedron of the centres and one of these points:
+/// it lies in the union, so that the shares of balls, lenses and the common part add up to it.
 #[test]
 fn three_balls() {
     let mut random = Random::new(2);

@@ -84,7 +84,8 @@ fn voids_of_random_balls() {
             wanted.map(|pocket| pocket.volume).sum()
         };
         let closed = sum(&|pocket| pocket.mouths == 0);
-        // The grid does not see necks that are narrower than its step, so that pockets behind such look closed.
+        // The grid does not see necks that are narrower than its step, so that pockets behind such look
+        // closed.
         let open = sum(&|pocket| pocket.mouths > 0);
         let near = 0.02 + 0.05 * flooded;
         assert!(

@@ -38,8 +38,8 @@ fn volume([a, b, c, d]: [&ExactPoint; 4]) -> BigInt {
 /// A point with its weight.
 type Weighted<'a> = (&'a ExactPoint, &'a BigInt);
 
-/// The sphere of a positive tetrahedron, with weights the orthosphere. A point is inside, on or outside the sphere
-/// if `side` is positive, zero or negative.
+/// The sphere of a positive tetrahedron, with weights the orthosphere. A point is inside, on or outside the
+/// sphere if `side` is positive, zero or negative.
 struct Sphere<'a> {
     origin: &'a ExactPoint,
     weight: &'a BigInt,
@@ -48,8 +48,8 @@ struct Sphere<'a> {
 }
 
 impl<'a> Sphere<'a> {
-    /// `volume * lift = normal * (p - a)` holds for the four points, by Cramer's rule; the lift of p is |p - a|^2,
-    /// less what p is heavier than a.
+    /// `volume * lift = normal * (p - a)` holds for the four points, by Cramer's rule; the lift of p is |p -
+    /// a|^2, less what p is heavier than a.
     fn of([(a, weight), b, c, d]: [Weighted<'a>; 4]) -> Self {
         let [over_b, over_c, over_d] = [b, c, d].map(|(p, w)| {
             let p = minus(p, a);

@@ -29,18 +29,20 @@ pub(super) struct BallFlags {
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration"])]
     volumes: bool,
 
-    /// Write a table of contacts: the area of the flat face between two cells, inside both balls (Å²); not the buried
-    /// area
+    /// Write a table of contacts: the area of the flat face between two cells, inside both balls (Å²); not
+    /// the buried area
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
     contact_areas: bool,
 
-    /// Write a table of pockets and voids, the largest first: spaces outside all balls whose way out narrows; voids
-    /// have none (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
-    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes", "contact_areas"])]
+    /// Write a table of pockets and voids, the largest first: spaces outside all balls whose way out narrows;
+    /// voids have none (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
+    #[arg(conflicts_with = "contact_areas")]
     pockets: bool,
 
-    /// Radii of atoms, also for a filtration with weights: protor (united atoms, Tsai et al. 1999), bondi (by element), united (Chothia 1976), or a file
-    /// with lines RESIDUE ATOM RADIUS or ELEMENT RADIUS [default: protor]
+    /// Radii of atoms, also for a filtration with weights: protor (united atoms, Tsai et al. 1999), bondi (by
+    /// element), united (Chothia 1976), or a file with lines RESIDUE ATOM RADIUS or ELEMENT RADIUS [default:
+    /// protor]
     #[arg(long, value_name = "NAME|FILE")]
     radii: Option<String>,
 
@@ -165,8 +167,8 @@ impl BallFlags {
         Ok(Some(options))
     }
 
-    /// Refuses flags that choose contacts where there are none. (To the parser, a flag that conflicts with another is
-    /// not required.)
+    /// Refuses flags that choose contacts where there are none. (To the parser, a flag that conflicts with
+    /// another is not required.)
     fn check_contacts_only(&self) -> Result<()> {
         let flags = [
             ("--min-area", self.min_area.is_some()),

@@ -1,10 +1,10 @@
-//! The face between two cells: a convex polygon of the power diagram, cut by the disk that both balls share with
-//! its plane.
+//! The face between two cells: a convex polygon of the power diagram, cut by the disk that both balls share
+//! with its plane.
 //!
-//! The foot of the centres in the plane is the middle of the disk. Seen from it, the face is divided at the corners
-//! of the polygon, and where its border crosses the circle: into triangles at the foot, where the border runs in
-//! the disk, and sectors, where it runs outside. Areas and solid angles of both have closed forms; parts
-//! outside of the polygon have the opposite sign and cancel.
+//! The foot of the centres in the plane is the middle of the disk. Seen from it, the face is divided at the
+//! corners of the polygon, and where its border crosses the circle: into triangles at the foot, where the
+//! border runs in the disk, and sectors, where it runs outside. Areas and solid angles of both have closed
+//! forms; parts outside of the polygon have the opposite sign and cancel.
 
 use super::centre::{cross, difference, dot};
 use crate::predicates::Point3;
@@ -57,7 +57,8 @@ impl Pair {
         self.square
     }
 
-    /// Whether a side of the polygon has a point in the disk: also where the polygon is nothing but that side.
+    /// Whether a side of the polygon has a point in the disk: also where the polygon is nothing but that
+    /// side.
     #[inline(always)]
     pub(super) fn touches(&self, side: Side) -> bool {
         let square = (self.radius - side.offset) * (self.radius + side.offset);
@@ -99,7 +100,8 @@ impl Pair {
         }
     }
 
-    /// A triangle of the foot and two points of a line in the disk. Solid angle: Van Oosterom and Strackee, 1983.
+    /// A triangle of the foot and two points of a line in the disk. Solid angle: Van Oosterom and Strackee,
+    /// 1983.
     #[inline(always)]
     fn add_triangle(&self, offset: f64, [from, to]: [f64; 2], face: &mut Face) {
         let twice = offset * (to - from);
@@ -121,7 +123,8 @@ fn signed(height: f64) -> f64 {
     if height < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// A side of the polygon, on the line where the power distances of the two balls and of a third one are equal.
+/// A side of the polygon, on the line where the power distances of the two balls and of a third one are
+/// equal.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Side {
     /// Signed distance of the line from the foot: positive if the third ball is beyond it.
@@ -132,9 +135,9 @@ pub(super) struct Side {
 }
 
 impl Pair {
-    /// The side towards a third ball, whose centre and difference of weight are relative to the first; from and to
-    /// are vertices of the power diagram, relative to the first centre, too. `None` if the three centres are on a
-    /// line.
+    /// The side towards a third ball, whose centre and difference of weight are relative to the first; from
+    /// and to are vertices of the power diagram, relative to the first centre, too. `None` if the three
+    /// centres are on a line.
     #[inline(always)]
     pub(super) fn side(&self, third: Point3, heavier: f64, ends: [Point3; 2]) -> Option<Side> {
         let along = dot(third, self.normal);

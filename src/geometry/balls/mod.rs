@@ -1,20 +1,20 @@
 //! Unions of balls: areas, volumes and contacts of their cells.
 //!
-//! The power diagram of the balls divides their union into one cell for each: the points of the ball whose power
-//! distance from it is the least. A cell is convex; it is bounded by part of its sphere, which is *exposed*,
-//! and by flat faces, its *contacts* with other cells: what a polygon of the power diagram and a disk have in
-//! common. `face` measures one such face, as an area and as the solid angles under which the two centres see it;
-//! everything else follows:
+//! The power diagram of the balls divides their union into one cell for each: the points of the ball whose
+//! power distance from it is the least. A cell is convex; it is bounded by part of its sphere, which is
+//! *exposed*, and by flat faces, its *contacts* with other cells: what a polygon of the power diagram and a
+//! disk have in common. `face` measures one such face, as an area and as the solid angles under which the two
+//! centres see it; everything else follows:
 //!
-//! * the solid angles of all faces of a cell and of its exposed part add up to 4 pi if the centre is in the cell,
-//!   and to 0 if it is outside, faces that the centre sees from behind being negative;
+//! * the solid angles of all faces of a cell and of its exposed part add up to 4 pi if the centre is in the
+//!   cell, and to 0 if it is outside, faces that the centre sees from behind being negative;
 //! * the volume is that of the cones over all parts, a third of height times area each.
 //!
 //! The face between two cells depends only on balls that overlap one of the two. So large sets are cut
 //! into tiles, each triangulated with the balls around it ([`tiles`]).
 //!
-//! Source: the cells are those of Edelsbrunner, "The union of balls and its dual shape", 1995; his inclusion and
-//! exclusion gives the same sums, of which the faces are the parts that users ask for.
+//! Source: the cells are those of Edelsbrunner, "The union of balls and its dual shape", 1995; his inclusion
+//! and exclusion gives the same sums, of which the faces are the parts that users ask for.
 
 mod centre;
 mod contacts;
@@ -41,8 +41,8 @@ use tiles::TILE_MAX;
 pub struct Balls<'b> {
     /// Finite coordinates.
     pub centres: &'b [Point3],
-    /// Radii in the same unit, finite and not negative. With coordinates and radii that are integers below 2^26,
-    /// the power diagram is exact; else that of the squares of the radii, rounded.
+    /// Radii in the same unit, finite and not negative. With coordinates and radii that are integers below
+    /// 2^26, the power diagram is exact; else that of the squares of the radii, rounded.
     pub radii: &'b [f64],
 }
 
@@ -76,14 +76,15 @@ pub struct Cells {
 /// Measures the cells of balls. Faces are listed if `contacts_above` is given and their area is greater.
 ///
 /// Angles are rounded; areas and volumes have an error of about 1e-14 of their ball's, and more where
-/// tetrahedra are nearly flat, or centres nearly coincide: 1e-8 of theirs at 1e-7 of their radii, 1e-3 at 1e-12. Where
-/// a centre lies in the planes of two faces it is 1e-8. The result does not depend on the number of threads.
+/// tetrahedra are nearly flat, or centres nearly coincide: 1e-8 of theirs at 1e-7 of their radii, 1e-3 at
+/// 1e-12. Where a centre lies in the planes of two faces it is 1e-8. The result does not depend on the number
+/// of threads.
 ///
 /// # Errors
 /// As [`crate::delaunay3::Kernel::triangulate_weighted`]; usage, if a coordinate or radius is above 1e60.
 ///
-/// Cost: O(n) for atoms of molecules, about twice the time of the triangulation. Memory: 16 bytes per ball and per
-/// contact, and for each thread that of a tile, 8 MB.
+/// Cost: O(n) for atoms of molecules, about twice the time of the triangulation. Memory: 16 bytes per ball
+/// and per contact, and for each thread that of a tile, 8 MB.
 ///
 /// ```
 /// use spmesh_geometry::balls::{Balls, measure};

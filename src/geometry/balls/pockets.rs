@@ -1,16 +1,17 @@
 //! Pockets and voids of a union of balls.
 //!
 //! The tetrahedra of the power diagram's dual whose orthocentre no ball covers are *empty*. From an empty
-//! tetrahedron the discrete flow leads across each facet that separates it from its orthocentre. What flows to the
-//! outside is outside; the other empty tetrahedra, joined across facets that the balls leave open, are the pockets.
-//! Open facets between a pocket and the outside are its mouths; a pocket without a mouth is a void.
+//! tetrahedron the discrete flow leads across each facet that separates it from its orthocentre. What flows
+//! to the outside is outside; the other empty tetrahedra, joined across facets that the balls leave open, are
+//! the pockets. Open facets between a pocket and the outside are its mouths; a pocket without a mouth is a
+//! void.
 //!
-//! Volume and area are those of the part that no ball covers, by short inclusion and exclusion over the corners,
-//! edges and facets of the tetrahedra: exact for voids. Balls that reach through a mouth from inside are counted
-//! whole, so that pockets have that much less.
+//! Volume and area are those of the part that no ball covers, by short inclusion and exclusion over the
+//! corners, edges and facets of the tetrahedra: exact for voids. Balls that reach through a mouth from inside
+//! are counted whole, so that pockets have that much less.
 //!
-//! Source: Edelsbrunner, Facello and Liang, "On the definition and the construction of pockets in macromolecules",
-//! 1998, as in the server CASTp.
+//! Source: Edelsbrunner, Facello and Liang, "On the definition and the construction of pockets in
+//! macromolecules", 1998, as in the server CASTp.
 
 use super::Balls;
 use super::centre::{cross, difference, dot};
@@ -36,8 +37,8 @@ pub struct Pocket {
     pub mouths: u32,
     /// Area of the mouths that no ball covers.
     pub mouth_area: f64,
-    /// Greatest distance of the centre of a ball around the pocket from the nearest centre at a mouth; 0 if there is
-    /// no mouth.
+    /// Greatest distance of the centre of a ball around the pocket from the nearest centre at a mouth; 0 if
+    /// there is no mouth.
     pub depth: f64,
     /// Number of tetrahedra.
     pub tetrahedra: u32,
@@ -122,8 +123,8 @@ impl<'t> Search<'t> {
         self.height(t, corner) < 0.0
     }
 
-    /// Distance of the orthocentre from the plane of a facet, up to a positive factor: positive on the side of the
-    /// tetrahedron.
+    /// Distance of the orthocentre from the plane of a facet, up to a positive factor: positive on the side
+    /// of the tetrahedron.
     fn height(&self, t: usize, corner: usize) -> f64 {
         let vertices = self.tile.tetrahedra()[t].vertices;
         let [a, b, c] = TETRAHEDRON_FACETS[corner].map(|i| self.tile.point(vertices[i]));
@@ -133,8 +134,8 @@ impl<'t> Search<'t> {
         if apex < 0.0 { -centre } else { centre }
     }
 
-    /// Whether the balls cover the facet's place in the dual: some point of the line of equal power between the two
-    /// orthocentres.
+    /// Whether the balls cover the facet's place in the dual: some point of the line of equal power between
+    /// the two orthocentres.
     fn is_closed(&self, t: usize, corner: usize) -> bool {
         let tetrahedron = &self.tile.tetrahedra()[t];
         let Some(other) = tetrahedron.neighbour(corner) else { return false };

@@ -40,8 +40,9 @@ pub(super) fn lens([p, q]: [Point3; 2], radii: [f64; 2]) -> Measure {
 
 /// Surface and volume of what three balls have in common, if their spheres meet in two points; else zero.
 ///
-/// The tetrahedron of the centres and such a point lies in the union of the balls. So the shares of the balls in
-/// it, less those of the lenses, plus half of the wanted, are its volume; and its surface in the union is none.
+/// The tetrahedron of the centres and such a point lies in the union of the balls. So the shares of the balls
+/// in it, less those of the lenses, plus half of the wanted, are its volume; and its surface in the union is
+/// none.
 pub(super) fn triple(centres: [Point3; 3], radii: [f64; 3]) -> Measure {
     let Some(meeting) = meeting_point(centres, radii) else { return Measure::default() };
     let mut half = Measure { area: 0.0, volume: volume([centres[0], centres[1], centres[2], meeting]) };

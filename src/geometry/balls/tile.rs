@@ -22,8 +22,8 @@ pub(super) struct Part {
     pub(super) contacts: Vec<Contact>,
 }
 
-/// Square of the height of a centre over a plane below which it counts as in the plane, in four times the square of
-/// its radius.
+/// Square of the height of a centre over a plane below which it counts as in the plane, in four times the
+/// square of its radius.
 const PINCHED: f64 = 4e-14;
 
 /// Share of its disk below which a face is taken as empty.
@@ -31,9 +31,9 @@ const NOISE: f64 = 1e-12;
 
 /// The tetrahedralization of a tile.
 ///
-/// Four points far away are added, the *outposts*: then no ball is on the hull, so that all cells are bounded, and
-/// few balls or balls in a plane are no special case. Outposts take nothing of the balls, as their own weight is
-/// zero.
+/// Four points far away are added, the *outposts*: then no ball is on the hull, so that all cells are
+/// bounded, and few balls or balls in a plane are no special case. Outposts take nothing of the balls, as
+/// their own weight is zero.
 pub(super) struct Tile<'t> {
     members: &'t Members,
     mesh: Tetrahedralization,
@@ -43,8 +43,8 @@ pub(super) struct Tile<'t> {
     radii: Vec<f64>,
     /// For each tetrahedron its orthocentre.
     centres: Vec<Point3>,
-    /// For each vertex: a corner of its cell in the diagram is outside of the ball, so that part of the sphere may
-    /// be exposed.
+    /// For each vertex: a corner of its cell in the diagram is outside of the ball, so that part of the
+    /// sphere may be exposed.
     may_be_exposed: Vec<bool>,
 }
 
@@ -69,8 +69,9 @@ impl<'t> Tile<'t> {
         Ok(tile)
     }
 
-    /// Makes balls larger, by a hundred millionth, whose centre lies in the planes of two faces or next to them. There
-    /// heights and offsets both vanish, and solid angles depend on their ratio, of which rounding leaves nothing.
+    /// Makes balls larger, by a hundred millionth, whose centre lies in the planes of two faces or next to
+    /// them. There heights and offsets both vanish, and solid angles depend on their ratio, of which rounding
+    /// leaves nothing.
     fn swell_pinched(&mut self) {
         let mut planes: Vec<Option<u32>> = vec![None; self.radii.len()];
         let mut is_pinched = vec![false; self.radii.len()];

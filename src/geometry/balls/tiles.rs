@@ -2,8 +2,8 @@
 
 use super::Balls;
 
-/// Greatest number of balls of a tile, without those around it. Larger tiles have fewer of these, but need more
-/// memory.
+/// Greatest number of balls of a tile, without those around it. Larger tiles have fewer of these, but need
+/// more memory.
 pub(super) const TILE_MAX: usize = 10_000;
 
 /// The balls of a tile, as indices of all balls.
@@ -15,8 +15,8 @@ pub(super) struct Members {
     pub(super) around: Vec<u32>,
 }
 
-/// Halves the balls at the median, along the longest side of their box, until tiles have at most `most`. Tiles depend on
-/// the balls only.
+/// Halves the balls at the median, along the longest side of their box, until tiles have at most `most`.
+/// Tiles depend on the balls only.
 pub(super) fn cut(balls: Balls<'_>, most: usize) -> Vec<Members> {
     let mut tiles = Vec::new();
     let all = Members { core: (0..balls.centres.len() as u32).collect(), around: Vec::new() };

@@ -3,8 +3,8 @@
 use super::tetrahedralization::{Corner, Tetrahedralization, Tetrahedron};
 use std::collections::VecDeque;
 
-/// The corners of the six edges of a tetrahedron, and the two other corners: the way from the first of them to the
-/// second turns right-handed around the edge.
+/// The corners of the six edges of a tetrahedron, and the two other corners: the way from the first of them
+/// to the second turns right-handed around the edge.
 pub(crate) const EDGES: [([usize; 2], [usize; 2]); 6] = [
     ([0, 1], [2, 3]),
     ([0, 2], [3, 1]),
@@ -19,22 +19,22 @@ pub(crate) const EDGES: [([usize; 2], [usize; 2]); 6] = [
 pub struct Ring {
     /// The ends: vertices of the mesh.
     pub ends: [u32; 2],
-    /// The tetrahedra around the edge, right-handed about the way from its first end to its second. Their numbers
-    /// are those of [`Tetrahedralization::tetrahedra`].
+    /// The tetrahedra around the edge, right-handed about the way from its first end to its second. Their
+    /// numbers are those of [`Tetrahedralization::tetrahedra`].
     pub tetrahedra: VecDeque<u32>,
-    /// The vertices that make a triangle with the edge. Tetrahedron `i` lies between vertices `i` and `i + 1`; the
-    /// first vertex follows the last unless the edge is on the hull, where there is one vertex more than
-    /// tetrahedra.
+    /// The vertices that make a triangle with the edge. Tetrahedron `i` lies between vertices `i` and `i +
+    /// 1`; the first vertex follows the last unless the edge is on the hull, where there is one vertex more
+    /// than tetrahedra.
     pub link: VecDeque<u32>,
 }
 
 impl Tetrahedralization {
-    /// Calls `visit` for each edge whose ends (vertices of the mesh) `is_wanted` accepts; the test may be asked
-    /// several times for each edge.
+    /// Calls `visit` for each edge whose ends (vertices of the mesh) `is_wanted` accepts; the test may be
+    /// asked several times for each edge.
     ///
-    /// Each tetrahedron at an edge finds it; the tetrahedron with the lowest number reports it. The search for a
-    /// lower number walks in both directions alternately, so that all searches around one edge of k tetrahedra
-    /// take O(k log k) steps together, whatever the numbering.
+    /// Each tetrahedron at an edge finds it; the tetrahedron with the lowest number reports it. The search
+    /// for a lower number walks in both directions alternately, so that all searches around one edge of k
+    /// tetrahedra take O(k log k) steps together, whatever the numbering.
     ///
     /// # Errors
     /// The first of `visit`.

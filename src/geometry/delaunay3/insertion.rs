@@ -70,8 +70,8 @@ impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
         self.complex
     }
 
-    /// Inserts vertex `q`, which is not in the mesh yet, unless others hide it; returns where to start the walk to
-    /// a point nearby.
+    /// Inserts vertex `q`, which is not in the mesh yet, unless others hide it; returns where to start the
+    /// walk to a point nearby.
     ///
     /// The test of a tetrahedron is computed when its facet is queued, and used when the facet is taken from
     /// the queue, so that no test waits for the branch before it.
@@ -107,8 +107,8 @@ impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
         start
     }
 
-    /// Makes a tetrahedron in conflict the whole cavity; returns the tetrahedron that hides the point if there is
-    /// no conflict.
+    /// Makes a tetrahedron in conflict the whole cavity; returns the tetrahedron that hides the point if
+    /// there is no conflict.
     #[inline(always)]
     fn open_cavity(&mut self, at: Site, start: u32) -> Result<(), u32> {
         let found = self.find_conflict(at, start);

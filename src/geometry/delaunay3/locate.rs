@@ -53,9 +53,9 @@ pub(super) struct Site {
     pub(super) weight: f64,
 }
 
-/// Walks from `t` to the tetrahedron that contains `q`, exactly: finite, or infinite and in conflict with it. A
-/// finite one is in conflict, too, unless weights hide the point. In a Delaunay or regular tetrahedralization
-/// this walk ends.
+/// Walks from `t` to the tetrahedron that contains `q`, exactly: finite, or infinite and in conflict with it.
+/// A finite one is in conflict, too, unless weights hide the point. In a Delaunay or regular
+/// tetrahedralization this walk ends.
 #[cold]
 #[inline(never)]
 pub(super) fn walk_exactly<W: Weights>(
@@ -88,8 +88,9 @@ pub(super) fn walk_exactly<W: Weights>(
     }
 }
 
-/// Whether `q`, which is no vertex, lies in the sphere of tetrahedron `t`, or with weights is in conflict with its
-/// orthosphere, ties broken by the canonical perturbation. It does if `t` is no longer there: it gave way to `q`.
+/// Whether `q`, which is no vertex, lies in the sphere of tetrahedron `t`, or with weights is in conflict
+/// with its orthosphere, ties broken by the canonical perturbation. It does if `t` is no longer there: it
+/// gave way to `q`.
 ///
 /// The sphere of an infinite tetrahedron is the open half-space beyond its facet of the hull, and what the
 /// sphere of the tetrahedron on the other side has in common with the plane between them (thesis 4.4).

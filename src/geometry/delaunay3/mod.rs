@@ -3,8 +3,8 @@
 //! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that
 //! each go along the curve ([`Rounds`](crate::order::Rounds)), so that the next point is near and finds small
 //! tetrahedra around it. `complex` is the data structure, `locate` the walk to the next point, `insertion`
-//! the search of the cavity, `star` what takes its place, `extract` what comes out. With weights the same kernel
-//! makes the regular tetrahedralization, dual to the power diagram.
+//! the search of the cavity, `star` what takes its place, `extract` what comes out. With weights the same
+//! kernel makes the regular tetrahedralization, dual to the power diagram.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -96,12 +96,12 @@ impl Kernel {
     }
 
     /// The regular tetrahedralization of `points` with `weights`, one for each: dual to the power diagram, in
-    /// which the distance of a point x from p is |x - p|^2 less the weight of p. For balls, weights are the squares
-    /// of radii.
+    /// which the distance of a point x from p is |x - p|^2 less the weight of p. For balls, weights are the
+    /// squares of radii.
     ///
-    /// Points whose cell is empty are in no tetrahedron: [`Tetrahedralization::hidden`]. Of equal points the one
-    /// of greatest weight is the vertex, of these the one of least index. Ties are broken as without weights;
-    /// with equal weights the result is that of [`Kernel::triangulate`].
+    /// Points whose cell is empty are in no tetrahedron: [`Tetrahedralization::hidden`]. Of equal points the
+    /// one of greatest weight is the vertex, of these the one of least index. Ties are broken as without
+    /// weights; with equal weights the result is that of [`Kernel::triangulate`].
     ///
     /// # Errors
     /// As [`Kernel::triangulate`]; also if a weight is not finite.

@@ -82,8 +82,8 @@ pub struct Tetrahedralization {
     pub(super) tetrahedra: Vec<Tetrahedron>,
     /// Input points left out because an equal one of lesser index is there: `[duplicate, the other]`.
     pub duplicates: Vec<[u32; 2]>,
-    /// Input points whose cell in the power diagram is empty, so that they are in no tetrahedron: with weights only,
-    /// and unknown if there are no tetrahedra. They are vertices still.
+    /// Input points whose cell in the power diagram is empty, so that they are in no tetrahedron: with
+    /// weights only, and unknown if there are no tetrahedra. They are vertices still.
     pub hidden: Vec<u32>,
     /// Number of facets of the hull.
     pub hull_facets: usize,

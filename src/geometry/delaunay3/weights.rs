@@ -1,5 +1,5 @@
-//! The weights of vertices: without them the tetrahedralization is the Delaunay one, with them the regular one,
-//! dual to the power diagram.
+//! The weights of vertices: without them the tetrahedralization is the Delaunay one, with them the regular
+//! one, dual to the power diagram.
 
 /// The weight of each vertex.
 pub(super) trait Weights {

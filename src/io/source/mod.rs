@@ -1,6 +1,6 @@
 //! Point data of other programs, read as one input: LAS, LAZ, COPC, text, spmesh streams and their text
-//! twins, SPA and SPB, raw numbers, arrays of numpy, the atoms of PDB, mmCIF and XYZ, and the vertices of PLY,
-//! OBJ and VTK.
+//! twins, SPA and SPB, raw numbers, arrays of numpy, the atoms of PDB, mmCIF and XYZ, and the vertices of
+//! PLY, OBJ and VTK.
 
 mod atoms;
 mod base64;

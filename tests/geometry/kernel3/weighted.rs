@@ -9,8 +9,8 @@ use spmesh_reference::tetrahedra::regular;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-/// Tetrahedralizes distinct points, and compares with the definition, hidden points included. Returns the number
-/// of these.
+/// Tetrahedralizes distinct points, and compares with the definition, hidden points included. Returns the
+/// number of these.
 fn assert_regular(kernel: &mut Kernel, points: &[Point], weights: &[f64]) -> usize {
     let mesh = triangulated(kernel, points, weights);
     let found = tetrahedra(&mesh);

@@ -35,12 +35,12 @@
 //!
 //! ## With weights
 //!
-//! The lift of a point is then its square less a difference w of weights. Let G be the greatest magnitude of a
-//! square or a lift; then |w| <= 2 G. A lift is off by 5 u of the square, by u |w|, and by u of itself: by at
-//! most 8 u G. Each of the four products of a lift and a determinant is off by 8 u + 8 u, and with the product
-//! itself and the 3 sums the value is off by at most 20 u * 8/sqrt(3) G^2.5. The bound has 22 instead. What is
-//! said of overflow and underflow holds with G in place of m: differences of weights do not underflow, and with
-//! integers nothing is rounded below the same limit.
+//! The lift of a point is then its square less a difference w of weights. Let G be the greatest magnitude of
+//! a square or a lift; then |w| <= 2 G. A lift is off by 5 u of the square, by u |w|, and by u of itself: by
+//! at most 8 u G. Each of the four products of a lift and a determinant is off by 8 u + 8 u, and with the
+//! product itself and the 3 sums the value is off by at most 20 u * 8/sqrt(3) G^2.5. The bound has 22
+//! instead. What is said of overflow and underflow holds with G in place of m: differences of weights do not
+//! underflow, and with integers nothing is rounded below the same limit.
 //!
 //! ## Overflow and underflow
 //!

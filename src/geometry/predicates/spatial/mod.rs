@@ -44,8 +44,8 @@ pub trait Predicates3 {
         }
     }
 
-    /// Side of e against the orthosphere of a, b, c, d, given the weights of all five in this order: positive if
-    /// e is in conflict, which means that its power distance is below its weight. Ties as in
+    /// Side of e against the orthosphere of a, b, c, d, given the weights of all five in this order: positive
+    /// if e is in conflict, which means that its power distance is below its weight. Ties as in
     /// [`Predicates3::insphere_perturbed`]: never zero in its domain.
     ///
     /// Domain: abcd positively oriented, all five points distinct, weights finite.

@@ -4,8 +4,8 @@
 //! power distance zero: |centre - p|^2 - radius^2 = weight. A fifth point is in conflict with the tetrahedron
 //! if its power distance is below its weight.
 //!
-//! Source: Edelsbrunner, "Geometry and Topology for Mesh Generation", 2001, chapter 1; ties as in Devillers and
-//! Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations", 2011.
+//! Source: Edelsbrunner, "Geometry and Topology for Mesh Generation", 2001, chapter 1; ties as in Devillers
+//! and Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations", 2011.
 
 use super::filter::{lift, power_is_certain};
 use super::float::differences_from;
@@ -14,13 +14,13 @@ use crate::predicates::exact_integers::{integers_in, unit_with_weights, weight_i
 use crate::predicates::forms::{Form, Insphere, lift as form_lift};
 use num_bigint::BigInt;
 
-/// Greatest difference of coordinates for `i128`: squares are at most 3 D^2, and with weights whose differences
-/// are at most D^2, lifts 4 D^2; a determinant of differences is at most 2 D^3. So the sum of four products is
-/// at most 32 D^5 < 1.65e38 < 2^127.
+/// Greatest difference of coordinates for `i128`: squares are at most 3 D^2, and with weights whose
+/// differences are at most D^2, lifts 4 D^2; a determinant of differences is at most 2 D^3. So the sum of
+/// four products is at most 32 D^5 < 1.65e38 < 2^127.
 const SIDE_MAX: f64 = 2.2e7;
 
-/// Side of e against the orthosphere of a, b, c, d, given the weights of all five in this order: positive if e is
-/// in conflict, zero if it is orthogonal.
+/// Side of e against the orthosphere of a, b, c, d, given the weights of all five in this order: positive if
+/// e is in conflict, zero if it is orthogonal.
 ///
 /// Domain: abcd positively oriented; finite coordinates and weights.
 pub(super) fn power_side(

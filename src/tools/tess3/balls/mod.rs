@@ -130,8 +130,8 @@ impl Molecule<'_> {
         Ok(cells)
     }
 
-    /// Writes a row for each atom, residue or chain: the area and the volume of its cells. The output is opened when
-    /// they are measured.
+    /// Writes a row for each atom, residue or chain: the area and the volume of its cells. The output is
+    /// opened when they are measured.
     ///
     /// # Errors
     /// If an atom has no radius; those of writing.

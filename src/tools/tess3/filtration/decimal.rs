@@ -125,7 +125,8 @@ impl Decimals {
             let quotient = u64::try_from(quotient).expect("about 17 digits");
             let is_up = twice > divisor || (twice == divisor && quotient % 2 == 1);
             let digits = quotient + u64::from(is_up);
-            // The quotient decides: digits that are rounded up to a power of ten would change the power for ever.
+            // The quotient decides: digits that are rounded up to a power of ten would change the power for
+            // ever.
             match quotient {
                 LIMIT.. => power -= 1,
                 _ if quotient < LIMIT / 10 => power += 1,
