@@ -19,5 +19,6 @@ pub mod predicates;
 #[cfg(target_arch = "x86_64")]
 mod processor;
 pub mod spacetime;
+mod vector;
 
 pub use location::Location;

@@ -2,6 +2,8 @@
 
 use crate::predicates::Point3;
 use crate::predicates::exact_integers::{integers_in, unit_with_weights, weight_in};
+use crate::predicates::forms;
+use crate::vector::{cross, difference, dot};
 use num_bigint::BigInt;
 use num_traits::Signed;
 
@@ -36,15 +38,12 @@ fn exactly(points: [Point3; 4], weights: [f64; 4]) -> Point3 {
     let unit = unit_with_weights(&points, &weights);
     let [a, b, c, d] = points.map(|point| integers_in(point, unit));
     let weights = weights.map(|weight| weight_in(weight, unit));
-    let minus = |p: &[BigInt; 3]| -> [BigInt; 3] { std::array::from_fn(|axis| &p[axis] - &a[axis]) };
-    let product = |p: &[BigInt; 3], q: &[BigInt; 3]| &p[0] * &q[0] + &p[1] * &q[1] + &p[2] * &q[2];
-    let minor = |p: &[BigInt; 3], q: &[BigInt; 3], i: usize, j: usize| &p[i] * &q[j] - &p[j] * &q[i];
-    let cross = |p: &[BigInt; 3], q: &[BigInt; 3]| [minor(p, q, 1, 2), minor(p, q, 2, 0), minor(p, q, 0, 1)];
-    let (b, c, d) = (minus(&b), minus(&c), minus(&d));
-    let lift = |p: &[BigInt; 3], i: usize| product(p, p) - (&weights[i] - &weights[0]);
+    let from_a = |p: [BigInt; 3]| -> [BigInt; 3] { std::array::from_fn(|axis| &p[axis] - &a[axis]) };
+    let (b, c, d) = (from_a(b), from_a(c), from_a(d));
+    let lift = |p: &[BigInt; 3], i: usize| forms::lift(p) - (&weights[i] - &weights[0]);
     let (over_b, over_c, over_d) = (lift(&b, 1), lift(&c, 2), lift(&d, 3));
-    let (bc, cd, db) = (cross(&b, &c), cross(&c, &d), cross(&d, &b));
-    let divisor = product(&b, &cd) * 2;
+    let (bc, cd, db) = (forms::cross(&b, &c), forms::cross(&c, &d), forms::cross(&d, &b));
+    let divisor = forms::dot(&b, &cd) * 2;
     let numerators: [BigInt; 3] =
         std::array::from_fn(|axis| &over_b * &cd[axis] + &over_c * &db[axis] + &over_d * &bc[axis]);
     numerators.map(|numerator| quotient(&numerator, &divisor) * 2f64.powi(unit))
@@ -64,19 +63,4 @@ fn quotient(dividend: &BigInt, divisor: &BigInt) -> f64 {
     let magnitude = u128::try_from(digits).expect("about 64 bits") as f64;
     let value = magnitude * 2f64.powi((-shift).clamp(-1100, 1100) as i32);
     if dividend.is_negative() == divisor.is_negative() { value } else { -value }
-}
-
-#[inline(always)]
-pub(super) fn difference(p: Point3, q: Point3) -> Point3 {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-}
-
-#[inline(always)]
-pub(super) fn cross(p: Point3, q: Point3) -> Point3 {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
-}
-
-#[inline(always)]
-pub(super) fn dot(p: Point3, q: Point3) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 }

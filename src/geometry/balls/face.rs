@@ -6,8 +6,9 @@
 //! border runs in the disk, and sectors, where it runs outside. Areas and solid angles of both have closed
 //! forms; parts outside of the polygon have the opposite sign and cancel.
 
-use super::centre::{cross, difference, dot};
+use super::shares::heights;
 use crate::predicates::Point3;
+use crate::vector::{cross, difference, dot};
 
 /// Two balls whose spheres meet, and the plane of equal power.
 #[derive(Debug, Clone, Copy)]
@@ -36,11 +37,8 @@ impl Pair {
     pub(super) fn new([p, q]: [Point3; 2], radii: [f64; 2]) -> Pair {
         let between = difference(q, p);
         let distance = dot(between, between).sqrt();
-        // The product of sum and difference: squares of nearly equal radii would cancel.
-        let excess = (radii[0] - radii[1]) * (radii[0] + radii[1]);
-        let first = 0.5 * (distance + excess / distance);
-        let heights = [first, distance - first];
-        let square = (radii[0] - first) * (radii[0] + first);
+        let heights = heights(distance, radii);
+        let square = (radii[0] - heights[0]) * (radii[0] + heights[0]);
         let normal = between.map(|c| c / distance);
         Pair { normal, heights, square, radius: square.max(0.0).sqrt(), radii }
     }

@@ -14,13 +14,13 @@
 //! macromolecules", 1998, as in the server CASTp.
 
 use super::Balls;
-use super::centre::{cross, difference, dot};
 use super::shares::{
     Foot, Measure, angle, ball, dihedral, length, lens, lens_of_disks, solid_angle, triple, volume,
 };
 use super::tile::Tile;
 use super::tiles::Members;
 use crate::delaunay3::EDGES;
+use crate::vector::{cross, difference, dot};
 use spmesh_core::error::Result;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 use std::collections::{BTreeMap, BTreeSet};
@@ -234,28 +234,23 @@ impl<'t> Search<'t> {
         let vertices = self.tile.tetrahedra()[t].vertices;
         let points = vertices.map(|v| self.tile.point(v));
         let radii = vertices.map(|v| self.tile.radius(v));
-        let mut free = Measure { area: 0.0, volume: volume(points) };
+        // The area of spheres is that of what is subtracted, with the opposite sign.
+        let mut rest = Measure { area: 0.0, volume: volume(points) };
         for (corner, others) in TETRAHEDRON_FACETS.into_iter().enumerate() {
             let share = solid_angle(points[corner], others.map(|i| points[i])) / (4.0 * PI);
-            let whole = ball(radii[corner]);
-            free.area += share * whole.area;
-            free.volume -= share * whole.volume;
+            rest.add(-share, ball(radii[corner]));
             if self.is_closed(t, corner) {
-                let common = triple(others.map(|i| points[i]), others.map(|i| radii[i]));
-                free.area += 0.5 * common.area;
-                free.volume -= 0.5 * common.volume;
+                rest.add(-0.5, triple(others.map(|i| points[i]), others.map(|i| radii[i])));
             }
         }
         for (ends, others) in EDGES {
             if edges.contains(&sorted(ends.map(|i| vertices[i]))) {
                 let ends_at = ends.map(|i| points[i]);
                 let share = dihedral(ends_at, others.map(|i| points[i])) / (2.0 * PI);
-                let common = lens(ends_at, ends.map(|i| radii[i]));
-                free.area -= share * common.area;
-                free.volume += share * common.volume;
+                rest.add(share, lens(ends_at, ends.map(|i| radii[i])));
             }
         }
-        free
+        Measure { area: -rest.area, ..rest }
     }
 
     /// The part of a mouth's facet that no ball of its corners covers.

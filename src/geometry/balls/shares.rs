@@ -1,8 +1,8 @@
 //! Closed forms for what up to three balls have in common, and for the share of it in a tetrahedron of their
 //! centres.
 
-use super::centre::{cross, difference, dot};
 use crate::predicates::Point3;
+use crate::vector::{cross, difference, dot};
 use std::f64::consts::PI;
 
 /// An area and a volume.
@@ -23,12 +23,19 @@ pub(super) fn ball(radius: f64) -> Measure {
     Measure { area: 4.0 * PI * radius * radius, volume: 4.0 / 3.0 * PI * radius.powi(3) }
 }
 
+/// Distances of the plane of equal power from two centres, positive towards the other centre.
+#[inline(always)]
+pub(super) fn heights(distance: f64, radii: [f64; 2]) -> [f64; 2] {
+    // The product of sum and difference: squares of nearly equal radii would cancel.
+    let excess = (radii[0] - radii[1]) * (radii[0] + radii[1]);
+    let first = 0.5 * (distance + excess / distance);
+    [first, distance - first]
+}
+
 /// Surface and volume of the lens of two balls whose spheres meet.
 pub(super) fn lens([p, q]: [Point3; 2], radii: [f64; 2]) -> Measure {
-    let distance = length(difference(q, p));
-    let first = 0.5 * (distance + (radii[0] - radii[1]) * (radii[0] + radii[1]) / distance);
     let mut lens = Measure::default();
-    for (radius, height) in radii.into_iter().zip([first, distance - first]) {
+    for (radius, height) in radii.into_iter().zip(heights(length(difference(q, p)), radii)) {
         let cap = radius - height;
         lens.add(
             1.0,
@@ -117,9 +124,7 @@ pub(super) fn angle(apex: Point3, [a, b]: [Point3; 2]) -> f64 {
 
 /// Area that two disks in one plane have in common, if their circles meet.
 pub(super) fn lens_of_disks([p, q]: [Point3; 2], radii: [f64; 2]) -> f64 {
-    let distance = length(difference(q, p));
-    let first = 0.5 * (distance + (radii[0] - radii[1]) * (radii[0] + radii[1]) / distance);
-    let segments = radii.into_iter().zip([first, distance - first]).map(|(radius, height)| {
+    let segments = radii.into_iter().zip(heights(length(difference(q, p)), radii)).map(|(radius, height)| {
         let half_chord = ((radius - height) * (radius + height)).max(0.0).sqrt();
         radius * radius * half_chord.atan2(height) - height * half_chord
     });

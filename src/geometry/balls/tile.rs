@@ -1,11 +1,12 @@
 //! The cells of the balls of one tile.
 
-use super::centre::{difference, dot, orthocentre};
+use super::centre::orthocentre;
 use super::face::{Face, Pair, Side};
 use super::tiles::Members;
 use super::{Balls, Cell, Contact};
 use crate::delaunay3::{EDGES, Kernel, Ring, Tetrahedralization, Tetrahedron};
-use crate::predicates::Point3;
+use crate::predicates::{Extent, Point3};
+use crate::vector::{difference, dot};
 use spmesh_core::error::Result;
 use std::borrow::Cow;
 use std::convert::Infallible;
@@ -232,14 +233,13 @@ impl<'t> Tile<'t> {
 
 /// Points so far away that no ball of the tile is on the hull, on the grid of the coordinates.
 fn outposts(points: &[Point3], radius: f64) -> [Point3; 4] {
-    let fold =
-        |axis: usize, of: fn(f64, f64) -> f64, start: f64| points.iter().map(|p| p[axis]).fold(start, of);
-    let min = [0, 1, 2].map(|axis| fold(axis, f64::min, f64::INFINITY));
-    let max = [0, 1, 2].map(|axis| fold(axis, f64::max, f64::NEG_INFINITY));
-    let side = (0..3).map(|axis| max[axis] - min[axis]).fold(radius, f64::max);
+    let extent = Extent::of(points);
+    let side = extent.max_difference().max(radius);
     // Twice would do; with four times the side even corners of the diagram outside are far from all balls.
     let distance = (4.0 * (side + radius)).ceil().max(1.0);
     OUTPOSTS.map(|direction| {
-        [0, 1, 2].map(|axis| ((min[axis] + max[axis]) / 2.0).round() + direction[axis] * distance)
+        [0, 1, 2].map(|axis| {
+            ((extent.lower[axis] + extent.upper[axis]) / 2.0).round() + direction[axis] * distance
+        })
     })
 }

@@ -1,6 +1,7 @@
 //! Cuts balls into tiles that fit into little memory, each with the balls around it.
 
 use super::Balls;
+use spmesh_model::bounds::Bounds;
 
 /// Greatest number of balls of a tile, without those around it. Larger tiles have fewer of these, but need
 /// more memory.
@@ -36,8 +37,7 @@ pub(super) fn cut(balls: Balls<'_>, most: usize) -> Vec<Members> {
 
 fn halve(balls: Balls<'_>, members: Members) -> [Members; 2] {
     let Members { mut core, around } = members;
-    let sides = Box3::around(balls, &core);
-    let axis = sides.longest_axis();
+    let axis = longest_axis(&bounds(balls, &core));
     let key = |&ball: &u32| (balls.centres[ball as usize][axis], ball);
     let middle = core.len() / 2;
     core.select_nth_unstable_by(middle, |p, q| {
@@ -49,39 +49,30 @@ fn halve(balls: Balls<'_>, members: Members) -> [Members; 2] {
     core.sort_unstable();
     upper.sort_unstable();
     let reaching = |half: &[u32], other: &[u32]| -> Vec<u32> {
-        let sides = Box3::around(balls, half);
-        other.iter().chain(&around).copied().filter(|&ball| sides.is_reached(balls, ball)).collect()
+        let bounds = bounds(balls, half);
+        other.iter().chain(&around).copied().filter(|&ball| is_reached(&bounds, balls, ball)).collect()
     };
     let (around_lower, around_upper) = (reaching(&core, &upper), reaching(&upper, &core));
     [Members { core, around: around_lower }, Members { core: upper, around: around_upper }]
 }
 
-/// The box of some balls.
-struct Box3 {
-    min: [f64; 3],
-    max: [f64; 3],
+/// The box of some balls, at least one.
+fn bounds(balls: Balls<'_>, members: &[u32]) -> Bounds {
+    let ball = |&ball: &u32| {
+        let (centre, radius) = (balls.centres[ball as usize], balls.radii[ball as usize]);
+        Bounds { min: centre.map(|c| c - radius), max: centre.map(|c| c + radius) }
+    };
+    members.iter().map(ball).reduce(Bounds::union).expect("a tile has balls")
 }
 
-impl Box3 {
-    fn around(balls: Balls<'_>, members: &[u32]) -> Box3 {
-        let mut sides = Box3 { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
-        for &ball in members {
-            let (centre, radius) = (balls.centres[ball as usize], balls.radii[ball as usize]);
-            sides.min = [0, 1, 2].map(|axis| sides.min[axis].min(centre[axis] - radius));
-            sides.max = [0, 1, 2].map(|axis| sides.max[axis].max(centre[axis] + radius));
-        }
-        sides
-    }
+fn longest_axis(bounds: &Bounds) -> usize {
+    let side = |axis: usize| bounds.max[axis] - bounds.min[axis];
+    (1..3).fold(0, |longest, axis| if side(axis) > side(longest) { axis } else { longest })
+}
 
-    fn longest_axis(&self) -> usize {
-        let side = |axis: usize| self.max[axis] - self.min[axis];
-        (1..3).fold(0, |longest, axis| if side(axis) > side(longest) { axis } else { longest })
-    }
-
-    fn is_reached(&self, balls: Balls<'_>, ball: u32) -> bool {
-        let (centre, radius) = (balls.centres[ball as usize], balls.radii[ball as usize]);
-        // Rounding must not lose a ball that touches; 1e-9 is far more, and costs nothing.
-        let reach = radius * (1.0 + 1e-9);
-        (0..3).all(|axis| centre[axis] + reach >= self.min[axis] && centre[axis] - reach <= self.max[axis])
-    }
+fn is_reached(bounds: &Bounds, balls: Balls<'_>, ball: u32) -> bool {
+    let (centre, radius) = (balls.centres[ball as usize], balls.radii[ball as usize]);
+    // Rounding must not lose a ball that touches; 1e-9 is far more, and costs nothing.
+    let reach = radius * (1.0 + 1e-9);
+    (0..3).all(|axis| centre[axis] + reach >= bounds.min[axis] && centre[axis] - reach <= bounds.max[axis])
 }

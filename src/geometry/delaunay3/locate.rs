@@ -2,9 +2,10 @@
 
 use super::complex::{Complex, DELETED, Facet, corner, tetrahedron_of};
 use super::exact::Exact;
-use super::translated::{difference, volume};
+use super::translated::volume;
 use super::weights::Weights;
 use crate::predicates::{Point3, Sign};
+use crate::vector::difference;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
 /// Steps after which the exact walk takes over: rounding may lead the other one in circles.

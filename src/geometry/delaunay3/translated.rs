@@ -4,6 +4,7 @@ use super::complex::Complex;
 use super::locate::Site;
 use super::weights::Weights;
 use crate::predicates::{Point3, insphere_is_certain, orient3d_is_certain, power_is_certain};
+use crate::vector::{cross, difference, dot};
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
 /// A vertex relative to the new point.
@@ -39,21 +40,6 @@ impl TranslatedVertex {
     pub(super) fn greatest<W: Weights>(&self) -> f64 {
         if W::ARE_EQUAL { self.lift } else { dot(self.at, self.at).max(self.lift.abs()) }
     }
-}
-
-#[inline(always)]
-pub(super) fn difference(p: Point3, q: Point3) -> Point3 {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-}
-
-#[inline(always)]
-fn cross(p: Point3, q: Point3) -> Point3 {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
-}
-
-#[inline(always)]
-fn dot(p: Point3, q: Point3) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 }
 
 /// det(p, q, r).

@@ -108,12 +108,12 @@ pub(crate) fn minor<T: Number>(p: &[T], q: &[T], i: usize, j: usize) -> T {
 }
 
 #[inline(always)]
-fn cross<T: Number>(p: &[T; 3], q: &[T; 3]) -> [T; 3] {
+pub(crate) fn cross<T: Number>(p: &[T; 3], q: &[T; 3]) -> [T; 3] {
     [minor(p, q, 1, 2), minor(p, q, 2, 0), minor(p, q, 0, 1)]
 }
 
 #[inline(always)]
-fn dot<T: Number, const D: usize>(p: &[T; D], q: &[T; D]) -> T {
+pub(crate) fn dot<T: Number, const D: usize>(p: &[T; D], q: &[T; D]) -> T {
     let rest = times(&p[0], &q[0]) + times(&p[1], &q[1]);
     (2..D).fold(rest, |sum, i| sum + times(&p[i], &q[i]))
 }

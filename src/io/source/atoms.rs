@@ -42,15 +42,11 @@ pub(super) fn read(
     if others > 0 {
         notices.push(format!("{others} atoms at other alternate locations are left out"));
     }
-    let mut bounds: Option<Bounds> = None;
-    for &point in points.iter() {
-        bounds.get_or_insert_with(|| Bounds::of_point(point)).extend(point);
-    }
     let stated = Stated {
         coordinates: structure.coordinates,
         has_z: Some(true),
         crs: Crs::Unknown,
-        bounds,
+        bounds: Bounds::of_points(&points),
         points: Some(points.len() as u64),
         offers: Vec::new(),
     };

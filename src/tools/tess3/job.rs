@@ -8,7 +8,8 @@ use super::alpha::AlphaComplex;
 use super::balls::{BallOptions, Molecule};
 use super::filtration::Filtration;
 use super::mesh::write_mesh;
-use super::tables::{CONTACTS, Rows, TETRAHEDRA, write_error};
+use super::rows::write_error;
+use super::tables::{CONTACTS, ModelTables, TETRAHEDRA};
 use super::{Arithmetic, Options, Product, Report, selection};
 use spmesh_core::error::Result;
 use spmesh_core::output::Output;
@@ -147,10 +148,10 @@ impl Job<'_> {
     ) -> Result<()> {
         let alpha = self.alpha(model, mesh, report);
         let (number, scale) = (model.name.number, model.scale());
-        let rows = Rows { number, selected, mesh, alpha: alpha.as_ref(), scale };
+        let tables = ModelTables { number, selected, mesh, alpha: alpha.as_ref(), scale };
         let is_contacts = self.options.product == Product::Contacts;
         let table = self.table()?;
-        if is_contacts { rows.write_contacts(table) } else { rows.write_tetrahedra(table) }
+        if is_contacts { tables.write_contacts(table) } else { tables.write_tetrahedra(table) }
     }
 
     /// Measures atoms as balls, and writes rows of their cells or contacts.
@@ -161,12 +162,7 @@ impl Job<'_> {
         started: Instant,
     ) -> Result<Report> {
         let mut report = Report::new(molecule.number, molecule.selected.points().len());
-        let product = self.options.product;
-        match product {
-            Product::ContactAreas => molecule.write_contacts(balls, &mut report, || self.table())?,
-            Product::Pockets => molecule.write_pockets(balls, &mut report, || self.table())?,
-            _ => molecule.write_cells(balls, &mut report, || self.table())?,
-        }
+        molecule.write(self.options.product, balls, &mut report, || self.table())?;
         report.times.triangulate = started.elapsed();
         Ok(report)
     }
@@ -174,11 +170,9 @@ impl Job<'_> {
     /// The line with the names of the columns.
     fn columns(&self) -> String {
         match (self.options.product, &self.options.balls) {
-            (Product::ContactAreas, Some(balls)) => balls.contact_columns(),
-            (Product::Cells, Some(balls)) => balls.cell_columns(),
-            (Product::Pockets, Some(balls)) => balls.pocket_columns(),
-            (Product::Contacts, _) => CONTACTS.to_string(),
-            _ => TETRAHEDRA.to_string(),
+            (product, Some(balls)) => balls.columns(product),
+            (Product::Contacts, None) => CONTACTS.to_string(),
+            (_, None) => TETRAHEDRA.to_string(),
         }
     }
 

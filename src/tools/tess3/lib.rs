@@ -14,6 +14,7 @@ mod method;
 mod names;
 mod number;
 mod radius;
+mod rows;
 mod selection;
 mod spheres;
 pub mod sweep;

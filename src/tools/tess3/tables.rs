@@ -7,9 +7,9 @@ use std::io::Write;
 
 use super::alpha::AlphaComplex;
 use super::names::AtomNames;
-use super::number::write_number;
+use super::rows::{Rows, distance};
 use super::spheres::measure;
-use spmesh_core::error::{Error, Result};
+use spmesh_core::error::Result;
 use spmesh_geometry::delaunay3::Tetrahedralization;
 use spmesh_geometry::predicates::Point3;
 use spmesh_io::source::structure::Selected;
@@ -21,11 +21,8 @@ pub(super) const TETRAHEDRA: &str = "model\tatom1\tatom2\tatom3\tatom4\tserial1\
 /// Columns of the table of contacts.
 pub(super) const CONTACTS: &str = "model\tatom1\tatom2\tserial1\tserial2\tdistance\ttetrahedra\n";
 
-/// Bytes of rows that are buffered before they are written.
-const ROWS_LEN: usize = 1 << 16;
-
-/// The data of the rows of one model.
-pub(super) struct Rows<'s> {
+/// The data of the tables of one model.
+pub(super) struct ModelTables<'s> {
     /// Number that the file gives it.
     pub(super) number: i64,
     /// The atoms that the mesh was made of.
@@ -37,7 +34,7 @@ pub(super) struct Rows<'s> {
     pub(super) scale: f64,
 }
 
-impl<'s> Rows<'s> {
+impl<'s> ModelTables<'s> {
     /// Writes a row per tetrahedron: its atoms, the radius of the circumscribed sphere, and the volume.
     ///
     /// Memory: 16 bytes per tetrahedron, and the names of the atoms.
@@ -53,11 +50,11 @@ impl<'s> Rows<'s> {
         for row in rows {
             table.start_row(&row)?;
             let measure = measure(row.map(|index| self.point(index)));
-            table.number(measure.circumradius * self.scale)?;
-            table.number(measure.volume * self.scale.powi(3))?;
-            table.end_row()?;
+            table.rows.number(measure.circumradius * self.scale)?;
+            table.rows.number(measure.volume * self.scale.powi(3))?;
+            table.rows.end()?;
         }
-        table.finish()
+        table.rows.finish()
     }
 
     /// Writes a row per edge: its atoms, their distance, and the number of tetrahedra around it.
@@ -83,13 +80,11 @@ impl<'s> Rows<'s> {
         let mut table = Table::new(output, self);
         for (row, tetrahedra) in rows {
             table.start_row(&row)?;
-            let [a, b] = row.map(|index| self.point(index));
-            let square: f64 = (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum();
-            table.number(square.sqrt() * self.scale)?;
-            table.count(tetrahedra)?;
-            table.end_row()?;
+            table.rows.number(distance(row.map(|index| self.point(index))) * self.scale)?;
+            table.rows.integer(tetrahedra)?;
+            table.rows.end()?;
         }
-        table.finish()
+        table.rows.finish()
     }
 
     /// Indices in the selection, increasing, of vertices of the mesh.
@@ -104,57 +99,24 @@ impl<'s> Rows<'s> {
     }
 }
 
-/// A buffer of rows.
+/// Rows of atoms by their names.
 struct Table<'t, W> {
-    output: &'t mut W,
     number: i64,
     selected: &'t Selected<'t>,
     names: AtomNames,
-    text: Vec<u8>,
+    rows: Rows<'t, W>,
 }
 
 impl<'t, W: Write> Table<'t, W> {
-    fn new(output: &'t mut W, rows: &Rows<'t>) -> Self {
-        let Rows { number, selected, .. } = *rows;
-        Table { output, number, selected, names: AtomNames::new(selected), text: Vec::new() }
+    fn new(output: &'t mut W, of: &ModelTables<'t>) -> Self {
+        let ModelTables { number, selected, .. } = *of;
+        Table { number, selected, names: AtomNames::new(selected), rows: Rows::new(output) }
     }
 
     /// Model, names and serial numbers of atoms.
     fn start_row(&mut self, atoms: &[u32]) -> Result<()> {
-        write!(self.text, "{}", self.number).map_err(write_error)?;
-        for &index in atoms {
-            self.text.push(b'\t');
-            self.text.extend_from_slice(self.names.name(index as usize).as_bytes());
-        }
-        for &index in atoms {
-            let serial = self.selected.label(index as usize);
-            write!(self.text, "\t{serial}").map_err(write_error)?;
-        }
-        Ok(())
+        self.rows.start(self.number)?;
+        atoms.iter().for_each(|&index| self.rows.field(self.names.name(index as usize)));
+        atoms.iter().try_for_each(|&index| self.rows.integer(self.selected.label(index as usize)))
     }
-
-    fn number(&mut self, value: f64) -> Result<()> {
-        self.text.push(b'\t');
-        write_number(&mut self.text, value).map_err(write_error)
-    }
-
-    fn count(&mut self, count: u32) -> Result<()> {
-        write!(self.text, "\t{count}").map_err(write_error)
-    }
-
-    fn end_row(&mut self) -> Result<()> {
-        self.text.push(b'\n');
-        if self.text.len() >= ROWS_LEN { self.finish() } else { Ok(()) }
-    }
-
-    /// Writes the buffered rows to the output.
-    fn finish(&mut self) -> Result<()> {
-        self.output.write_all(&self.text).map_err(write_error)?;
-        self.text.clear();
-        Ok(())
-    }
-}
-
-pub(super) fn write_error(cause: std::io::Error) -> Error {
-    Error::io("writing the table", cause)
 }

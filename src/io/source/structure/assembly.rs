@@ -41,17 +41,19 @@ impl Structure {
         self.check_count(&all)?;
         let models = std::mem::take(&mut self.models);
         let by_subchain: Vec<_> = models.iter().map(|model| self.by_subchain(model)).collect();
+        let greatest: Vec<u64> = models.iter().map(greatest_serial).collect();
         let mut made: Vec<Model> =
             models.iter().map(|model| Model { number: model.number, ..Model::default() }).collect();
         let mut counts: Map<Name, u64> = Map::default();
         let chains_of = self.chains_of_subchains();
         for copies in &all {
             let chains = self.name_chains(copies, &chains_of, &mut counts);
-            for ((model, by_subchain), made) in models.iter().zip(&by_subchain).zip(&mut made) {
+            let sources = models.iter().zip(&by_subchain).zip(&greatest);
+            for (((model, by_subchain), &greatest), made) in sources.zip(&mut made) {
                 let lists = copies.subchains.iter().filter_map(|subchain| by_subchain.get(subchain));
                 let mut atoms: Vec<u32> = lists.flatten().copied().collect();
                 atoms.sort_unstable();
-                self.copy_atoms(model, &atoms, &copies.motion, &chains, made)?;
+                self.copy_atoms(model, &atoms, &copies.motion, &chains, greatest, made)?;
             }
         }
         made.retain(|model| !model.atoms.is_empty());
@@ -160,16 +162,16 @@ impl Structure {
         chains
     }
 
-    /// Adds copies of these atoms of `model` to `made`.
+    /// Adds copies of these atoms of `model`, whose greatest serial number is given, to `made`.
     fn copy_atoms(
         &mut self,
         model: &Model,
         atoms: &[u32],
         motion: &Motion,
         chains: &Chains,
+        greatest: u64,
         made: &mut Model,
     ) -> Result<()> {
-        let greatest = model.atoms.iter().map(|atom| atom.serial).max().unwrap_or(0);
         let mut residues: Map<u32, u32> = Map::default();
         for &index in atoms {
             let atom = model.atoms[index as usize];
@@ -213,4 +215,8 @@ impl Structure {
         }
         Err(Error::malformed("an operator of the assembly moves atoms too far").of_input(&self.name))
     }
+}
+
+fn greatest_serial(model: &Model) -> u64 {
+    model.atoms.iter().map(|atom| atom.serial).max().unwrap_or(0)
 }

@@ -11,11 +11,11 @@ use std::io::Write;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-use super::Report;
+use self::pockets::PocketTable;
+use super::{Product, Report};
 use groups::Groups;
-use pockets::PocketTable;
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::balls::{self, Balls, Cells, measure};
+use spmesh_geometry::balls::{Balls, Cells, measure, pockets};
 use spmesh_io::source::structure::{Radii, Selected};
 use tables::{CellTable, ContactTable};
 
@@ -120,79 +120,47 @@ impl Molecule<'_> {
         Ok(self.radii(options, report)?.into_iter().map(|radius| radius * radius).collect())
     }
 
-    fn measure(&self, options: &BallOptions, wants_contacts: bool, report: &mut Report) -> Result<Cells> {
+    /// Measures the balls, and writes the rows of a table: of cells, of contacts, or of pockets. The output
+    /// is opened when they are measured.
+    ///
+    /// # Errors
+    /// If an atom has no radius; those of measuring and writing.
+    pub(super) fn write<'o, W: Write + 'o>(
+        &self,
+        product: Product,
+        options: &BallOptions,
+        report: &mut Report,
+        open: impl FnOnce() -> Result<&'o mut W>,
+    ) -> Result<()> {
         let radii = self.radii(options, report)?;
         let balls = Balls { centres: self.selected.points(), radii: &radii };
-        let cells = measure(balls, wants_contacts.then_some(0.0), options.threads)?;
         report.is_of_cells = true;
         report.vertices = report.atoms;
-        report.without_cell = cells.cells.iter().filter(|cell| cell.volume == 0.0).count() as u64;
-        Ok(cells)
-    }
-
-    /// Writes a row for each atom, residue or chain: the area and the volume of its cells. The output is
-    /// opened when they are measured.
-    ///
-    /// # Errors
-    /// If an atom has no radius; those of writing.
-    pub(super) fn write_cells<'o, W: Write + 'o>(
-        &self,
-        options: &BallOptions,
-        report: &mut Report,
-        open: impl FnOnce() -> Result<&'o mut W>,
-    ) -> Result<()> {
-        let cells = self.measure(options, false, report)?;
+        if product == Product::Pockets {
+            let found = pockets(balls)?;
+            let groups = Groups::new(self.selected, options.level);
+            return PocketTable { molecule: self, level: options.level, groups: &groups }
+                .write(&found, open()?);
+        }
+        let is_contacts = product == Product::ContactAreas;
+        let Cells { cells, contacts } = measure(balls, is_contacts.then_some(0.0), options.threads)?;
+        report.without_cell = cells.iter().filter(|cell| cell.volume == 0.0).count() as u64;
         let groups = Groups::new(self.selected, options.level);
-        CellTable { molecule: self, options, groups: &groups }.write(&cells.cells, open()?)
-    }
-
-    /// Writes a row for each pocket and void, or for what is around them.
-    ///
-    /// # Errors
-    /// As [`Molecule::write_cells`].
-    pub(super) fn write_pockets<'o, W: Write + 'o>(
-        &self,
-        options: &BallOptions,
-        report: &mut Report,
-        open: impl FnOnce() -> Result<&'o mut W>,
-    ) -> Result<()> {
-        let radii = self.radii(options, report)?;
-        let found = balls::pockets(Balls { centres: self.selected.points(), radii: &radii })?;
-        report.is_of_cells = true;
-        report.vertices = report.atoms;
-        let groups = Groups::new(self.selected, options.level);
-        PocketTable { molecule: self, level: options.level, groups: &groups }.write(&found, open()?)
-    }
-
-    /// Writes a row for each pair that shares a face.
-    ///
-    /// # Errors
-    /// As [`Molecule::write_cells`].
-    pub(super) fn write_contacts<'o, W: Write + 'o>(
-        &self,
-        options: &BallOptions,
-        report: &mut Report,
-        open: impl FnOnce() -> Result<&'o mut W>,
-    ) -> Result<()> {
-        let cells = self.measure(options, true, report)?;
-        let groups = Groups::new(self.selected, options.level);
-        ContactTable { molecule: self, options, groups: &groups }.write(&cells.contacts, open()?)
+        if is_contacts {
+            ContactTable { molecule: self, options, groups: &groups }.write(&contacts, open()?)
+        } else {
+            CellTable { molecule: self, options, groups: &groups }.write(&cells, open()?)
+        }
     }
 }
 
 impl BallOptions {
-    /// The line with the names of the columns of cells.
-    pub(super) fn cell_columns(&self) -> String {
-        tables::cell_columns(self)
-    }
-
-    /// The line with the names of the columns of pockets.
-    pub(super) fn pocket_columns(&self) -> String {
-        pockets::columns(self)
-    }
-
-    /// The line with the names of the columns of contacts.
-    pub(super) fn contact_columns(&self) -> String {
-        tables::contact_columns(self)
+    /// The line with the names of the columns of a table.
+    pub(super) fn columns(&self, product: Product) -> String {
+        match product {
+            Product::Pockets => self::pockets::columns(self),
+            Product::ContactAreas => tables::contact_columns(self),
+            _ => tables::cell_columns(self),
+        }
     }
 }

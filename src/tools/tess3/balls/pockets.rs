@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::io::Write;
 
 use super::groups::Groups;
-use super::tables::Rows;
 use super::{BallOptions, Level, Molecule};
+use crate::rows::Rows;
 use spmesh_core::error::Result;
 use spmesh_geometry::balls::Pocket;
 

@@ -5,13 +5,9 @@ use std::io::Write;
 
 use super::groups::{Groups, Key, key};
 use super::{BallOptions, Level, Molecule};
-use crate::number::write_number;
-use crate::tables::write_error;
+use crate::rows::{Rows, distance};
 use spmesh_core::error::Result;
 use spmesh_geometry::balls::{Cell, Contact, Contacts};
-
-/// Bytes of rows that are buffered before they are written.
-const ROWS_LEN: usize = 1 << 16;
 
 pub(super) fn cell_columns(options: &BallOptions) -> String {
     let mut columns = vec!["model", options.level.name()];
@@ -26,48 +22,6 @@ pub(super) fn contact_columns(options: &BallOptions) -> String {
     let rest =
         if options.level == Level::Atom { "serial1\tserial2\tdistance\tarea" } else { "contacts\tarea" };
     format!("model\t{name}1\t{name}2\t{rest}\n")
-}
-
-/// Rows that are written in pieces.
-pub(super) struct Rows<'o, W> {
-    output: &'o mut W,
-    text: Vec<u8>,
-}
-
-impl<'o, W: Write> Rows<'o, W> {
-    pub(super) fn new(output: &'o mut W) -> Self {
-        Rows { output, text: Vec::new() }
-    }
-
-    /// Starts a row with the number of the model.
-    pub(super) fn start(&mut self, model: i64) -> Result<()> {
-        write!(self.text, "{model}").map_err(write_error)
-    }
-
-    pub(super) fn field(&mut self, text: &str) {
-        self.text.push(b'\t');
-        self.text.extend_from_slice(text.as_bytes());
-    }
-
-    pub(super) fn integer(&mut self, value: impl std::fmt::Display) -> Result<()> {
-        write!(self.text, "\t{value}").map_err(write_error)
-    }
-
-    pub(super) fn number(&mut self, value: f64) -> Result<()> {
-        self.text.push(b'\t');
-        write_number(&mut self.text, value).map_err(write_error)
-    }
-
-    pub(super) fn end(&mut self) -> Result<()> {
-        self.text.push(b'\n');
-        if self.text.len() >= ROWS_LEN { self.finish() } else { Ok(()) }
-    }
-
-    pub(super) fn finish(&mut self) -> Result<()> {
-        self.output.write_all(&self.text).map_err(write_error)?;
-        self.text.clear();
-        Ok(())
-    }
 }
 
 /// The table of cells.
@@ -168,9 +122,8 @@ impl ContactTable<'_> {
 
     /// Distance of the centres, in Å.
     fn distance(&self, contact: &Contact) -> f64 {
-        let [p, q] = contact.balls.map(|ball| self.molecule.selected.points()[ball as usize]);
-        let square: f64 = (0..3).map(|axis| (p[axis] - q[axis]).powi(2)).sum();
-        square.sqrt() * self.molecule.scale
+        distance(contact.balls.map(|ball| self.molecule.selected.points()[ball as usize]))
+            * self.molecule.scale
     }
 
     fn row_of_atoms<W: Write>(&self, contact: &Contact, rows: &mut Rows<'_, W>) -> Result<()> {
