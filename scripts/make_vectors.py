@@ -73,13 +73,13 @@ class Vector:
         return self
 
     def header(self, kind, grid=None, dims=2, elevation=0, bounds=None, points=None, tree=None, region=None,
-               chunked=False, wkt=None, geokeys=None, producer="vector", compressed=False, attributes=(), constrained=None,
+               chunked=False, wkt=None, geokeys=None, producer="vector", compressed=False, attributes=(), constrained=None, weighted=None,
                edit=None, raw=None):
         """`grid` is scale and offset; `raw` overrides fields, by their names below, and payloads of records,
         by their tags, with bytes, and adds a "tail" behind the records; `edit` changes the list of records, which are pairs of tag and payload."""
         raw = raw or {}
         self.grid, self.dims, self.axes, self.attributes = grid, dims, dims + elevation, attributes
-        records = self.records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, constrained, producer)
+        records = self.records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, constrained, weighted, producer)
         records = [(tag, [(raw[tag.decode()], "damaged")] if tag.decode() in raw else payload) for tag, payload in records]
         edit = edit or (lambda records: records)
         records = [(tag, [(payload, "payload")] if isinstance(payload, bytes) else payload) for tag, payload in edit(records)]
@@ -128,10 +128,12 @@ class Vector:
         self.say(*["attribute " + attribute.text() for attribute in attributes])
         if constrained is not None:
             self.say("constrained %s %s" % (yes[constrained[0]], number(constrained[1])))
+        if weighted is not None:
+            self.say("weighted " + number(weighted))
         self.say('producer "%s"' % producer)
 
     @staticmethod
-    def records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, constrained, producer):
+    def records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, constrained, weighted, producer):
         """The records of the header in the order of the text: tags, and payloads as bytes with comments."""
         floats = lambda values: struct.pack("<%dd" % len(values), *map(float, values))
         records = []
@@ -156,6 +158,8 @@ class Vector:
         if constrained is not None:
             is_cut, kill = constrained
             records.append((b"cons", [(bytes([is_cut]), "flags"), (floats([kill]), "kill length")]))
+        if weighted is not None:
+            records.append((b"wght", [(floats([weighted]), "greatest weight")]))
         if producer:
             records.append((b"prod", [(producer.encode(), "producer")]))
         return records
@@ -700,6 +704,45 @@ def failing_constrained():
     yield "patch-after-open", "may stand here", patch([], start().open(0))
 
 
+WEIGHT = Attribute("weight", "f64", 1)
+WEIGHTED = dict(dims=3, grid=(("0.5",) * 3, ("0",) * 3), attributes=[CLASS, WEIGHT], weighted="2.25")
+# Corners, and a point that is hidden among them.
+HEAVY, HIDDEN = [([n], ["2.25"]) for n in range(4)], ([4], ["-7.5"])
+
+
+def passing_weights():
+    """Weighted points of space."""
+    yield "weights-points", "Points with weights, the greatest below the limit", Vector(**WEIGHTED).points(
+        (0, 0, 0), (1, 0, 0), rows=[([1], ["2.125"]), HIDDEN]).rows(([1], ["2.125"]), HIDDEN).end(2)
+    yield "weights-mesh", "A vertex that is hidden, in an earlier patch than the tetrahedron around it", Vector(
+        "tetrahedral mesh", **WEIGHTED).patch(0, [(1, 1, 1)], (), [], (0,), rows=[HIDDEN]).rows(HIDDEN).patch(
+        1, [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)], (), [(0, 1, 2, 3)], (0, 1, 2, 3), rows=HEAVY).rows(*HEAVY).end(
+        5, vertices=5, simplices=1)
+    yield "weights-none", "No points, so no weights", Vector(**WEIGHTED, points=0).end()
+
+
+def failing_weights():
+    """Weights that break a rule."""
+    of = lambda payload: Vector(**WEIGHTED, raw=dict(wght=payload)).end()
+    limit = lambda value: Vector(**{**WEIGHTED, "weighted": value}).end()
+    instead = lambda *attributes, **more: Vector(**{**WEIGHTED, "attributes": attributes, **more}).end()
+    yield "weights-short", "7 bytes, expected 8", of(bytes(7))
+    yield "weights-long", "9 bytes, expected 8", of(bytes(9))
+    yield "weights-limit-infinite", "the greatest weight inf", limit("inf")
+    yield "weights-limit-nan", "the greatest weight", limit("nan")
+    yield "weights-plane", "of 2 dimensions", instead(WEIGHT, dims=2, elevation=1)
+    yield "weights-partial", "weights in a partial tetrahedral mesh", Vector(
+        "partial tetrahedral mesh", **WEIGHTED, region=(0, 0, 0, 4, 4, 4)).end()
+    yield "weights-without", 'need an attribute "weight"', instead()
+    yield "weights-other", 'need an attribute "weight"', instead(CLASS)
+    yield "weights-type", 'need an attribute "weight"', instead(Attribute("weight", "f32", 1))
+    yield "weights-components", 'need an attribute "weight"', instead(Attribute("weight", "f64", 2))
+    row = lambda value: Vector(**WEIGHTED).points((0, 0, 0), rows=[([1], [value])]).rows(([1], [value])).end(1)
+    yield "weight-above", "weight 2.5, expected", row("2.5")
+    yield "weight-infinite", "weight -inf, expected", row("-inf")
+    yield "weight-nan", "weight", row("nan")
+
+
 def passing():
     """Name, title and vector of each stream that is well-formed."""
     yield "points-empty", "No points, nothing known but their number", Vector(
@@ -717,6 +760,7 @@ def passing():
     yield from passing_compressed()
     yield from passing_attributes()
     yield from passing_constrained()
+    yield from passing_weights()
     yield "points-geokeys", "A CRS in GeoTIFF records, one of them empty", Vector(
         grid=HALF, elevation=1,
         geokeys=[bytes.fromhex("01000100000001000004000001000100"), b"", b"WGS 84|\0"]).points((1, 2, 3)).end(1)
@@ -1600,7 +1644,7 @@ def files():
         yield "pass/%s.spm" % name, vector.bytes()
         entry = dict(name=name, file="pass/%s.spm" % name, twin="pass/%s.txt" % name, what=title)
         manifest.append(dict(entry, **{"class": "well-formed", "exit_code": 0}))
-    for source in (failing_headers(), failing_streams(), failing_attributes(), failing_constrained()):
+    for source in (failing_headers(), failing_streams(), failing_attributes(), failing_constrained(), failing_weights()):
         for name, words, vector in source:
             who = " by a reader with memory of cells and vertices" if name in NEED_MEMORY else ""
             too_new = name in TOO_NEW

@@ -152,7 +152,7 @@ class Header:
         self.has_knots = self.kind in ("configurations", "splines")
         self.is_mesh = self.kind not in ("points", "points in 4 dimensions") and not self.has_knots
         self.scale = self.offset = self.tree = self.bounds = self.region = self.wkt = self.geokeys = None
-        self.producer, self.attributes, self.constrained = "", [], None
+        self.producer, self.attributes, self.constrained, self.weighted = "", [], None, None
         for tag, payload in records.items():
             RECORDS[tag](self, payload)
         require(self.scale or not self.is_integer, 'no header record "GRID", which i32 coordinates need')
@@ -166,6 +166,7 @@ class Header:
             )
         self.check_bounds()
         self.check_region()
+        self.check_weights()
         require(
             not self.chunked or (self.tree and not self.is_mesh),
             "only points with a finalization tree can be chunked",
@@ -247,6 +248,36 @@ class Header:
         require(0 <= kill < math.inf, "kill length %r, expected a finite number from 0 on" % kill)
         require(flags or not kill, "a kill length, but a border that is not cut")
         self.constrained = bool(flags), kill
+
+    def read_weighted(self, payload):
+        (greatest,) = self.fields("wght", "d", payload)
+        require(
+            self.kind in ("points", "tetrahedral mesh") and self.dims == 3,
+            "weights in a %s of %d dimensions" % (self.kind, self.dims),
+        )
+        require(math.isfinite(greatest), "the greatest weight %r, expected a finite number" % greatest)
+        self.weighted = greatest
+
+    def check_weights(self):
+        """Finds the attribute of the weights, and its place in a row."""
+        at = 0
+        for attribute in self.attributes:
+            is_plain = attribute.type == "f64" and (attribute.components, attribute.scale, attribute.unknown) == (1, None, None)
+            if attribute.name == "weight" and is_plain:
+                self.weight_at = at
+                return
+            at += attribute.row.size
+        message = 'weights need an attribute "weight": one f64 without scale and unknown number'
+        require(self.weighted is None, message)
+
+    def check_rows(self, rows):
+        """Checks the weights of points."""
+        if self.weighted is None:
+            return
+        for at in range(self.weight_at, len(rows), self.row_length()):
+            (weight,) = struct.unpack_from("<d", rows, at)
+            is_sound = math.isfinite(weight) and weight <= self.weighted
+            require(is_sound, "weight %r, expected a finite number up to %r" % (weight, self.weighted))
 
     def row_length(self):
         return sum(attribute.row.size for attribute in self.attributes)
@@ -336,6 +367,7 @@ RECORDS = {
     b"cGEO": Header.read_geokeys,
     b"attr": Header.read_attributes,
     b"cons": Header.read_constrained,
+    b"wght": Header.read_weighted,
     b"prod": Header.read_producer,
 }
 
@@ -1029,6 +1061,7 @@ class Stream:
             len(rows) == count * length,
             "%d bytes of attributes, expected %d rows of %d bytes" % (len(rows), count, length),
         )
+        self.header.check_rows(rows)
         self.waiting, self.where = None, where
         self.text.take_rows(rows)
         readers[waiting](payload)
@@ -1462,6 +1495,8 @@ class Text:
         if header.constrained:
             is_cut, kill = header.constrained
             lines.append("constrained %s %s" % (yes[is_cut], decimal(kill)))
+        if header.weighted is not None:
+            lines.append("weighted " + decimal(header.weighted))
         self.plane = self.plane_grid(header) if header.is_integer else decimals
         lines.append("producer " + json.dumps(header.producer, ensure_ascii=False))
         for line in lines:

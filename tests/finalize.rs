@@ -18,7 +18,16 @@ use sets::*;
 
 fn options(leaves: Leaves, order: Order) -> Options {
     let budget = Budget::of_engine(64 << 20).expect("enough");
-    Options { leaves, order, compress: false, thin: None, budget, temp_dir: None, spooling: Spooling::Auto }
+    Options {
+        leaves,
+        order,
+        compress: false,
+        thin: None,
+        budget,
+        temp_dir: None,
+        spooling: Spooling::Auto,
+        weighted: None,
+    }
 }
 
 fn collapsed(cell_points: u64) -> Leaves {

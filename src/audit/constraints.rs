@@ -164,8 +164,8 @@ impl Constraints {
             match self.segments[segment as usize].iter().position(|&end| end == at) {
                 Some(end) => found[segment as usize][end] = true,
                 None => {
-                    let gap = gaps.entry(segment).or_insert(Corner { id, at });
-                    *gap = if gap.id <= id { *gap } else { Corner { id, at } };
+                    let gap = gaps.entry(segment).or_insert(Corner::new(id, at));
+                    *gap = if gap.id <= id { *gap } else { Corner::new(id, at) };
                 }
             }
         }

@@ -9,11 +9,24 @@ use spmesh_model::bounds::Point;
 pub(super) struct Corner<const D: usize> {
     pub(super) id: u64,
     pub(super) at: [f64; D],
+    /// 0 without weights.
+    pub(super) weight: f64,
 }
 
 impl<const D: usize> Corner<D> {
     pub(super) fn of<S>(vertex: &Vertex<S>) -> Self {
-        Corner { id: vertex.id, at: std::array::from_fn(|axis| vertex.at[axis]) }
+        let Vertex { id, at, weight, .. } = *vertex;
+        Corner { id, at: std::array::from_fn(|axis| at[axis]), weight }
+    }
+
+    /// A vertex without a weight.
+    pub(super) fn new(id: u64, at: [f64; D]) -> Self {
+        Corner { id, at, weight: 0.0 }
+    }
+
+    /// Position and weight.
+    pub(super) fn weighted(self) -> ([f64; D], f64) {
+        (self.at, self.weight)
     }
 
     /// The position as a point for messages.

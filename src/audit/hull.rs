@@ -146,13 +146,13 @@ impl Hull {
 
     /// The lexicographically smallest corner, of those the one with the smallest id.
     fn first(&self) -> Option<Corner> {
-        let corners = self.corners.iter().map(|(&id, &at)| Corner { id, at });
+        let corners = self.corners.iter().map(|(&id, &at)| Corner::new(id, at));
         corners.min_by(|p, q| lexicographic(p.at, q.at).then(p.id.cmp(&q.id)))
     }
 
     /// A vertex of the boundary.
     pub(super) fn corner(&self, id: u64) -> Corner {
-        Corner { id, at: self.corners[&id] }
+        Corner::new(id, self.corners[&id])
     }
 }
 
@@ -164,8 +164,7 @@ mod tests {
     fn walk(times: usize) -> Result<(), Violation> {
         let triangle = [[10.0, -6.0], [0.0, 11.0], [-10.0, -6.0]];
         let (mut hull, mut edges) = (Hull::default(), OpenEdges::new());
-        let corners: Vec<Corner> =
-            (0..3 * times).map(|i| Corner { id: i as u64, at: triangle[i % 3] }).collect();
+        let corners: Vec<Corner> = (0..3 * times).map(|i| Corner::new(i as u64, triangle[i % 3])).collect();
         for (i, &corner) in corners.iter().enumerate() {
             hull.add(corner);
             edges.meet([corner.id, corners[(i + 1) % corners.len()].id], corner);

@@ -152,15 +152,23 @@ impl Audit {
         Ok(Audit { state, given, ledger, violation: None, open_max: 0 })
     }
 
-    /// Checks the next event.
+    /// Checks the next event of a stream without weights.
     ///
     /// # Errors
     /// The first violation, which every later event gets too.
     pub fn event(&mut self, event: &Event) -> Result<(), Violation> {
+        self.event_with_rows(event, &[])
+    }
+
+    /// Checks the next event, with the rows of its points if the stream has attributes.
+    ///
+    /// # Errors
+    /// As [`Audit::event`].
+    pub fn event_with_rows(&mut self, event: &Event, rows: &[u8]) -> Result<(), Violation> {
         if let Some(violation) = &self.violation {
             return Err(violation.clone());
         }
-        let checked = self.check_given(event).and_then(|()| self.check(event));
+        let checked = self.check_given(event).and_then(|()| self.check(event, rows));
         self.open_max = self.open_max.max(self.width().1);
         checked.inspect_err(|violation| self.violation = Some(violation.clone()))
     }
@@ -176,7 +184,7 @@ impl Audit {
         }
     }
 
-    fn check(&mut self, event: &Event) -> Result<(), Violation> {
+    fn check(&mut self, event: &Event, rows: &[u8]) -> Result<(), Violation> {
         let ledger = &mut self.ledger;
         match (&mut self.state, event) {
             (State::Points(audit), Event::Points(points)) => audit.points(points, ledger),
@@ -190,7 +198,7 @@ impl Audit {
             (State::Mesh(audit), Event::End(totals)) => audit.end(totals, ledger),
             (State::Partial(audit), event) => audit.event(event, ledger),
             (State::PartialTetrahedra(audit), event) => audit.event(event, ledger),
-            (State::Tetrahedra(audit), Event::Patch(patch)) => audit.patch(patch, ledger),
+            (State::Tetrahedra(audit), Event::Patch(patch)) => audit.patch(patch, rows, ledger),
             (State::Tetrahedra(audit), Event::Labels(labels)) => audit.labels(labels, ledger),
             (State::Tetrahedra(audit), Event::End(totals)) => audit.end(totals, ledger),
             _ => unreachable!("the reader lets no such block into a stream of this kind"),

@@ -220,7 +220,7 @@ impl<S: FinalSimplices<D>, const D: usize> PartialAudit<S, D> {
             };
             let corner = |number: u32| {
                 let (id, at) = self.residual[number as usize];
-                Corner { id: id.unwrap_or_default(), at: std::array::from_fn(|axis| at[axis]) }
+                Corner::new(id.unwrap_or_default(), std::array::from_fn(|axis| at[axis]))
             };
             walls.push(Wall { numbers: *wall, corners: wall.map(corner), apex });
         }

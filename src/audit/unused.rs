@@ -20,6 +20,11 @@ impl<const D: usize> Unused<D> {
         self.corners.push(corner);
     }
 
+    /// Removes all of them.
+    pub(super) fn drain(&mut self) -> impl Iterator<Item = Corner<D>> {
+        self.corners.drain(..)
+    }
+
     /// Number of vertices.
     pub(super) fn len(&self) -> u64 {
         self.corners.len() as u64

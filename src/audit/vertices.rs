@@ -13,6 +13,8 @@ use spmesh_stream::Patch;
 pub(super) struct Vertex<S> {
     pub(super) id: u64,
     pub(super) at: Point,
+    /// 0 without weights.
+    pub(super) weight: f64,
     pub(super) star: S,
 }
 
@@ -32,7 +34,7 @@ impl<S: Copy + Default> Vertices<S> {
     pub(super) fn enter(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation> {
         self.local.clear();
         for (&at, id) in patch.new.iter().zip(patch.first_id..) {
-            self.local.push(Vertex { id, at, star: S::default() });
+            self.local.push(Vertex { id, at, weight: 0.0, star: S::default() });
         }
         for id in &patch.imported {
             let Some(vertex) = self.live.remove(id) else {
@@ -45,6 +47,11 @@ impl<S: Copy + Default> Vertices<S> {
         self.seen += patch.new.len() as u64;
         self.live_max = self.live_max.max(self.live.len() + self.local.len());
         Ok(())
+    }
+
+    /// Gives the new vertices of the patch their weights.
+    pub(super) fn weigh(&mut self, weights: impl Iterator<Item = f64>) {
+        self.local.iter_mut().zip(weights).for_each(|(vertex, weight)| vertex.weight = weight);
     }
 
     /// Passes the vertices that the patch finalizes to `finalize` and keeps the others.

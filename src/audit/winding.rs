@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn once_is_one_ahead_and_one_behind() {
-        let vertex = Vertex { id: 7, at: [1.0, 2.0, 3.0], star: () };
+        let vertex = Vertex { id: 7, at: [1.0, 2.0, 3.0], weight: 0.0, star: () };
         for (ahead, behind, is_once, is_at_most_once) in [
             (0, 0, false, true),
             (1, 0, false, true),

@@ -120,14 +120,20 @@ impl<const D: usize> Tool<D> {
     ///
     /// # Errors
     /// As its reduction and its merging, and if an input or the output cannot be opened.
-    pub(super) fn run(&self, flags: &Shared<D>, duplicates: Duplicates) -> anyhow::Result<()> {
+    pub(super) fn run(
+        &self,
+        flags: &Shared<D>,
+        duplicates: Duplicates,
+        weighted: bool,
+    ) -> anyhow::Result<()> {
         system::exit_at_abort(self.out_of_memory, ErrorKind::Memory.exit_code());
         let part = flags.part()?;
         check_apart(flags.inputs.iter().map(PathBuf::as_path), &[("--output", &flags.output)])?;
         endings::check(&flags.output, &[endings::STREAM])?;
         let started = Instant::now();
+        let options = Options { duplicates, part, weighted, ..Options::default() };
         let (output, stats) =
-            if flags.merge { self.merge(flags, part)? } else { self.reduce(flags, duplicates, part)? };
+            if flags.merge { self.merge(flags, part)? } else { self.reduce(flags, options)? };
         let output_bytes = output.bytes_written();
         output.commit()?;
         let seconds = started.elapsed().as_secs_f64();
@@ -138,22 +144,20 @@ impl<const D: usize> Tool<D> {
         Ok(())
     }
 
-    fn reduce(
-        &self,
-        flags: &Shared<D>,
-        duplicates: Duplicates,
-        part: Option<Part<D>>,
-    ) -> anyhow::Result<(Output, Stats)> {
+    fn reduce(&self, flags: &Shared<D>, options: Options<D>) -> anyhow::Result<(Output, Stats)> {
         let [input] = &flags.inputs[..] else {
             let message = "one stream of points at a time: spfinalize joins files (or use --merge)";
             return Err(Error::usage(message).into());
         };
         let output = Output::create(&flags.output, true)?;
         let reader = open_stream(input)?;
+        if reader.header().weighted.is_some() && !options.weighted {
+            notice(self.name, &flags.common, "the points have weights, which --weights takes into account");
+        }
         let mut progress = Progress::new(&flags.common, self.verb, reader.header().points);
         let threads = threads(flags.threads).get();
         let (memory, compress) = (flags.memory, flags.compression.of_stream());
-        let options = Options { duplicates, threads, part, memory, compress, ..Options::default() };
+        let options = Options { threads, memory, compress, ..options };
         Ok((self.reduce)(reader, output, &options, &mut |points| progress.set(points))?)
     }
 

@@ -75,5 +75,5 @@ const TOOL: Tool<2> = Tool {
 /// As [`spmesh_reduce::triangulate`] and [`spmesh_reduce::merge_triangles`], and if an input or the output
 /// cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    TOOL.run(&flags.shared, flags.duplicates.into())
+    TOOL.run(&flags.shared, flags.duplicates.into(), false)
 }

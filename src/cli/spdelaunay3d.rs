@@ -13,6 +13,8 @@ Examples:
   Print the counts of the run, and prove the result:
     spfinalize --octree cloud.las | spdelaunay3d --stats -o cloud.spm
     spinfo --audit cloud.spm
+  Balls, for example atoms with their radii: the dual of the power diagram:
+    spfinalize --octree --radii protor 1abc.cif | spdelaunay3d --weights -o 1abc.spm
   One tile of many, to be finished later or elsewhere:
     spfinalize --octree a.las b.las | spdelaunay3d --partial --region 0,0,-inf,50,50,inf -o tile7.spm
     spdelaunay3d --merge tile*.spm -o whole.spm
@@ -37,6 +39,11 @@ pub struct Flags {
     /// Treatment of coinciding points
     #[arg(long, value_enum, default_value_t = DuplicatesFlag::First, value_name = "POLICY")]
     duplicates: DuplicatesFlag,
+
+    /// Make the regular tetrahedralization, for points that have weights (spfinalize --radii or --weights). Of
+    /// coinciding points the heaviest is the vertex
+    #[arg(long, conflicts_with_all = ["partial", "merge"])]
+    weights: bool,
 }
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
@@ -73,5 +80,5 @@ const TOOL: Tool<3> = Tool {
 /// output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::give_back_large_blocks();
-    TOOL.run(&flags.shared, flags.duplicates.into())
+    TOOL.run(&flags.shared, flags.duplicates.into(), flags.weights)
 }

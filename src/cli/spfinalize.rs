@@ -3,6 +3,7 @@
 mod areas;
 mod figures;
 mod water;
+mod weights;
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -26,6 +27,7 @@ use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_finalize::{
     AddedPoints, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Passes, Selected, Spooling,
+    Weighed,
 };
 use spmesh_io::detect::SPFINALIZE;
 use spmesh_io::source::{
@@ -35,6 +37,7 @@ use spmesh_lines::{Changes, Levels, Target, Water};
 use spmesh_model::bounds::Point;
 use spmesh_model::network::Network;
 use water::WaterFlags;
+use weights::{Weighing, WeightFlags};
 
 const TOOL: &str = "spfinalize";
 
@@ -58,6 +61,8 @@ Examples:
       spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
   Intensities, classes and times of the points along with them:
       spfinalize --attributes intensity,classification,gps_time tile.laz | spdelaunay2d -o tile.spm
+  Atoms with their radii, for the tetrahedra that are dual to their power diagram:
+      spfinalize --octree --radii protor 1abc.cif | spdelaunay3d --weights -o 1abc.spm
   A coordinate reference system that the files state wrongly or not at all, with one for heights:
       spfinalize --crs EPSG:25832+7837 tiles/*.laz | spdelaunay2d -o ground.spm
   Points of space from compressed text:
@@ -188,6 +193,9 @@ pub struct Flags {
 
     #[command(flatten)]
     water: WaterFlags,
+
+    #[command(flatten)]
+    weights: WeightFlags,
 }
 
 /// When decoded points are kept for later passes.
@@ -204,18 +212,20 @@ enum Spool {
 /// Everything that reading, finalizing and writing fail with.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
-    let options = flags.options()?;
+    let mut options = flags.options()?;
+    let weighing = flags.weights.load()?;
     flags.lines.check(!flags.water.files().is_empty())?;
     // Fail before the work if the output cannot be created.
     let mut output = Output::create(&flags.output, true)?;
     let paths = flags.paths()?;
     let inputs = paths.iter().chain(&flags.lof).chain(flags.beside()).map(PathBuf::as_path);
+    let inputs = inputs.chain(flags.weights.file());
     let mut outputs = vec![("--output", flags.output.as_path())];
     outputs.extend(flags.lines.report.as_ref().map(|report| ("--report", report.as_path())));
     check_apart(inputs, &outputs)?;
     let report = flags.lines.create_report()?;
     endings::check(&flags.output, &[endings::STREAM])?;
-    let input = Input::open(&paths, &flags.source_options()?)?;
+    let input = Input::open(&paths, &flags.source_options(weighing.as_ref())?)?;
     for message in input.notices() {
         notice(TOOL, &flags.common, message);
     }
@@ -236,6 +246,12 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let selected = Selected::new(&input, &areas);
     // Without polygons, no point takes a way round.
     let points: &dyn Passes = if areas.keep_all() { &input } else { &selected };
+    let weighed = weighing.as_ref().map(|weighing| Weighed::new(points, &weighing.source)).transpose()?;
+    if let Some(weighed) = &weighed {
+        let named = |error: Error| error.of_input(input.name());
+        options.weighted = Some(weighed.weighted(&mut watch).map_err(named)?);
+    }
+    let points: &dyn Passes = weighed.as_ref().map_or(points, |weighed| weighed);
     let stats = spmesh_finalize::run_with(points, &added, &options, &mut watch, &mut output)?;
     drop(watch);
     let has_water = !flags.water.files().is_empty();
@@ -295,6 +311,7 @@ impl Flags {
                 Spool::Always => Spooling::Always,
                 Spool::Never => Spooling::Never,
             },
+            weighted: None,
         })
     }
 
@@ -323,11 +340,16 @@ impl Flags {
         self.threads.map_or_else(|| available_threads().get(), usize::from)
     }
 
-    fn source_options(&self) -> Result<SourceOptions> {
+    fn source_options(&self, weighing: Option<&Weighing>) -> Result<SourceOptions> {
+        let chosen = &self.attributes;
         Ok(SourceOptions {
             crs: self.crs.system()?,
             reader: &SPFINALIZE,
-            attributes: AttributeChoice::of_names(&self.attributes),
+            attributes: match weighing {
+                Some(weighing) => weighing.with_own(chosen),
+                None => AttributeChoice::of_names(chosen),
+            },
+            radii: weighing.and_then(|weighing| weighing.radii.clone()),
             filters: self.points.filters(),
             bounds: self.points.bounds,
             skip_invalid: self.points.skip_invalid,

@@ -131,7 +131,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     while let Some(event) = reader.next_event()? {
         // The rules of the stream come first: what breaks them is malformed, for an audit as for any reader.
         inventory.event(&event).map_err(|error| reader.locate(error))?;
-        if let Err(error) = proof.event(&event, &header) {
+        if let Err(error) = proof.event(&event, reader.rows(), &header) {
             if error.kind() != ErrorKind::Audit {
                 return Err(error.of_input(reader.name()).into());
             }
@@ -194,13 +194,18 @@ impl Proof {
                 format!("--count-violations goes with a tetrahedral mesh, not with {}", header.kind.name());
             return Err(Error::usage(message));
         }
+        if header.weighted.is_some() {
+            return Err(Error::usage("--count-violations takes no mesh with weights: --audit proves it"));
+        }
         Ok(Proof::Census(Box::default(), standard))
     }
 
-    fn event(&mut self, event: &Event, header: &Header) -> Result<()> {
+    fn event(&mut self, event: &Event, rows: &[u8], header: &Header) -> Result<()> {
         match self {
             Proof::None => Ok(()),
-            Proof::Audit(audit) => audit.event(event).map_err(|violation| violation.to_error(header)),
+            Proof::Audit(audit) => {
+                audit.event_with_rows(event, rows).map_err(|violation| violation.to_error(header))
+            }
             Proof::Diagram(audit) => audit.event(event),
             Proof::Configurations(audit) => audit.event(event),
             Proof::Census(census, _) => census.event(event).map_err(|violation| violation.to_error(header)),

@@ -320,13 +320,17 @@ impl Flags {
             _ => Product::Mesh,
         };
         let method = self.method.method()?;
-        if product == Product::Filtration && method.arithmetic != Arithmetic::Exact {
-            return Err(Error::usage("--filtration needs --arithmetic exact"));
-        }
         // A sweep has threads for its files.
         let threads = if self.out_dir.is_some() { 1 } else { self.threads() };
         let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
-        let balls = self.balls.options(self.filtration, threads)?;
+        let balls = self.balls.options(product, threads)?;
+        let has_weights = product == Product::Filtration || balls.is_some();
+        if has_weights && method.arithmetic != Arithmetic::Exact {
+            return Err(Error::usage("--filtration and --radii need --arithmetic exact"));
+        }
+        if product == Product::Mesh && balls.is_some() && self.alpha.is_some() {
+            return Err(Error::usage("--alpha does not go with --radii"));
+        }
         Ok(Options {
             selection: self.selection.selection(),
             assembly: self.selection.assembly().map(str::to_string),

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use super::constraints::Constrained;
 use super::coordinates::{Coordinates, is_grid};
 use super::kind::Kind;
+use super::weights::Weighted;
 use spmesh_core::limits::PRODUCER_LEN_MAX;
 use spmesh_model::attributes::Attributes;
 use spmesh_model::bounds::{Bounds, Region};
@@ -66,6 +67,9 @@ pub struct Header {
     /// How a triangle mesh is constrained; `None` if it is not. A program that makes a mesh from another
     /// either passes segments and sides on or states none.
     pub constrained: Option<Constrained>,
+    /// Whether points of space are weighted: a mesh is then the regular one. A program that makes a stream from
+    /// another either passes weights on or states none.
+    pub weighted: Option<Weighted>,
     /// Program and version that wrote the stream.
     pub producer: String,
 }
@@ -88,6 +92,7 @@ impl Header {
             crs: Crs::Unknown,
             attributes: Attributes::default(),
             constrained: None,
+            weighted: None,
             producer: concat!("spmesh ", env!("CARGO_PKG_VERSION")).to_string(),
         }
     }
@@ -142,6 +147,9 @@ impl Header {
         }
         if let Some(constrained) = self.constrained {
             constrained.check(self.kind)?;
+        }
+        if let Some(weighted) = self.weighted {
+            weighted.check(self)?;
         }
         if self.chunked && (self.kind != Kind::Points || self.tree.is_none()) {
             return Err("only points with a finalization tree can be chunked".into());

@@ -10,6 +10,7 @@ use super::coordinates::Coordinates;
 use super::header::{COUNT_UNKNOWN, Crs, Header, check_tree};
 use super::kind::Kind;
 use super::tag_rules::{TagBytes, check_tag, may_be_skipped, needs_newer};
+use super::weights::Weighted;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::HEADER_BODY_MAX;
 use spmesh_model::bounds::{Bounds, Region};
@@ -51,7 +52,7 @@ struct Row {
 const GRID: TagBytes = *b"GRID";
 
 /// All records that this version knows, in the order in which they are written.
-const ROWS: [Row; 9] = [
+const ROWS: [Row; 10] = [
     Row { tag: GRID, encode: encode_grid, decode: decode_grid },
     Row { tag: *b"BBOX", encode: encode_bounds, decode: decode_bounds },
     Row { tag: *b"TREE", encode: encode_tree, decode: decode_tree },
@@ -60,6 +61,7 @@ const ROWS: [Row; 9] = [
     Row { tag: *b"cGEO", encode: encode_geo_keys, decode: decode_geo_keys },
     Row { tag: *b"attr", encode: encode_attributes, decode: decode_attributes },
     Row { tag: *b"cons", encode: Constrained::encode, decode: Constrained::decode },
+    Row { tag: *b"wght", encode: Weighted::encode, decode: Weighted::decode },
     Row { tag: *b"prod", encode: encode_producer, decode: decode_producer },
 ];
 

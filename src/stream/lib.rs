@@ -15,6 +15,7 @@
 //!   reader alone cannot check.
 //! - A triangle mesh may be [`Constrained`]: [`Segment`]s are then chains of its edges, which the sides of
 //!   [`Patch`]es name.
+//! - Points of space may be [`Weighted`]: a mesh of them is a regular tetrahedralization.
 //! - [`ConfigurationSet`] and [`read_diagram4`] hold whole streams in memory, for consumers that need all at
 //!   once.
 //!
@@ -84,6 +85,7 @@ mod tag_rules;
 mod tail;
 mod tally;
 mod triangles;
+mod weights;
 mod write_configurations;
 mod writer;
 
@@ -112,6 +114,7 @@ pub use surface::check_surface;
 pub use tail::ends_with_end;
 pub use tally::Tally;
 pub use triangles::write_triangles;
+pub use weights::{Weighted, Weights};
 pub use write_configurations::{Content, configurations_header, write_configurations, write_content};
 pub use writer::StreamWriter;
 pub use writer::encode_points;

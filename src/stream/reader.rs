@@ -17,6 +17,7 @@ use super::header_code::{MAGIC, PREAMBLE_LEN, decode_preamble};
 use super::payload;
 use super::points4::{self, Points4};
 use super::tally::Tally;
+use super::weights::Weights;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_model::bounds::{Bounds, Point};
@@ -41,6 +42,7 @@ pub struct StreamReader<R: Read> {
     input: R,
     name: String,
     header: Header,
+    weights: Option<Weights>,
     payload: Vec<u8>,
     /// The rows of the points of the last event.
     rows: Vec<u8>,
@@ -78,6 +80,7 @@ impl<R: Read> StreamReader<R> {
         Ok(StreamReader {
             input,
             name,
+            weights: header.weights(),
             header,
             payload: Vec::new(),
             rows: Vec::new(),
@@ -209,11 +212,11 @@ impl<R: Read> StreamReader<R> {
         }
     }
 
-    /// Checks that the payload is as many rows.
+    /// Checks that the payload is as many rows, with weights as the header says.
     fn check_rows(&self, rows: usize) -> Result<()> {
         let (len, row_len) = (self.payload.len(), self.header.attributes.row_len());
         if len == rows * row_len {
-            return Ok(());
+            return self.weights.map_or(Ok(()), |weights| weights.check(&self.payload));
         }
         Err(Error::malformed(format!("{len} bytes of attributes, expected {rows} rows of {row_len} bytes")))
     }

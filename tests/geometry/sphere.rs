@@ -9,6 +9,33 @@ use spmesh_reference::sets::Random;
 
 type Corner = [i64; 3];
 
+/// A tetrahedron whose corners have weights.
+#[derive(Debug, Clone, Copy)]
+struct Weighted {
+    corners: [Corner; 4],
+    weights: [i64; 4],
+    /// No weight of any point is greater.
+    greatest: i64,
+}
+
+impl Weighted {
+    fn equal(corners: [Corner; 4]) -> Self {
+        Weighted { corners, weights: [0; 4], greatest: 0 }
+    }
+
+    fn is_inside(&self, bounds: SphereBounds, region: &Region<3>) -> bool {
+        let corners = self.corners.map(|p| p.map(|c| c as f64));
+        let weights = self.weights.map(|weight| weight as f64);
+        let claim = bounds.power_ball_inside(corners, weights, self.greatest as f64, region);
+        if self.weights != [self.greatest; 4] {
+            return claim;
+        }
+        let plain = bounds.ball_inside(corners, region);
+        assert!(plain || !claim, "weights that are equal make no claim easier");
+        plain
+    }
+}
+
 fn cross(p: &[BigInt; 3], q: &[BigInt; 3]) -> [BigInt; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &p[i] * &q[j] - &p[j] * &q[i])
 }
@@ -17,45 +44,59 @@ fn dot(p: &[BigInt; 3], q: &[BigInt; 3]) -> BigInt {
     &p[0] * &q[0] + &p[1] * &q[1] + &p[2] * &q[2]
 }
 
-/// The centre of the sphere relative to the first corner is `m / 2v`, with v > 0; returns m and v. `None` for
-/// a flat tetrahedron.
-fn centre(corners: [Corner; 4]) -> Option<([BigInt; 3], BigInt)> {
+/// A ball: its centre relative to the first corner is `m / 2v`, with v > 0, and its squared radius is that of m
+/// over 4 v² and an excess.
+struct Ball {
+    m: [BigInt; 3],
+    volume: BigInt,
+    excess: BigInt,
+}
+
+/// The ball to which points outside are not near enough for a conflict. `None` for a flat tetrahedron.
+fn ball(Weighted { corners, weights, greatest }: Weighted) -> Option<Ball> {
     let [a, b, c, d] = corners;
     let [b, c, d] = [b, c, d].map(|p| [0, 1, 2].map(|axis| BigInt::from(p[axis]) - a[axis]));
     let [x, y, z] = [cross(&c, &d), cross(&d, &b), cross(&b, &c)];
     let volume = dot(&b, &x);
-    let [p, q, r] = [dot(&b, &b), dot(&c, &c), dot(&d, &d)];
+    let lift = |vector: &[BigInt; 3], i: usize| dot(vector, vector) - (weights[i] - weights[0]);
+    let [p, q, r] = [lift(&b, 1), lift(&c, 2), lift(&d, 3)];
     let m = [0, 1, 2].map(|axis| (&p * &x[axis] + &q * &y[axis] + &r * &z[axis]) * volume.signum());
-    (volume != BigInt::ZERO).then(|| (m, volume.abs()))
+    let excess = BigInt::from(greatest - weights[0]);
+    (volume != BigInt::ZERO).then(|| Ball { m, volume: volume.abs(), excess })
 }
 
 /// Whether the ball lies strictly inside a plane at distance `side` from the first corner, in the direction
 /// `sign` of `axis`.
-fn is_within(m: &[BigInt; 3], volume: &BigInt, axis: usize, sign: i64, side: &BigInt) -> bool {
+fn is_within(Ball { m, volume, excess }: &Ball, axis: usize, sign: i64, side: &BigInt) -> bool {
     let gap: BigInt = volume * side * 2 - &m[axis] * sign;
-    gap.is_positive() && &gap * &gap > dot(m, m)
+    gap.is_positive() && &gap * &gap > dot(m, m) + volume * volume * 4 * excess
 }
 
 /// The least integer distance of a plane that has the ball strictly inside.
-fn tightest(m: &[BigInt; 3], volume: &BigInt, axis: usize, sign: i64) -> BigInt {
+fn tightest(ball: &Ball, axis: usize, sign: i64) -> BigInt {
     let (mut low, mut high) = (BigInt::from(-1), BigInt::from(1));
-    while !is_within(m, volume, axis, sign, &high) {
+    // With weights, the first corner need not be in the ball.
+    while is_within(ball, axis, sign, &low) {
+        low *= 2;
+    }
+    while !is_within(ball, axis, sign, &high) {
         high *= 2;
     }
     while &high - &low > BigInt::from(1) {
         let middle: BigInt = (&low + &high) / 2;
-        if is_within(m, volume, axis, sign, &middle) { high = middle } else { low = middle }
+        if is_within(ball, axis, sign, &middle) { high = middle } else { low = middle }
     }
     high
 }
 
 /// Tests boxes with one finite side near the border of the ball, at `tightest` and around it. Counts the
 /// claims and the balls that are inside.
-fn check(corners: [Corner; 4], bounds: SphereBounds, counts: &mut (u32, u32)) {
-    let Some((m, volume)) = centre(corners) else { return };
+fn check(tetrahedron: Weighted, bounds: SphereBounds, counts: &mut (u32, u32)) {
+    let Some(ball) = ball(tetrahedron) else { return };
+    let corners = tetrahedron.corners;
     for axis in 0..3 {
         for sign in [1, -1] {
-            let Ok(tightest) = i64::try_from(tightest(&m, &volume, axis, sign)) else { continue };
+            let Ok(tightest) = i64::try_from(tightest(&ball, axis, sign)) else { continue };
             for side in tightest.saturating_sub(2)..tightest.saturating_add(3) {
                 let plane = corners[0][axis] as i128 + i128::from(sign * side);
                 if plane as f64 as i128 != plane {
@@ -64,8 +105,8 @@ fn check(corners: [Corner; 4], bounds: SphereBounds, counts: &mut (u32, u32)) {
                 let mut region = Region::<3>::EVERYTHING;
                 let which = if sign > 0 { &mut region.max } else { &mut region.min };
                 which[axis] = plane as f64;
-                let claim = bounds.ball_inside(corners.map(|p| p.map(|c| c as f64)), &region);
-                assert!(!claim || side >= tightest, "{corners:?}: axis {axis}, {side} of {tightest}");
+                let claim = tetrahedron.is_inside(bounds, &region);
+                assert!(!claim || side >= tightest, "{tetrahedron:?}: axis {axis}, {side} of {tightest}");
                 counts.0 += u32::from(claim);
                 counts.1 += u32::from(side >= tightest);
             }
@@ -89,12 +130,34 @@ fn no_ball_is_claimed_inside_that_is_not() {
         };
         let corners = [corner(), corner(), corner(), corner()];
         for bounds in [SphereBounds::INTEGER, SphereBounds::FLOAT] {
-            check(corners, bounds, &mut counts);
+            check(Weighted::equal(corners), bounds, &mut counts);
         }
     }
     // Conservative, but useful: nearly every ball that is inside by a unit is recognised.
     let (claimed, inside) = counts;
     assert!(f64::from(claimed) > 0.95 * f64::from(inside), "{claimed} of {inside}");
+}
+
+/// Balls may be far from their tetrahedra, and have no point at all if there were no greater weight.
+#[test]
+fn no_ball_of_weighted_points_is_claimed_inside_that_is_not() {
+    let mut random = Random::new(14);
+    let mut counts = (0, 0);
+    for round in 0..6000 {
+        let side = [3, 10, 1000, 1 << 18][round % 4];
+        let offset = [0, 1_000_000_000][round / 4 % 2];
+        let weight = [1, side, side * side, 30 * side * side][round / 8 % 4];
+        let mut corner = || [offset, 0, -offset].map(|at| at + random.integer(-side, side));
+        let corners = [corner(), corner(), corner(), corner()];
+        let weights = [(); 4].map(|()| random.integer(-weight, weight));
+        let most = weights.into_iter().max().expect("four weights");
+        let greatest = most + [0, 1, weight][round % 3];
+        for bounds in [SphereBounds::INTEGER, SphereBounds::FLOAT] {
+            check(Weighted { corners, weights, greatest }, bounds, &mut counts);
+        }
+    }
+    let (claimed, inside) = counts;
+    assert!(f64::from(claimed) > 0.9 * f64::from(inside), "{claimed} of {inside}");
 }
 
 /// Nearly coplanar corners, whose spheres are much larger than their distances.
@@ -107,7 +170,7 @@ fn slivers_are_not_claimed_by_mistake() {
             |side: i64| [random.integer(-side, side), random.integer(-side, side), random.integer(0, 1)];
         let corners = [corner(1 << 12), corner(1 << 12), corner(1 << 12), corner(1 << 12)];
         for bounds in [SphereBounds::INTEGER, SphereBounds::FLOAT] {
-            check(corners, bounds, &mut counts);
+            check(Weighted::equal(corners), bounds, &mut counts);
         }
     }
     assert!(counts.0 > counts.1 / 2, "{counts:?}");
@@ -126,4 +189,9 @@ fn extreme_tetrahedra_are_never_claimed() {
     assert!(SphereBounds::FLOAT.ball_inside(corner(1.0), &finite));
     let tiny = [[0.0; 3], [1.0, 1e-310, 0.0], [0.0, 1.0, 1e-310], [1e-310, 0.0, 1.0]];
     assert!(SphereBounds::FLOAT.ball_inside(tiny, &finite));
+    for greatest in [f64::NAN, f64::INFINITY, 1e300] {
+        assert!(!SphereBounds::FLOAT.power_ball_inside(corner(1.0), [0.0; 4], greatest, &Region::EVERYTHING));
+    }
+    assert!(!SphereBounds::FLOAT.power_ball_inside(corner(1.0), [0.0, 1e300, 0.0, 0.0], 1e300, &finite));
+    assert!(SphereBounds::FLOAT.power_ball_inside(corner(1.0), [1.0, 2.0, 3.0, -7.0], 3.0, &finite));
 }

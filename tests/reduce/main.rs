@@ -10,3 +10,4 @@ mod space;
 mod space_tile_damage;
 mod space_tiles;
 mod streams;
+mod weights;

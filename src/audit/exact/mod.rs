@@ -8,6 +8,7 @@
 
 pub(super) mod dyadic;
 pub(super) mod plane;
+pub(super) mod power;
 pub(super) mod space;
 mod wide;
 

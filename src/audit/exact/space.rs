@@ -141,8 +141,15 @@ const UNDERFLOW_OF_VOLUME: f64 = power_of_two(-800);
 /// lifts.
 #[inline]
 fn estimated_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> (f64, f64, f64) {
-    let [a, b, c, d] = [a, b, c, d].map(|p| [p[0] - e[0], p[1] - e[1], p[2] - e[2]]);
-    let lift = |p: Xyz| p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+    estimated_lifted([a, b, c, d], e, [0.0; 4])
+}
+
+/// The same with lifts that are lowered; then `magnitude` has the magnitudes of both parts of a lift.
+#[inline]
+pub(super) fn estimated_lifted(abcd: [Xyz; 4], e: Xyz, lowered: [f64; 4]) -> (f64, f64, f64) {
+    let vectors = abcd.map(|p| [p[0] - e[0], p[1] - e[1], p[2] - e[2]]);
+    let squares = vectors.map(|p| p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+    let [a, b, c, d] = vectors;
     let minor = |p: Xyz, q: Xyz| {
         let (left, right) = (p[0] * q[1], p[1] * q[0]);
         (left - right, left.abs() + right.abs())
@@ -156,11 +163,12 @@ fn estimated_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> (f64, f64, f64
     let dab = dz * ab.0 + az * bd.0 + bz * da.0;
     let abc = az * bc.0 - bz * ac.0 + cz * ab.0;
     let [az, bz, cz, dz] = [az, bz, cz, dz].map(f64::abs);
-    let lifts = [lift(a), lift(b), lift(c), lift(d)];
+    let lifts: [f64; 4] = std::array::from_fn(|i| squares[i] + lowered[i].abs());
     let magnitude = (lifts[0] * (bz * cd.1 + cz * bd.1 + dz * bc.1)
         + lifts[1] * (cz * da.1 + dz * ac.1 + az * cd.1))
         + (lifts[2] * (dz * ab.1 + az * bd.1 + bz * da.1) + lifts[3] * (az * bc.1 + bz * ac.1 + cz * ab.1));
-    let determinant = (lifts[0] * bcd - lifts[1] * cda) + (lifts[2] * dab - lifts[3] * abc);
+    let [a, b, c, d]: [f64; 4] = std::array::from_fn(|i| squares[i] - lowered[i]);
+    let determinant = (a * bcd - b * cda) + (c * dab - d * abc);
     (determinant, magnitude, lifts[0] + lifts[1] + lifts[2] + lifts[3])
 }
 
@@ -183,10 +191,10 @@ fn filtered_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Option<Ordering
 }
 
 /// 2^400.
-const LIFT_OF_FILTER: f64 = power_of_two(400);
+pub(super) const LIFT_OF_FILTER: f64 = power_of_two(400);
 
 /// 2^-440.
-const UNDERFLOW_OF_SPHERE: f64 = power_of_two(-440);
+pub(super) const UNDERFLOW_OF_SPHERE: f64 = power_of_two(-440);
 
 fn sign_of(value: f64) -> Ordering {
     value.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
@@ -240,16 +248,31 @@ fn exact_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Ordering {
 
 /// The in-sphere determinant of four points relative to the fifth: lifts times the volumes of the three
 /// others.
-fn raised_volumes<T>([a, b, c, d]: [[T; 3]; 4]) -> T
+fn raised_volumes<T>(points: [[T; 3]; 4]) -> T
 where
     T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
 {
-    let lift = |[x, y, z]: &[T; 3]| x.clone() * x.clone() + y.clone() * y.clone() + z.clone() * z.clone();
+    let lifts = points.each_ref().map(square);
+    lifted_volumes(points, lifts)
+}
+
+pub(super) fn square<T>([x, y, z]: &[T; 3]) -> T
+where
+    T: Clone + Add<Output = T> + Mul<Output = T>,
+{
+    x.clone() * x.clone() + y.clone() * y.clone() + z.clone() * z.clone()
+}
+
+/// The same for these lifts.
+pub(super) fn lifted_volumes<T>([a, b, c, d]: [[T; 3]; 4], [p, q, r, s]: [T; 4]) -> T
+where
+    T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
+{
     let dot = |u: &[T; 3], v: &[T; 3]| {
         u[0].clone() * v[0].clone() + u[1].clone() * v[1].clone() + u[2].clone() * v[2].clone()
     };
     let (ab, cd) = (cross(&a, &b), cross(&c, &d));
-    lift(&a) * dot(&b, &cd) - lift(&b) * dot(&a, &cd) + lift(&c) * dot(&d, &ab) - lift(&d) * dot(&c, &ab)
+    p * dot(&b, &cd) - q * dot(&a, &cd) + r * dot(&d, &ab) - s * dot(&c, &ab)
 }
 
 #[cfg(test)]

@@ -150,7 +150,7 @@ impl Edge {
 
 impl Surface {
     fn of(hull: &Hull, facets: impl Iterator<Item = OpenFacet>) -> Self {
-        let mut corners: Vec<Corner> = hull.corners.iter().map(|(&id, &at)| Corner { id, at }).collect();
+        let mut corners: Vec<Corner> = hull.corners.iter().map(|(&id, &at)| Corner::new(id, at)).collect();
         corners.sort_unstable_by_key(|corner| corner.id);
         let index: HashMap<u64, usize, RandomState> =
             corners.iter().enumerate().map(|(i, corner)| (corner.id, i)).collect();

@@ -4,14 +4,16 @@ use std::cmp::Ordering;
 
 use super::Corner;
 use super::edges::OpenEdges;
+use super::hidden::Hidden;
 use crate::Standard;
 use crate::check::{Check, Ledger, Violation};
 use crate::corner::{name_corners, named};
-use crate::exact::space::{faces_ahead, in_raised_sphere, in_sphere, orientation};
+use crate::exact::power::{in_orthosphere, in_raised_orthosphere};
+use crate::exact::space::{faces_ahead, orientation};
 use crate::facets::{Meeting, OpenFacets};
 use crate::vertices::{Vertex, Vertices};
 use crate::winding::{Winding, corner_of};
-use spmesh_stream::Patch;
+use spmesh_stream::{Patch, Weights};
 
 /// The corners of each facet of a positive tetrahedron, counterclockwise seen from outside; the facet
 /// opposite to corner 0 first.
@@ -36,6 +38,8 @@ pub(crate) struct Star {
 /// Live vertices, open facets and their edges of the tetrahedra seen so far.
 pub(crate) struct LiveTetrahedra {
     standard: Standard,
+    /// If the mesh has weights, where they are and what they hide.
+    pub(super) weighted: Option<(Weights, Hidden)>,
     pub(super) vertices: Vertices<Star>,
     pub(super) facets: OpenFacets<3, Corner>,
     edges: OpenEdges,
@@ -57,6 +61,7 @@ impl LiveTetrahedra {
     pub(super) fn new(standard: Standard) -> Self {
         LiveTetrahedra {
             standard,
+            weighted: None,
             vertices: Vertices::default(),
             facets: OpenFacets::new(),
             edges: OpenEdges::default(),
@@ -74,14 +79,18 @@ impl LiveTetrahedra {
         }
     }
 
-    /// Checks a patch and gives the vertices that it finalizes to `finalize`.
+    /// Checks a patch, whose new vertices have `rows`, and gives the vertices that it finalizes to `finalize`.
     pub(super) fn patch(
         &mut self,
         patch: &Patch,
+        rows: &[u8],
         ledger: &mut Ledger,
         mut finalize: impl FnMut(&Vertex<Star>, &mut Ledger) -> Result<(), Violation>,
     ) -> Result<(), Violation> {
         self.vertices.enter(patch, ledger)?;
+        if let Some((weights, _)) = &self.weighted {
+            self.vertices.weigh(weights.read(rows));
+        }
         for tetrahedron in patch.tetrahedra() {
             self.tetrahedron(tetrahedron.map(|local| local as usize), ledger)?;
         }
@@ -99,6 +108,9 @@ impl LiveTetrahedra {
             return Err(name_corners(Violation::new(Check::Orientation, message), &corners));
         }
         self.tetrahedra_seen += 1;
+        if let Some((_, hidden)) = &mut self.weighted {
+            hidden.tetrahedron(&corners, self.standard, ledger)?;
+        }
         let mut is_shared = [false; 4];
         for (side, is_shared) in is_shared.iter_mut().enumerate() {
             *is_shared = self.side(&corners, &locals, side, ledger)?;
@@ -182,8 +194,8 @@ impl LiveTetrahedra {
         opposite: Corner,
         ledger: &mut Ledger,
     ) -> Result<(), Violation> {
-        let [a, b, c, d] = corners.map(|corner| corner.at);
-        let place = in_sphere(a, b, c, d, opposite.at);
+        let (four, fifth) = (corners.map(Corner::weighted), opposite.weighted());
+        let place = in_orthosphere(four, fifth);
         ledger.count(Check::Delaunay, place.exactly);
         let (check, fault) = match place.sign {
             Ordering::Less => return Ok(()),
@@ -191,7 +203,7 @@ impl LiveTetrahedra {
             Ordering::Equal if self.standard == Standard::Delaunay => return Ok(()),
             Ordering::Equal => {
                 ledger.count(Check::Canonical, true);
-                if in_raised_sphere(a, b, c, d, opposite.at) == Ordering::Less {
+                if in_raised_orthosphere(four, fifth) == Ordering::Less {
                     return Ok(());
                 }
                 (Check::Canonical, "between cospherical points is not the canonical one")

@@ -41,12 +41,16 @@
 //! test of the audit itself, and because a fault found at its vertex is easier to understand than one found
 //! in the hull at the end.
 //!
+//! *Weights.* With lifts that are less by the weights, all of this holds for the regular tetrahedralization. A
+//! vertex that no tetrahedron has must then lie in one that follows, and not below the graph ([`hidden`]).
+//!
 //! *Facets and edges that are closed are forgotten.* If one comes again, its tetrahedra lie where others are,
 //! so that something is covered twice, as above. So the audit need not remember it.
 
 mod census;
 mod edges;
 mod faces;
+mod hidden;
 mod hull;
 mod live;
 mod partial;
@@ -59,9 +63,10 @@ use super::totals::check_points;
 use super::unused::Unused;
 use super::vertices::Vertex;
 pub use census::{Census, Counts, Faults};
+use hidden::Hidden;
 use hull::Hull;
 pub(super) use live::LiveTetrahedra;
-use live::Star;
+use live::{Seen, Star};
 use spmesh_stream::{Header, Patch, Totals};
 
 /// A vertex of a tetrahedron.
@@ -93,8 +98,10 @@ pub(super) const TETRAHEDRA_CHECKS: [Check; 9] = [
 
 impl TetrahedraAudit {
     pub(super) fn new(header: &Header, standard: Standard) -> Self {
+        let mut tetrahedra = LiveTetrahedra::new(standard);
+        tetrahedra.weighted = header.weights().map(|weights| (weights, Hidden::default()));
         TetrahedraAudit {
-            tetrahedra: LiveTetrahedra::new(standard),
+            tetrahedra,
             hull: Hull::default(),
             unused: Unused::default(),
             labels: 0,
@@ -102,10 +109,14 @@ impl TetrahedraAudit {
         }
     }
 
-    pub(super) fn patch(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation> {
+    pub(super) fn patch(&mut self, patch: &Patch, rows: &[u8], ledger: &mut Ledger) -> Result<(), Violation> {
         patch.new.iter().for_each(|&at| self.extent.add(at));
         let (hull, unused) = (&mut self.hull, &mut self.unused);
-        self.tetrahedra.patch(patch, ledger, |vertex, ledger| finalize(vertex, hull, unused, ledger))?;
+        self.tetrahedra
+            .patch(patch, rows, ledger, |vertex, ledger| finalize(vertex, hull, unused, ledger))?;
+        if let Some((_, hidden)) = &mut self.tetrahedra.weighted {
+            self.unused.drain().for_each(|corner| hidden.add(corner));
+        }
         if self.tetrahedra.seen().tetrahedra > 0 { self.unused.check_none("tetrahedron") } else { Ok(()) }
     }
 
@@ -124,8 +135,13 @@ impl TetrahedraAudit {
     pub(super) fn end(&mut self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
         self.tetrahedra.vertices.check_finalized()?;
         if self.tetrahedra.seen().tetrahedra == 0 {
+            let hidden = self.tetrahedra.weighted.take().map(|(_, hidden)| hidden.into_corners());
+            hidden.into_iter().flatten().for_each(|corner| self.unused.add(corner));
             self.unused.check_plane(ledger)?;
         } else {
+            if let Some((_, hidden)) = &mut self.tetrahedra.weighted {
+                hidden.check_held()?;
+            }
             self.hull.check(self.tetrahedra.facets.iter(), ledger)?;
             self.check_euler(ledger)?;
         }
@@ -148,6 +164,9 @@ impl TetrahedraAudit {
     fn check_euler(&self, ledger: &mut Ledger) -> Result<(), Violation> {
         let seen = self.tetrahedra.seen();
         let (hull_facets, hull_vertices) = (self.tetrahedra.facets.len() as u64, self.hull.len());
+        // Hidden vertices are in no simplex.
+        let hidden = self.tetrahedra.weighted.as_ref().map_or(0, |(_, hidden)| hidden.seen());
+        let seen = Seen { vertices: seen.vertices - hidden, ..seen };
         ledger.add(Check::Euler, 2);
         if seen.vertices + seen.facets != seen.edges + seen.tetrahedra + 1 {
             let message = format!(

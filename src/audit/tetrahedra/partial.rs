@@ -24,7 +24,7 @@ impl FinalSimplices<3> for LiveTetrahedra {
     }
 
     fn patch(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation> {
-        self.patch(patch, ledger, finalize)
+        self.patch(patch, &[], ledger, finalize)
     }
 
     fn vertices(&self) -> &Vertices<Star> {

@@ -74,16 +74,14 @@ impl Layers<'_> {
             budget: Budget::of_process(*memory, *threads)?,
             temp_dir: temp_dir.clone(),
             spooling: Spooling::Never,
+            weighted: None,
         };
         let points =
             self.stream(|output| spmesh_finalize::run(layer, &options, &mut (), output).map(drop))?;
         let options = spmesh_reduce::Options {
             duplicates: Duplicates::Highest,
             threads: *threads,
-            part: None,
-            every_node: false,
-            memory: None,
-            compress: false,
+            ..spmesh_reduce::Options::default()
         };
         self.stream(move |output| spmesh_reduce::triangulate(points, output, &options, |_| {}).map(drop))
     }

@@ -8,7 +8,7 @@ use spmesh_audit::diagram::{Proof, Violation};
 use spmesh_audit::{Counts, Inventory, Report};
 use spmesh_core::error::Error;
 use spmesh_model::bounds::Point;
-use spmesh_stream::{Constrained, Coordinates, Crs, Header, Kind};
+use spmesh_stream::{Constrained, Coordinates, Crs, Header, Kind, Weighted};
 
 /// Everything that is known of a stream after it was read.
 pub(super) struct Summary<'a> {
@@ -61,6 +61,9 @@ impl Summary<'_> {
                 kill => format!(", its edges have at most {}", (1e9 * kill).round() / 1e9),
             };
             line("constrained", format!("yes, the border is {border}{kill}"));
+        }
+        if let Some(Weighted { greatest }) = self.header.weighted {
+            line("weighted", format!("yes, no weight is above {greatest} (squares of stored units)"));
         }
         self.counts(&mut line);
         if let Some(report) = &self.audit {
@@ -229,6 +232,7 @@ impl Summary<'_> {
                 "open_segments": constraints.open_segments,
                 "sides": constraints.sides,
             })),
+            "greatest_weight": header.weighted.map(|Weighted { greatest }| greatest),
             "width": self.inventory.width(),
             "patches": self.inventory.patches(),
             "largest_patch": {

@@ -40,14 +40,14 @@ pub(super) struct BallFlags {
     #[arg(conflicts_with = "contact_areas")]
     pockets: bool,
 
-    /// Radii of atoms, also for a filtration with weights: protor (united atoms, Tsai et al. 1999), bondi (by
+    /// Radii of atoms, also for a mesh or a filtration with weights: protor (united atoms, Tsai et al. 1999), bondi (by
     /// element), united (Chothia 1976), or a file with lines RESIDUE ATOM RADIUS or ELEMENT RADIUS [default:
     /// protor]
     #[arg(long, value_name = "NAME|FILE")]
     radii: Option<String>,
 
     /// Radius of a probe that is added to each radius (Å), to three decimals; 0 for the van der Waals surface
-    /// [default: 1.4; of --filtration 0]
+    /// [default: 1.4; of a mesh or --filtration 0]
     #[arg(long, value_name = "RADIUS", value_parser = parse_probe)]
     probe: Option<u32>,
 
@@ -113,8 +113,9 @@ impl BallFlags {
     ///
     /// # Errors
     /// Those of reading radii; usage, if there is nothing to measure.
-    pub(super) fn options(&self, is_filtration: bool, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
-        let has_weights = is_filtration && self.radii.is_some();
+    pub(super) fn options(&self, product: Product, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
+        let is_filtration = product == Product::Filtration;
+        let has_weights = (is_filtration || product == Product::Mesh) && self.radii.is_some();
         self.check_contacts_only()?;
         if is_filtration && self.per.is_some() {
             return Err(Error::usage("--per does not go with --filtration"));
@@ -129,6 +130,9 @@ impl BallFlags {
                 Some((flag, _)) => {
                     let remedy = match (is_filtration, flag) {
                         (true, "--probe") => "needs --radii",
+                        (false, "--probe") if product == Product::Mesh => {
+                            "needs --radii, or one of --sasa, --volumes, --contact-areas and --pockets"
+                        }
                         _ if flag == "--per" => "goes with --sasa, --volumes, --contact-areas or --pockets",
                         _ => "goes with --sasa, --volumes, --contact-areas, --pockets or --filtration",
                     };

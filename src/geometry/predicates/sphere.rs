@@ -33,6 +33,11 @@
 //!   claimed.
 //! * *Radius* `|o| <= |o^| + E_x + E_y + E_z`, and the computed `|o^|` is off by less than `4 u |o^|`. An
 //!   underflow of its squares is far below the rest, as the radius is half a side at least.
+//! * *Weights*: [`SphereBounds::power_ball_inside`] has the lifts `p = |b|^2 - (w_b - w_a)` and so on, with
+//!   `n_p = |b|^2 + |w_b - w_a|` in place of `p` in the sums of magnitudes. The difference of weights errs by
+//!   `u` of itself, and the sum of both is rounded: `6 u n_p`, for exact differences of coordinates `4 u n_p`.
+//!   So the constants of the numerators are greater by one. The radius is the root of `|o|^2 + W - w_a`, which
+//!   grows no faster than `|o|`; four more roundings below the root are less than `8 u` of it.
 //! * *Sides*: `a + o + r` is summed in floating point with three roundings, each below `u` times the sum of
 //!   the magnitudes; `4 u` times that sum covers them.
 
@@ -77,13 +82,54 @@ impl SphereBounds {
     #[inline]
     #[must_use]
     pub fn ball_inside(self, [a, b, c, d]: [Point3; 4], region: &Region<3>) -> bool {
-        let [b, c, d] = [b, c, d].map(|point| difference(point, a));
-        let [p, q, r] = [b, c, d].map(square);
+        let vectors = [b, c, d].map(|point| difference(point, a));
+        let lifts = vectors.map(|vector| {
+            let lift = square(vector);
+            (lift, lift)
+        });
+        self.is_inside(a, vectors, lifts, 0.0, region)
+    }
+
+    /// The same for points with weights: whether the ball around the orthocentre, with a squared radius that is
+    /// that of the orthosphere and `greatest`, certainly lies in the open interior of `region`. No point outside
+    /// of the half-open region is in conflict with the tetrahedron then, or orthogonal to it, if no weight is
+    /// above `greatest`.
+    ///
+    /// Never true if one of the four weights is above `greatest`.
+    #[inline]
+    #[must_use]
+    pub fn power_ball_inside(
+        self,
+        [a, b, c, d]: [Point3; 4],
+        weights: [f64; 4],
+        greatest: f64,
+        region: &Region<3>,
+    ) -> bool {
+        let vectors = [b, c, d].map(|point| difference(point, a));
+        let lifts = std::array::from_fn(|i| {
+            let (square, heavier) = (square(vectors[i]), weights[i + 1] - weights[0]);
+            (square - heavier, square + heavier.abs())
+        });
+        let bounds = SphereBounds { numerator: self.numerator + U, ..self };
+        bounds.is_inside(a, vectors, lifts, greatest - weights[0], region)
+    }
+
+    /// The test for a tetrahedron of `a` and three vectors, with the lift of each and the sum of the magnitudes
+    /// that it is made of. `excess` is added to the squared radius.
+    #[inline(always)]
+    fn is_inside(
+        self,
+        a: Point3,
+        [b, c, d]: [Point3; 3],
+        [(p, n_p), (q, n_q), (r, n_r)]: [(f64, f64); 3],
+        excess: f64,
+        region: &Region<3>,
+    ) -> bool {
         let ((x, n_x), (y, n_y), (z, n_z)) = (cross(c, d), cross(d, b), cross(b, c));
         let volume = b[0] * x[0] + b[1] * x[1] + b[2] * x[2];
         let n_volume = b[0].abs() * n_x[0] + b[1].abs() * n_x[1] + b[2].abs() * n_x[2];
         let e_volume = self.volume * n_volume + UNDERFLOW;
-        let is_sound = [p, q, r].iter().all(|square| SQUARES.contains(square));
+        let is_sound = [n_p, n_q, n_r].iter().all(|square| SQUARES.contains(square)) && excess < SQUARES.end;
         // Written so that a NaN anywhere answers false.
         if !(is_sound && volume.abs() > 2.0 * e_volume) {
             return false;
@@ -93,13 +139,13 @@ impl SphereBounds {
         let (mut o, mut e) = ([0.0; 3], [0.0; 3]);
         for axis in 0..3 {
             let m = p * x[axis] + q * y[axis] + r * z[axis];
-            let n = p * n_x[axis] + q * n_y[axis] + r * n_z[axis];
+            let n = n_p * n_x[axis] + n_q * n_y[axis] + n_r * n_z[axis];
             o[axis] = m * per_volume;
             let e_m = self.numerator * n + UNDERFLOW;
             let quotient = (e_m + 2.0 * o[axis].abs() * e_volume) * per_margin;
             e[axis] = (quotient + 2.0 * U * o[axis].abs()) * SLACK;
         }
-        let radius = square(o).sqrt() * (1.0 + 8.0 * U) + (e[0] + e[1] + e[2]) * SLACK;
+        let radius = (square(o) + excess).sqrt() * (1.0 + 8.0 * U) + (e[0] + e[1] + e[2]) * SLACK;
         (0..3).all(|axis| {
             let reach = radius + e[axis];
             let rounding = 4.0 * U * (a[axis].abs() + o[axis].abs() + reach) * SLACK;

@@ -10,7 +10,7 @@ use spmesh_core::error::Result;
 use spmesh_model::attributes::{Attribute, Attributes};
 use spmesh_model::bounds::Point;
 use spmesh_model::decimal::Decimal;
-use spmesh_stream::{Constrained, Coordinates, Crs, Event, Header, Patch, Totals, VERSION};
+use spmesh_stream::{Constrained, Coordinates, Crs, Event, Header, Patch, Totals, VERSION, Weighted};
 
 /// Writes the text twin.
 pub struct TwinSink<W> {
@@ -164,6 +164,9 @@ fn write_header(output: &mut impl Write, header: &Header) -> Result<()> {
     }
     if let Some(Constrained { is_cut, kill }) = header.constrained {
         line(format_args!("constrained {} {}", yes_no(is_cut), Decimal(kill)))?;
+    }
+    if let Some(Weighted { greatest }) = header.weighted {
+        line(format_args!("weighted {}", Decimal(greatest)))?;
     }
     line(format_args!("producer {}", string(&header.producer)))
 }

@@ -5,23 +5,34 @@ use std::sync::Arc;
 
 use super::pass::{BATCH_POINTS, Pass, Stated};
 use super::placement::Placement;
-use super::structure::{self, Selection, read_structure_from};
+use super::row_plan::{RowPlan, offers_of};
+use super::structure::{self, Radii, Selected, Selection, read_structure_from};
 use crate::detect::Format;
 use spmesh_core::error::{Error, Result};
+use spmesh_model::attributes::{Attribute, NumberType};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::Crs;
 
-/// The positions of atoms.
-pub(super) type Atoms = Arc<[Point]>;
+/// Bytes of the radius of an atom.
+const RADIUS_LEN: usize = size_of::<u32>();
+
+/// The positions of atoms, and their radii if they are wanted.
+#[derive(Debug, Clone)]
+pub(super) struct Atoms {
+    points: Arc<[Point]>,
+    /// In steps of 0.001 Å, little-endian; empty if they are not wanted.
+    radii: Arc<[u8]>,
+}
 
 /// Reads the atoms that `tess3` takes by default: of the first model, and of alternate locations those of one
-/// conformer. Notices say what is left out.
+/// conformer. Notices say what is left out. With `radii`, atoms have an attribute.
 ///
-/// Memory: 24 bytes per atom, and 56 more while the file is read.
+/// Memory: 24 bytes per atom, 4 for a radius, and 56 more while the file is read.
 pub(super) fn read(
     file: impl Read + 'static,
     name: &str,
     format: Format,
+    radii: Option<&Radii>,
     notices: &mut Vec<String>,
 ) -> Result<(Atoms, Stated)> {
     let format = match format {
@@ -33,7 +44,8 @@ pub(super) fn read(
     let structure = read_structure_from(file, name, Some(format))?;
     notices.extend(structure.warnings.iter().cloned());
     let selected = structure.select(&Selection::default())?;
-    let points: Atoms = selected.points().into();
+    let points: Arc<[Point]> = selected.points().into();
+    let found = radii.map_or(Ok(Vec::new()), |radii| radii_of(&selected, radii))?;
     let models = structure.models.len();
     if models > 1 {
         notices.push(format!("only the atoms of the first of {models} models are points"));
@@ -48,20 +60,41 @@ pub(super) fn read(
         crs: Crs::Unknown,
         bounds: Bounds::of_points(&points),
         points: Some(points.len() as u64),
-        offers: Vec::new(),
+        offers: offers_of(radii.map(|_| radius()).as_slice()),
     };
-    Ok((points, stated))
+    Ok((Atoms { points, radii: found.into() }, stated))
+}
+
+/// The attribute of atoms with radii.
+fn radius() -> Attribute {
+    Attribute { unit: "Å".into(), scale: Some([0.001, 0.0]), ..Attribute::new("radius", NumberType::U32) }
+}
+
+/// The radii as bytes.
+///
+/// # Errors
+/// If an atom has none, or points have no names.
+fn radii_of(selected: &Selected<'_>, radii: &Radii) -> Result<Vec<u8>> {
+    let Some(first) = selected.atom(0) else {
+        return Err(Error::usage("points have no elements, and so no radii"));
+    };
+    let mut finder = radii.finder(first.structure);
+    let atoms = (0..selected.points().len()).filter_map(|index| selected.atom(index));
+    let found: Result<Vec<[u8; RADIUS_LEN]>> =
+        atoms.map(|atom| Ok(finder.steps_of(&atom)?.to_le_bytes())).collect();
+    Ok(found?.concat())
 }
 
 /// One pass over atoms.
 pub(super) struct AtomPass {
     atoms: Atoms,
+    plan: RowPlan,
     next: usize,
 }
 
 impl AtomPass {
-    pub(super) fn new(atoms: &Atoms) -> Self {
-        AtomPass { atoms: Arc::clone(atoms), next: 0 }
+    pub(super) fn new(atoms: &Atoms, plan: RowPlan) -> Self {
+        AtomPass { atoms: atoms.clone(), plan, next: 0 }
     }
 }
 
@@ -70,12 +103,14 @@ impl Pass for AtomPass {
         &mut self,
         placement: &mut Placement,
         batch: &mut Vec<Point>,
-        _rows: &mut Vec<u8>,
+        rows: &mut Vec<u8>,
     ) -> Result<bool> {
-        let left = &self.atoms[self.next..];
+        let left = &self.atoms.points[self.next..];
         let points = &left[..left.len().min(BATCH_POINTS)];
-        for &point in points {
-            placement.put(point, batch)?;
+        for (index, &point) in (self.next..).zip(points) {
+            if placement.put(point, batch)? && !self.plan.is_empty() {
+                self.plan.append(&self.atoms.radii[index * RADIUS_LEN..][..RADIUS_LEN], rows);
+            }
         }
         self.next += points.len();
         Ok(!points.is_empty())

@@ -245,6 +245,11 @@ impl Source {
         {
             return Err(Error::usage(format!("{what} unknown here: only LAS and LAZ files state them")));
         }
+        if options.radii.is_some() && !matches!(self.content, Content::Atoms(_)) {
+            return Err(Error::usage(
+                "tables of radii are for atoms of PDB, mmCIF and XYZ: for other points, name an attribute",
+            ));
+        }
         if let Content::Las(header) = &self.content
             && matches!(header.format, 0 | 2)
             && options.filters.gps_time.is_some()
@@ -276,7 +281,7 @@ impl Source {
             Content::Ply => Box::new(stream::pass_of_ply(origin.plain()?, &self.name, plan)?),
             Content::Obj => Box::new(stream::pass_of_obj(origin.plain()?, &self.name)),
             Content::Arrays(arrays) => Box::new(ArrayPass::new(origin.view()?, Arc::clone(arrays), plan)),
-            Content::Atoms(atoms) => Box::new(AtomPass::new(atoms)),
+            Content::Atoms(atoms) => Box::new(AtomPass::new(atoms, plan)),
             Content::Npy(array) => Box::new(NpyPass::new(&origin.view()?, array.clone())),
             Content::Text(columns) => {
                 let (file, columns) = (origin.plain()?, columns.clone());
@@ -364,7 +369,8 @@ impl Content {
                 (Content::Text(columns), stated)
             }
             other => {
-                let (atoms, stated) = atoms::read(origin.plain()?, name, other, notices)?;
+                let (atoms, stated) =
+                    atoms::read(origin.plain()?, name, other, options.radii.as_deref(), notices)?;
                 (Content::Atoms(atoms), stated)
             }
         })

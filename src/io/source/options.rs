@@ -2,11 +2,13 @@
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::filters::{DropReason, Filters};
 use super::origin::Admitted;
 use super::raw_type::RawType;
 use super::row_plan::AttributeChoice;
+use super::structure::Radii;
 use super::text_options::TextOptions;
 use crate::detect::Reader;
 use spmesh_core::parallel::available_threads;
@@ -62,6 +64,8 @@ pub struct SourceOptions {
     pub raw: Option<RawType>,
     /// The coordinate reference system, whatever the files state.
     pub crs: Option<Crs>,
+    /// Radii of atoms, which they then have as an attribute.
+    pub radii: Option<Arc<Radii>>,
     /// How lines of text are laid out.
     pub text: TextOptions,
     /// Folder of spools; the system's folder for temporary files if `None`.

@@ -6,7 +6,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::attributes::{Attribute, Attributes};
 use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
-use spmesh_stream::{Constrained, Coordinates, Crs, Header, Kind, VERSION, check_version};
+use spmesh_stream::{Constrained, Coordinates, Crs, Header, Kind, VERSION, Weighted, check_version};
 
 /// The header as stated by the lines so far.
 #[derive(Default)]
@@ -26,6 +26,7 @@ pub(super) struct TwinHeader {
     crs: Crs,
     attributes: Vec<Attribute>,
     constrained: Option<Constrained>,
+    weighted: Option<Weighted>,
     producer: String,
 }
 
@@ -70,6 +71,10 @@ impl TwinHeader {
             b"wkt" => self.crs = Crs::Wkt(parse_string(rest)?),
             b"geokeys" => self.crs = only(parse_geo_keys(&mut values)?, values)?,
             b"constrained" => self.constrained = Some(parse_constrained(&mut values)?),
+            b"weighted" => {
+                let [greatest] = only(parse_decimals(&mut values)?, values)?;
+                self.weighted = Some(Weighted { greatest });
+            }
             b"producer" => self.producer = parse_string(rest)?,
             _ => return Err(unexpected(&key, "a statement of the header")),
         }
@@ -110,6 +115,7 @@ impl TwinHeader {
             crs: self.crs,
             attributes: Attributes::new(self.attributes).map_err(Error::malformed)?,
             constrained: self.constrained,
+            weighted: self.weighted,
             producer: self.producer,
         };
         header.check().map_err(Error::malformed)?;

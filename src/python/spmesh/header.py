@@ -67,6 +67,11 @@ class Attribute:
             valid = math.isfinite(scale) and math.isfinite(offset) and scale != 0
             require(valid, f"attribute {self.name!r} has the scale {scale} and the offset {offset}")
 
+    def is_weight(self) -> bool:
+        """Whether it can hold the weights of points."""
+        plain = self.components == 1 and self.scale is None and self.unknown is None
+        return self.name == "weight" and self.dtype == np.dtype("<f8") and plain
+
     def encode(self) -> bytes:
         code = [np.dtype(t) for t in TYPES].index(self.dtype) + 1
         flags = (self.scale is not None) | (self.unknown is not None) << 1
@@ -164,6 +169,8 @@ class Header:
     attributes: list[Attribute] = field(default_factory=list)
     # Of a constrained mesh: whether its border is cut, and the kill length or 0.
     constrained: tuple[bool, float] | None = None
+    # Of weighted points of space: no weight is greater.
+    weighted: float | None = None
     producer: str = "spmesh (Python)"
 
     @property
@@ -243,6 +250,20 @@ class Header:
             require(self.kind == "triangle mesh", f"a stream of kind {self.kind} is not constrained")
             require(0 <= kill < math.inf, f"kill length {kill}, expected a finite number from 0 on")
             require(is_cut or kill == 0, "a kill length, but a border that is not cut")
+        if self.weighted is not None:
+            space = self.kind in ("points", "tetrahedral mesh") and self.dims == 3
+            require(space, f"weights in a {self.kind} of {self.dims} dimensions")
+            require(math.isfinite(self.weighted), f"the greatest weight {self.weighted}, expected a finite number")
+            plain = [attribute for attribute in self.attributes if attribute.is_weight()]
+            require(plain, 'weights need an attribute "weight": one f64 without scale and unknown number')
+
+    def check_rows(self, rows: np.ndarray) -> None:
+        """Checks the weights of points."""
+        if self.weighted is None or not len(rows):
+            return
+        weights = rows["weight"]
+        sound = np.isfinite(weights) & (weights <= self.weighted)
+        require(sound.all(), f"a weight that is not finite, or above {self.weighted}")
 
     def _check_bounds(self) -> None:
         if self.bounds is None:
@@ -330,6 +351,7 @@ class Header:
             (b"cGEO", crs),
             (b"attr", b"".join(attribute.encode() for attribute in self.attributes)),
             (b"cons", self.constrained is not None and struct.pack("<?d", *self.constrained)),
+            (b"wght", self.weighted is not None and struct.pack("<d", self.weighted)),
             (b"prod", self.producer.encode()),
         ]
         for tag, payload in records:
@@ -407,5 +429,6 @@ _RECORDS = {
     b"cGEO": _geokeys,
     b"attr": lambda header, payload: setattr(header, "attributes", _attributes(payload)),
     b"cons": _constrained,
+    b"wght": lambda header, payload: setattr(header, "weighted", _floats(payload, 1)[0]),
     b"prod": _producer,
 }

@@ -95,6 +95,7 @@ class Reader:
                 size = points * self._row.itemsize
                 require(len(payload) == size, f"{len(payload)} bytes of attributes, expected {size}")
                 block.rows = np.frombuffer(payload, self._row)
+                self.header.check_rows(block.rows)
                 self.place = place
             return block
         except SpmeshError as error:

@@ -69,6 +69,7 @@ impl<W: Write> StreamWriter<W> {
         if self.rows.is_empty() {
             return Ok(());
         }
+        self.check_weights(&self.rows)?;
         std::mem::swap(&mut self.rows, &mut self.payload);
         self.write_block(Tag::Rows)?;
         self.rows.clear();
@@ -82,9 +83,15 @@ impl<W: Write> StreamWriter<W> {
             return Ok(());
         }
         check_len(rows.len())?;
+        self.check_weights(rows)?;
         self.payload.clear();
         self.payload.extend_from_slice(rows);
         self.write_block(Tag::Rows)
+    }
+
+    /// Checks that weights are as the header says.
+    fn check_weights(&self, rows: &[u8]) -> Result<()> {
+        self.header.weights().map_or(Ok(()), |weights| weights.check(rows))
     }
 
     /// Asserts that points need no rows.

@@ -40,6 +40,7 @@ mod spill;
 mod spool;
 mod stats;
 mod thin;
+mod weigh;
 mod work;
 
 pub use added::AddedPoints;
@@ -52,3 +53,4 @@ pub use shores::{Shores, shore_width};
 pub use spool::Spooling;
 pub use stats::Stats;
 pub use thin::{Thin, ThinBy};
+pub use weigh::{Weighed, WeightSource};

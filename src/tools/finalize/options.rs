@@ -7,6 +7,7 @@ use super::spool::Spooling;
 use super::thin::Thin;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::{OCTREE_DEPTH_MAX, QUADTREE_DEPTH_MAX};
+use spmesh_stream::Weighted;
 
 /// Approximate number of points in a leaf, unless the user chooses another.
 pub const CELL_POINTS: u64 = 20_000;
@@ -53,6 +54,8 @@ pub struct Options {
     pub temp_dir: Option<PathBuf>,
     /// When decoded points are kept for later passes.
     pub spooling: Spooling,
+    /// What the header says of the weights of points.
+    pub weighted: Option<Weighted>,
 }
 
 impl Options {

@@ -84,6 +84,8 @@ pub enum Pass {
     Spacing,
     /// Collecting the points near shores.
     Shores,
+    /// Finding the greatest weight.
+    Weights,
     /// Finding the points that thinning keeps.
     Thin,
     /// Finding the bounding box.
@@ -103,6 +105,7 @@ impl Pass {
         match self {
             Pass::Spacing => "spacing",
             Pass::Shores => "shores",
+            Pass::Weights => "weights",
             Pass::Thin => "thin",
             Pass::Bounds => "bounds",
             Pass::Count => "count",

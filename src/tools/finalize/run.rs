@@ -141,6 +141,7 @@ fn header_of(description: &Description, counts: &PointCounts, options: &Options)
         compressed: options.compress,
         crs: crs.clone(),
         attributes: attributes.clone(),
+        weighted: options.weighted,
         ..Header::new(Kind::Points, coordinates, dims, has_elevation)
     }
 }

@@ -4,7 +4,7 @@ use super::residual::Residual;
 use spmesh_core::error::Result;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
-use spmesh_stream::{Coordinates, Kind};
+use spmesh_stream::{Coordinates, Kind, Weights};
 
 /// A facet of a simplex, named by the corner opposite to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -52,15 +52,20 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// sides.
     const PASSES_FEW: bool;
 
-    /// Triangulates `points` canonically.
+    /// Triangulates `points` canonically; if they have weights, as their regular triangulation.
     ///
     /// # Errors
     /// As the kernel's.
-    fn triangulate(&mut self, points: &Residual<D>) -> Result<()>;
+    fn triangulate(&mut self, points: &Residual<D>, weights: Option<Weights>) -> Result<()>;
 
     /// Points that are not vertices, each with the vertex that it coincides with. The vertex has the least
     /// index.
     fn duplicates(&mut self) -> &mut Vec<[u32; 2]>;
+
+    /// Points that no simplex has, because their cell in the power diagram is empty.
+    fn hidden(&self) -> &[u32] {
+        &[]
+    }
 
     /// Number of simplices.
     fn len(&self) -> usize;
@@ -89,10 +94,11 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// A facet as a wall with its simplex on the final side.
     fn wall(&self, facet: Facet) -> [u32; D];
 
-    /// The test of balls in `region`, for points of these coordinates.
-    fn balls(coordinates: &Coordinates, region: Region<D>) -> Self::Balls;
+    /// The test of balls in `region`, for points of these coordinates and weights.
+    fn balls(coordinates: &Coordinates, region: Region<D>, weights: Option<Weights>) -> Self::Balls;
 
-    /// Whether the ball around `simplex` certainly lies inside.
+    /// Whether the ball around `simplex` certainly lies inside. With weights, it is the ball that no point
+    /// outside of it can be in conflict with.
     fn is_inside(&self, simplex: u32, points: &Residual<D>, balls: &Self::Balls) -> bool;
 
     /// Decisions of the predicates so far.

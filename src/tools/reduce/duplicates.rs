@@ -2,7 +2,7 @@
 
 use super::residual::Residual;
 use spmesh_core::error::{Error, Result};
-use spmesh_stream::Coordinates;
+use spmesh_stream::{Coordinates, Weights};
 
 /// Which elevation survives where points coincide in x and y. The attributes are those of the point whose
 /// elevation survives.
@@ -24,7 +24,7 @@ pub enum Duplicates {
 
 impl Duplicates {
     /// Sets the elevation of each vertex. `duplicates` are pairs of a point and the vertex that it coincides
-    /// with. The vertex is the first of the coinciding points.
+    /// with. The vertex is the first of the coinciding points. With `weights`, it gets the row of the heaviest.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Malformed`] if points coincide and the policy is
@@ -34,6 +34,7 @@ impl Duplicates {
         points: &mut Residual<D>,
         duplicates: &mut [[u32; 2]],
         coordinates: &Coordinates,
+        weights: Option<Weights>,
     ) -> Result<()> {
         if self == Duplicates::Error
             && let Some(&[_, vertex]) = duplicates.first()
@@ -46,6 +47,10 @@ impl Duplicates {
             return Err(Error::malformed(format!(
                 "several points at {place}: choose --duplicates {policies}"
             )));
+        }
+        if let Some(weights) = weights {
+            keep_heaviest(points, duplicates, weights);
+            return Ok(());
         }
         if matches!(self, Duplicates::First | Duplicates::Error) {
             return Ok(());
@@ -83,6 +88,18 @@ impl Duplicates {
     }
 }
 
+/// Gives each vertex the row of the first of the heaviest points at its place.
+fn keep_heaviest<const D: usize>(points: &mut Residual<D>, duplicates: &mut [[u32; 2]], weights: Weights) {
+    duplicates.sort_unstable_by_key(|&[point, vertex]| (vertex, point));
+    for &[point, vertex] in &*duplicates {
+        let (point, vertex) = (point as usize, vertex as usize);
+        let weight_of = |index: usize| weights.read(points.row(index)).next();
+        if weight_of(point) > weight_of(vertex) {
+            points.copy_row(point, vertex);
+        }
+    }
+}
+
 /// Mean of a sorted group.
 fn mean(group: &[f64], coordinates: &Coordinates) -> f64 {
     let n = group.len() as f64;
@@ -104,7 +121,7 @@ mod tests {
         elevations.iter().for_each(|&z| points.extend_raw(&[[3.0, 4.0, z]], &[]));
         let mut pairs: Vec<_> = (1..elevations.len() as u32).rev().map(|i| [i, 0]).collect();
         let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
-        policy.settle(&mut points, &mut pairs, &grid).map(|()| points.elevation[0])
+        policy.settle(&mut points, &mut pairs, &grid, None).map(|()| points.elevation[0])
     }
 
     #[test]
@@ -114,7 +131,9 @@ mod tests {
             let elevations = [5.0, 9.0, 2.0, 2.0, 9.0];
             (0..).zip(elevations).for_each(|(row, z)| points.extend_raw(&[[3.0, 4.0, z]], &[row, 7]));
             let mut pairs = [[3, 0], [1, 0], [4, 0], [2, 0]];
-            policy.settle(&mut points, &mut pairs, &Coordinates::F64).expect("a policy that allows them");
+            policy
+                .settle(&mut points, &mut pairs, &Coordinates::F64, None)
+                .expect("a policy that allows them");
             points.row(0).to_vec()
         };
         assert_eq!(row_of(Duplicates::First), [0, 7]);

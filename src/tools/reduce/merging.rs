@@ -4,7 +4,7 @@
 use super::duplicates::Duplicates;
 use super::residual::Residual;
 use spmesh_core::error::Result;
-use spmesh_stream::Coordinates;
+use spmesh_stream::{Coordinates, Weights};
 
 /// Fewer points are not worth looking at.
 const FEW: usize = 1 << 18;
@@ -14,12 +14,13 @@ const FEW: usize = 1 << 18;
 pub(super) struct Merging {
     policy: Duplicates,
     coordinates: Coordinates,
+    weights: Option<Weights>,
     next: usize,
 }
 
 impl Merging {
-    pub(super) fn new(policy: Duplicates, coordinates: Coordinates) -> Self {
-        Merging { policy, coordinates, next: FEW }
+    pub(super) fn new(policy: Duplicates, coordinates: Coordinates, weights: Option<Weights>) -> Self {
+        Merging { policy, coordinates, weights, next: FEW }
     }
 
     /// Begins with the points of another cell.
@@ -37,7 +38,7 @@ impl Merging {
             return Ok(0);
         }
         let mut pairs = coinciding(&points.at);
-        self.policy.settle(points, &mut pairs, &self.coordinates)?;
+        self.policy.settle(points, &mut pairs, &self.coordinates, self.weights)?;
         points.remove(pairs.iter().map(|pair| pair[0]));
         self.next = FEW.max(2 * points.len());
         Ok(pairs.len() as u64)
@@ -60,7 +61,7 @@ mod tests {
     fn merged(policy: Duplicates, points: &[[f64; 3]]) -> (Vec<[f64; 3]>, u64) {
         let mut raw = Residual::<2>::default();
         raw.extend_raw(points, &[]);
-        let mut merging = Merging::new(policy, Coordinates::F64);
+        let mut merging = Merging::new(policy, Coordinates::F64, None);
         let gone = merging.merge(&mut raw).expect("a policy that allows them");
         ((0..raw.len()).map(|i| raw.point(i)).collect(), gone)
     }
@@ -85,6 +86,6 @@ mod tests {
     fn coinciding_points_can_be_an_error() {
         let mut raw = Residual::<2>::default();
         raw.extend_raw(&vec![[1.0, 2.0, 3.0]; FEW], &[]);
-        assert!(Merging::new(Duplicates::Error, Coordinates::F64).merge(&mut raw).is_err());
+        assert!(Merging::new(Duplicates::Error, Coordinates::F64, None).merge(&mut raw).is_err());
     }
 }

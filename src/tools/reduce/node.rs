@@ -8,7 +8,7 @@ use super::sides::Sides;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
-use spmesh_stream::{Coordinates, Header, PatchBlocks, PointCode};
+use spmesh_stream::{Coordinates, Header, PatchBlocks, PointCode, Weights};
 
 /// The rules that all nodes of a run share.
 #[derive(Debug, Clone, Copy)]
@@ -16,6 +16,8 @@ pub(super) struct Rules<const D: usize> {
     coordinates: Coordinates,
     code: PointCode,
     duplicates: Duplicates,
+    /// If points have weights.
+    pub(super) weights: Option<Weights>,
     /// Whether the run leaves a residual, to be merged with others.
     pub(super) is_partial: bool,
     /// Whether to triangulate even nodes that would leave most of their points.
@@ -28,8 +30,8 @@ impl<const D: usize> Rules<D> {
     /// The rules for a mesh with the given header.
     pub(super) fn new(header: &Header, duplicates: Duplicates, is_partial: bool) -> Self {
         let code = PointCode::of(header);
-        let coordinates = header.coordinates;
-        Rules { coordinates, code, duplicates, is_partial, every_node: false, sides: Sides::UNKNOWN }
+        let (coordinates, weights) = (header.coordinates, header.weights());
+        Rules { coordinates, code, duplicates, weights, is_partial, every_node: false, sides: Sides::UNKNOWN }
     }
 
     /// The encoding of the coordinates.
@@ -66,6 +68,8 @@ enum PointState {
     Residual,
     /// Merged with a point that it coincides with.
     Merged,
+    /// In no simplex of all points, as its cell in the power diagram is empty: finalized here.
+    Hidden,
 }
 
 /// The result of a node.
@@ -150,13 +154,14 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         flush: &mut Flush,
     ) -> Result<Solved<D>> {
         blocks.clear();
-        self.bulk.triangulate(points)?;
+        self.bulk.triangulate(points, self.rules.weights)?;
         let duplicates = self.bulk.duplicates();
         if let Some(pair) = duplicates.iter().find(|pair| pair.iter().any(|&i| i as usize >= points.raw)) {
             self.misfit = Some(Misfit::Points(*pair));
             return Err(overlap(points, pair[0], pair[1]));
         }
-        self.rules.duplicates.settle(points, duplicates, &self.rules.coordinates)?;
+        let Rules { coordinates, weights, .. } = &self.rules;
+        self.rules.duplicates.settle(points, duplicates, coordinates, *weights)?;
         self.find_holes(&points.walls)?;
         let everything = *region == Region::EVERYTHING && !self.rules.is_partial;
         self.split(points, region, everything);
@@ -240,8 +245,8 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     /// Splits the simplices outside of holes: final ones are planned for patches, the others are active. If
     /// no other point exists, `everything` is final.
     fn split(&mut self, points: &Residual<D>, region: &Region<D>, everything: bool) {
-        let balls = B::balls(&self.rules.coordinates, *region);
-        self.builder.start(points.len(), self.rules.code);
+        let balls = B::balls(&self.rules.coordinates, *region, self.rules.weights);
+        self.builder.start(points.len(), self.rules.code, self.bulk.hidden().len());
         self.active.clear();
         for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
             let state = &mut self.simplex_states[simplex as usize];
@@ -299,12 +304,13 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             .duplicates()
             .iter()
             .for_each(|&[point, _]| point_states[point as usize] = PointState::Merged);
+        self.bulk.hidden().iter().for_each(|&point| point_states[point as usize] = PointState::Hidden);
         self.point_states = point_states;
     }
 
-    /// Writes the final simplices, and the points that are finalized here without being in one: vertices of
-    /// the hull whose simplices were all written below, and at the root the points of an input without
-    /// simplices.
+    /// Writes the final simplices, and the points that are finalized here without being in one: first hidden
+    /// points, at last vertices of the hull whose simplices were all written below, and at the root the points
+    /// of an input without simplices.
     ///
     /// # Errors
     /// Those of `flush`; [`spmesh_core::error::ErrorKind::Malformed`] if a point has no simplex outside of
@@ -332,12 +338,13 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
                 _ => {}
             }
         }
+        builder.isolated(self.bulk.hidden().iter().copied(), points, code, blocks, flush)?;
         for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
             if self.simplex_states[simplex as usize] == SimplexState::Open {
                 builder.simplex(self.bulk.corners(simplex).as_ref(), points, code, blocks, flush)?;
             }
         }
-        builder.finish(unused.into_iter(), points, code, blocks, flush)
+        builder.isolated(unused.into_iter(), points, code, blocks, flush)
     }
 
     /// Finds the walls: facets between a simplex that is not active and an active or infinite one.

@@ -77,8 +77,8 @@ pub(super) struct PatchBuilder<const D: usize> {
 pub(super) type Flush<'f> = dyn FnMut(&mut PatchBlocks) -> Result<()> + 'f;
 
 impl<const D: usize> PatchBuilder<D> {
-    /// Begins a node of `points` points.
-    pub(super) fn start(&mut self, points: usize, code: PointCode) {
+    /// Begins a node of `points` points, of which so many will be `isolated` before the first simplex.
+    pub(super) fn start(&mut self, points: usize, code: PointCode, isolated: usize) {
         // New vertices whose rows fill a block.
         let rows_max = BLOCK_PAYLOAD_MAX.checked_div(code.row_len()).unwrap_or(usize::MAX);
         self.simplices_max = patch_simplices(D).min(rows_max / (D + 1));
@@ -87,7 +87,7 @@ impl<const D: usize> PatchBuilder<D> {
             array.clear();
             array.resize(points, value);
         }
-        self.planned = 0;
+        self.planned = isolated.div_ceil(self.vertices_max) as u32;
         self.room = self.simplices_max;
         self.closed = 0;
         self.first_code = 1;
@@ -143,20 +143,20 @@ impl<const D: usize> PatchBuilder<D> {
         flush(blocks)
     }
 
-    /// Ends the simplices, and adds vertices that are in none of them and finalized here.
+    /// Adds vertices that are in no simplex and finalized here, in patches of their own.
     ///
     /// # Errors
     /// As [`PatchBlocks::push`] and `flush`.
-    pub(super) fn finish(
+    pub(super) fn isolated(
         &mut self,
-        unused: impl Iterator<Item = u32>,
+        vertices: impl Iterator<Item = u32>,
         points: &Residual<D>,
         code: PointCode,
         blocks: &mut PatchBlocks,
         flush: &mut Flush,
     ) -> Result<()> {
         self.close(points, code, blocks)?;
-        for v in unused {
+        for v in vertices {
             self.index(v);
             if self.vertices.len() == self.vertices_max {
                 self.close(points, code, blocks)?;

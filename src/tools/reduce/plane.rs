@@ -8,7 +8,7 @@ use spmesh_geometry::delaunay2::{Corner, Kernel, NONE, Triangles};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_geometry::predicates::circle::CircleBounds;
 use spmesh_model::bounds::Region;
-use spmesh_stream::{Coordinates, Kind};
+use spmesh_stream::{Coordinates, Kind, Weights};
 
 /// The kernel of the plane and its triangulation.
 #[derive(Default)]
@@ -31,7 +31,7 @@ impl Bulk<2> for Plane {
     const SAMPLED_MIN: usize = 4_000;
     const PASSES_FEW: bool = false;
 
-    fn triangulate(&mut self, points: &Residual<2>) -> Result<()> {
+    fn triangulate(&mut self, points: &Residual<2>, _: Option<Weights>) -> Result<()> {
         self.kernel.triangulate(&points.at, &mut self.triangulation)
     }
 
@@ -93,7 +93,7 @@ impl Bulk<2> for Plane {
         [1, 2].map(|k| vertices[(edge.corner as usize + k) % 3])
     }
 
-    fn balls(coordinates: &Coordinates, region: Region) -> Disks {
+    fn balls(coordinates: &Coordinates, region: Region, _: Option<Weights>) -> Disks {
         let bounds = match coordinates {
             Coordinates::F64 => CircleBounds::FLOAT,
             Coordinates::I32 { .. } => CircleBounds::INTEGER,

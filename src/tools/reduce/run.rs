@@ -43,6 +43,8 @@ pub struct Options<const D: usize = 2> {
     pub memory: Option<u64>,
     /// Whether the blocks of the mesh are compressed.
     pub compress: bool,
+    /// Whether points are weighted by their attribute `weight`: the mesh is then the regular tetrahedralization.
+    pub weighted: bool,
 }
 
 /// Triangulates a stream of two-dimensional points and writes the mesh to `output`. `progress` is called with
@@ -113,9 +115,14 @@ where
 {
     let header = reader.header();
     check_input::<B, D>(header).map_err(|e| e.of_input(reader.name()))?;
+    check_weights(header, options)?;
     let part = options.part.map(|part| part.region(header)).transpose()?;
     let outer = part.unwrap_or(Region::EVERYTHING);
-    let mesh = Header { compressed: options.compress, ..mesh_header::<B, D>(header, part) };
+    let mesh = Header {
+        compressed: options.compress,
+        weighted: header.weighted.filter(|_| options.weighted),
+        ..mesh_header::<B, D>(header, part)
+    };
     let stream = StreamWriter::new(output, mesh)?;
     let mut rules = Rules::new(stream.header(), options.duplicates, options.part.is_some());
     rules.every_node = options.every_node;
@@ -131,7 +138,7 @@ where
         schedule: Schedule::new(Plan::new(tree), Boxes::new(tree, bounds, outer)),
         budget: Budget::new::<B, D>(options.memory, options.threads, header.attributes.row_len()),
     };
-    let merging = Merging::new(options.duplicates, header.coordinates);
+    let merging = Merging::new(options.duplicates, header.coordinates, rules.weights);
     let (cells, sequencer) = (CellReader::new(reader, outer, merging), Sequencer::new(stream));
     if options.threads <= 1 {
         alone::<B, R, W, D>(run, cells, sequencer, progress)
@@ -155,6 +162,25 @@ fn check_input<B: Bulk<D>, const D: usize>(header: &Header) -> Result<()> {
             Err(Error::usage(format!("this is a {}: use --merge to finish it", kind.name())))
         }
         (kind, _) => Err(Error::usage(format!("this is a stream of kind {}, expected points", kind.name()))),
+    }
+}
+
+/// Checks that there are weights, if they are wanted.
+///
+/// # Errors
+/// Usage, if not, or if the run is a partial one.
+fn check_weights<const D: usize>(header: &Header, options: &Options<D>) -> Result<()> {
+    if !options.weighted {
+        return Ok(());
+    }
+    if options.part.is_some() {
+        return Err(Error::usage("--weights does not go with --partial: a part has no weights"));
+    }
+    match header.weighted {
+        Some(_) => Ok(()),
+        None => Err(Error::usage(
+            "the points have no weights: finalize them with spfinalize --octree --radii or --weights",
+        )),
     }
 }
 

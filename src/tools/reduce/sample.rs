@@ -13,7 +13,7 @@ use super::residual::Residual;
 use spmesh_core::error::Result;
 use spmesh_core::random::Random;
 use spmesh_geometry::predicates::PredicateCounts;
-use spmesh_model::bounds::{Point, Region};
+use spmesh_model::bounds::Region;
 
 /// Most points of a sample.
 const SAMPLE_POINTS: usize = 2048;
@@ -85,7 +85,7 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
 
     /// The fraction of the first points of the sample that the node would leave.
     fn share_left(&mut self, region: &Region<D>, count: usize) -> Result<f64> {
-        self.bulk.triangulate(&self.points)?;
+        self.bulk.triangulate(&self.points, self.rules.weights)?;
         self.find_left(region);
         for &[point, _] in self.bulk.duplicates().iter() {
             self.is_left[point as usize] = false;
@@ -104,11 +104,8 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
     /// Draws at most so many points at random: every k-th point of a grid could lie in one plane.
     fn draw(&mut self, points: &Residual<D>, most: usize) {
         let mut random = Random::new(points.raw as u64);
-        let choose = |_| points.point(random.below(points.raw as u64) as usize);
         let count = most.min(points.raw / SAMPLED_ONE_OF);
-        let sample: Vec<Point> = (0..count).map(choose).collect();
-        self.points.clear();
-        self.points.extend_raw(&sample, &[]);
+        self.take(points, (0..count).map(|_| random.below(points.raw as u64) as usize));
     }
 
     /// Draws one point at random, and the points nearest to it, in the order of their distances.
@@ -123,15 +120,22 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         near.select_nth_unstable_by(count, |p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
         near.truncate(count);
         near.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
-        let sample: Vec<Point> = near.iter().map(|&(_, i)| points.point(i as usize)).collect();
+        self.take(points, near.iter().map(|&(_, i)| i as usize));
+    }
+
+    /// Takes these points as the sample, with their rows if weights are in them.
+    fn take(&mut self, points: &Residual<D>, chosen: impl Iterator<Item = usize>) {
         self.points.clear();
-        self.points.extend_raw(&sample, &[]);
+        for index in chosen {
+            let row = if self.rules.weights.is_some() { points.row(index) } else { &[] };
+            self.points.extend_raw(&[points.point(index)], row);
+        }
     }
 
     /// Finds the vertices that are on the hull or in simplices that are not final.
     fn find_left(&mut self, region: &Region<D>) {
         let (bulk, is_left) = (&self.bulk, &mut self.is_left);
-        let balls = B::balls(self.rules.coordinates(), *region);
+        let balls = B::balls(self.rules.coordinates(), *region, self.rules.weights);
         is_left.clear();
         is_left.resize(self.points.len(), false);
         if bulk.len() == 0 && !self.rules.sides.coincide() {
@@ -185,7 +189,7 @@ mod tests {
     use super::super::sides::Sides;
     use super::super::space::Space;
     use super::*;
-    use spmesh_model::bounds::Bounds;
+    use spmesh_model::bounds::{Bounds, Point};
     use spmesh_stream::{Coordinates, Header, Kind};
 
     const SAMPLED_MIN_OF_SPACE: usize = <Space as Bulk<3>>::SAMPLED_MIN;

@@ -14,7 +14,7 @@ use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_geometry::predicates::sphere::SphereBounds;
 use spmesh_model::bounds::Region;
 use spmesh_model::simplex::TETRAHEDRON_FACETS_FROM_INSIDE;
-use spmesh_stream::{Coordinates, Kind};
+use spmesh_stream::{Coordinates, Kind, Weights};
 
 /// Distance of the prefetch, in tetrahedra.
 const AHEAD: usize = 12;
@@ -24,6 +24,8 @@ const AHEAD: usize = 12;
 pub(super) struct Space {
     kernel: Kernel,
     mesh: Tetrahedralization,
+    /// The weight of each point; empty without weights.
+    weights: Vec<f64>,
     /// The tetrahedra, ordered along the curve by their last vertex: in the mesh, insertion in rounds has
     /// scattered them.
     sequence: Vec<u32>,
@@ -35,6 +37,8 @@ pub(super) struct Space {
 pub(super) struct Balls {
     bounds: SphereBounds,
     region: Region<3>,
+    /// The greatest weight of all points, if they have weights.
+    greatest: Option<f64>,
 }
 
 impl Space {
@@ -95,8 +99,16 @@ impl Bulk<3> for Space {
     const SAMPLED_MIN: usize = 50_000;
     const PASSES_FEW: bool = true;
 
-    fn triangulate(&mut self, points: &Residual<3>) -> Result<()> {
-        self.kernel.triangulate(Cow::Borrowed(&points.at), &mut self.mesh)?;
+    fn triangulate(&mut self, points: &Residual<3>, weights: Option<Weights>) -> Result<()> {
+        self.weights.clear();
+        let at = Cow::Borrowed(&points.at[..]);
+        match weights {
+            Some(weights) => {
+                self.weights.extend(weights.read(&points.rows));
+                self.kernel.triangulate_weighted(at, &self.weights, &mut self.mesh)?;
+            }
+            None => self.kernel.triangulate(at, &mut self.mesh)?,
+        }
         self.arrange();
         self.find_hull();
         Ok(())
@@ -104,6 +116,10 @@ impl Bulk<3> for Space {
 
     fn duplicates(&mut self) -> &mut Vec<[u32; 2]> {
         &mut self.mesh.duplicates
+    }
+
+    fn hidden(&self) -> &[u32] {
+        &self.mesh.hidden
     }
 
     fn len(&self) -> usize {
@@ -177,19 +193,22 @@ impl Bulk<3> for Space {
         TETRAHEDRON_FACETS_FROM_INSIDE[corner as usize].map(|i| vertices[i])
     }
 
-    fn balls(coordinates: &Coordinates, region: Region<3>) -> Balls {
+    fn balls(coordinates: &Coordinates, region: Region<3>, weights: Option<Weights>) -> Balls {
         let bounds = match coordinates {
             Coordinates::F64 => SphereBounds::FLOAT,
             Coordinates::I32 { .. } => SphereBounds::INTEGER,
         };
-        Balls { bounds, region }
+        Balls { bounds, region, greatest: weights.map(|weights| weights.greatest()) }
     }
 
     #[inline]
     fn is_inside(&self, tetrahedron: u32, _points: &Residual<3>, balls: &Balls) -> bool {
         let vertices = self.mesh.vertices();
-        let corners = self.mesh.tetrahedra()[tetrahedron as usize].vertices.map(|v| vertices[v as usize].at);
-        balls.bounds.ball_inside(corners, &balls.region)
+        let corners = self.mesh.tetrahedra()[tetrahedron as usize].vertices.map(|v| &vertices[v as usize]);
+        let at = corners.map(|vertex| vertex.at);
+        let Some(greatest) = balls.greatest else { return balls.bounds.ball_inside(at, &balls.region) };
+        let weights = corners.map(|vertex| self.weights[vertex.index as usize]);
+        balls.bounds.power_ball_inside(at, weights, greatest, &balls.region)
     }
 
     fn counts(&self) -> &PredicateCounts {

@@ -11,13 +11,13 @@ use super::mesh::write_mesh;
 use super::rows::write_error;
 use super::tables::{CONTACTS, ModelTables, TETRAHEDRA};
 use super::{Arithmetic, Options, Product, Report, selection};
-use spmesh_core::error::Result;
+use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_geometry::delaunay3::Tetrahedralization;
 use spmesh_io::source::structure::{Models, Selected, Structure};
 use spmesh_model::attributes::Attributes;
 use spmesh_model::bounds::Bounds;
-use spmesh_stream::{Coordinates, Crs, Header, Kind, StreamWriter};
+use spmesh_stream::{Coordinates, Crs, Header, Kind, StreamWriter, Weighted};
 
 /// Triangulates the selected models of a structure one by one, and writes them to outputs that `open`
 /// creates: a mesh for each model, of which `open` gets the place in the file and the number, or one table
@@ -96,7 +96,7 @@ impl Job<'_> {
         let mut weights = None;
         if let (Some(balls), Some(selected)) = (self.options.balls.clone(), selected) {
             let molecule = Molecule { number: name.number, selected, scale: scale(structure.coordinates) };
-            if self.options.product != Product::Filtration {
+            if !matches!(self.options.product, Product::Filtration | Product::Mesh) {
                 return self.write_balls(&balls, &molecule, started);
             }
             weights = Some(molecule.weights(&balls, &mut report)?);
@@ -120,7 +120,7 @@ impl Job<'_> {
                     .write(&mut output, model.scale())?;
                 output.commit()?;
             }
-            _ => self.write_mesh(&model, mesh, &mut report)?,
+            _ => self.write_mesh(&model, mesh, weights.as_deref(), &mut report)?,
         }
         report.times.write = started.elapsed() - report.times.triangulate;
         Ok(report)
@@ -187,11 +187,22 @@ impl Job<'_> {
         Ok(self.table.as_mut().expect("there is one now"))
     }
 
-    fn write_mesh(&mut self, model: &Model<'_>, mesh: Tetrahedralization, report: &mut Report) -> Result<()> {
+    fn write_mesh(
+        &mut self,
+        model: &Model<'_>,
+        mesh: Tetrahedralization,
+        weights: Option<&[f64]>,
+        report: &mut Report,
+    ) -> Result<()> {
         let kept = self.alpha(model, &mesh, report).map(AlphaComplex::into_bits);
         let merged = mesh.duplicates.len() as u64;
         let points = mesh.vertices().len() as u64 + merged;
-        let header = self.header(model.coordinates, &mesh, points);
+        let mut header = self.header(model.coordinates, &mesh, points);
+        if let Some(weights) = weights {
+            let greatest = weights.iter().copied().reduce(f64::max).unwrap_or(0.0);
+            header.weighted = Some(Weighted { greatest });
+            header.attributes = Attributes::new(vec![Weighted::attribute()]).map_err(Error::usage)?;
+        }
         let mut writer = StreamWriter::new((self.open)(Some(model.name))?, header)?;
         let is_kept = |t: usize| kept.as_ref().is_none_or(|bits| bits[t / 64] >> (t % 64) & 1 == 1);
         let mut corners = mesh.into_corners(is_kept);
@@ -199,7 +210,7 @@ impl Job<'_> {
             Some(selected) => selected.label(index as usize),
             None => u64::from(index) + 1,
         };
-        write_mesh(&mut writer, &mut corners, label)?;
+        write_mesh(&mut writer, &mut corners, label, weights)?;
         writer.end(points, merged)?.commit()
     }
 
@@ -225,6 +236,7 @@ impl Job<'_> {
             crs: Crs::Unknown,
             attributes: Attributes::default(),
             constrained: None,
+            weighted: None,
             producer,
         }
     }

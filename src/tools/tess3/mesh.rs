@@ -22,7 +22,8 @@ const IMPORTED: u32 = 1 << 31;
 
 /// Writes tetrahedra with their vertices and labels, then the vertices that are in no tetrahedron. A vertex
 /// is new in its first patch, and finalized in its last. `label` maps the index of a vertex among the points
-/// of the input to its label.
+/// of the input to its label. With `weights` of these points, vertices in no tetrahedron are hidden, and come
+/// first.
 ///
 /// Memory: 8 bytes per vertex, in space that the mesh no longer needs, and one patch.
 ///
@@ -32,6 +33,7 @@ pub fn write_mesh<W: Write>(
     writer: &mut StreamWriter<W>,
     mesh: &mut Corners,
     label: impl Fn(u32) -> u64,
+    weights: Option<&[f64]>,
 ) -> Result<()> {
     let CornerParts { vertices, tetrahedra, spare } = mesh.parts();
     let mut own = Vec::new();
@@ -42,27 +44,32 @@ pub fn write_mesh<W: Write>(
             &mut own[..]
         }
     };
-    let mut builder = PatchBuilder::new(vertices, label, words);
-    for (number, corners) in (0..).zip(tetrahedra.chunks(PATCH_TETRAHEDRA)) {
+    let mut builder = PatchBuilder::new(vertices, label, words, weights);
+    if weights.is_some() {
+        builder.last_patches.fill(NONE);
+        tetrahedra.as_flattened().iter().for_each(|&v| builder.last_patches[v as usize] = 0);
+        let is_hidden: Vec<u32> =
+            (0..).zip(&*builder.last_patches).filter(|(_, last)| **last == NONE).map(|(v, _)| v).collect();
+        builder.singles(is_hidden.into_iter(), writer)?;
+    }
+    for (number, corners) in (builder.number..).zip(tetrahedra.chunks(PATCH_TETRAHEDRA)) {
         corners.as_flattened().iter().for_each(|&v| builder.last_patches[v as usize] = number);
     }
     for corners in tetrahedra.chunks(PATCH_TETRAHEDRA) {
         corners.as_flattened().iter().for_each(|&v| builder.corner(v));
         builder.close(writer)?;
     }
-    for v in 0..vertices.len() as u32 {
-        builder.single(v);
-        if builder.new.len() == PATCH_VERTICES {
-            builder.close(writer)?;
-        }
-    }
-    builder.close(writer)
+    builder.singles(0..vertices.len() as u32, writer)
 }
 
 /// Builds one patch after the other.
 struct PatchBuilder<'m, Label> {
     vertices: &'m [Vertex],
     label: Label,
+    /// The weight of each point of the input, if they have weights.
+    weights: Option<&'m [f64]>,
+    /// The weights of the new vertices, as rows.
+    rows: Vec<u8>,
     /// Number of the last patch that uses a vertex; undefined before the first.
     last_patches: &'m mut [u32],
     /// Number of the current patch.
@@ -82,13 +89,15 @@ struct PatchBuilder<'m, Label> {
 
 impl<'m, Label: Fn(u32) -> u64> PatchBuilder<'m, Label> {
     /// Needs two words per vertex.
-    fn new(vertices: &'m [Vertex], label: Label, words: &'m mut [u32]) -> Self {
+    fn new(vertices: &'m [Vertex], label: Label, words: &'m mut [u32], weights: Option<&'m [f64]>) -> Self {
         assert!(vertices.len() < IMPORTED as usize, "more vertices than the kernel can number");
         let (last_patches, ids) = words.split_at_mut(vertices.len());
         ids.fill(NONE);
         PatchBuilder {
             vertices,
             label,
+            weights,
+            rows: Vec::new(),
             last_patches,
             number: 0,
             ids,
@@ -114,6 +123,21 @@ impl<'m, Label: Fn(u32) -> u64> PatchBuilder<'m, Label> {
         }
         let corner = if *id < IMPORTED { *id - first_id } else { *id };
         self.patch.simplices.push(corner);
+    }
+
+    /// Writes those vertices that are in no patch so far.
+    fn singles<W: Write>(
+        &mut self,
+        vertices: impl Iterator<Item = u32>,
+        writer: &mut StreamWriter<W>,
+    ) -> Result<()> {
+        for v in vertices {
+            self.single(v);
+            if self.new.len() == PATCH_VERTICES {
+                self.close(writer)?;
+            }
+        }
+        self.close(writer)
     }
 
     /// Adds a vertex, if it is in no patch so far.
@@ -142,7 +166,11 @@ impl<'m, Label: Fn(u32) -> u64> PatchBuilder<'m, Label> {
         self.patch.finalized.extend((0..).zip(vertices).filter(|&(_, v)| is_last(v)).map(|(local, _)| local));
         self.patch.new.extend(self.new.iter().map(|&v| self.vertices[v as usize].at));
         self.patch.imported.extend(self.imported.iter().map(|&(id, _)| u64::from(id)));
-        writer.patch(&self.patch)?;
+        if let Some(weights) = self.weights {
+            let of_new = self.new.iter().map(|&v| weights[self.vertices[v as usize].index as usize]);
+            self.rows.extend(of_new.flat_map(f64::to_le_bytes));
+        }
+        writer.patch_with_rows(&self.patch, &self.rows)?;
         self.labels.extend(self.new.iter().map(|&v| (self.label)(self.vertices[v as usize].index)));
         if !self.labels.is_empty() {
             writer.labels(&self.labels)?;
@@ -169,6 +197,7 @@ impl<'m, Label: Fn(u32) -> u64> PatchBuilder<'m, Label> {
         self.new.clear();
         self.imported.clear();
         self.labels.clear();
+        self.rows.clear();
         self.patch.new.clear();
         self.patch.imported.clear();
         self.patch.simplices.clear();
