@@ -89,7 +89,7 @@ fn audit(mesh: &[u8]) -> Result<(), String> {
     let mut reader = StreamReader::new(mesh, "mesh").unwrap();
     let mut audit = Audit::new(reader.header(), Standard::Canonical, None).unwrap();
     while let Some(event) = reader.next_event().unwrap() {
-        audit.event_with_rows(&event, reader.rows()).map_err(|violation| violation.to_string())?;
+        audit.event_with_rows(&event, reader.rows()).map_err(|violation| violation.message)?;
     }
     Ok(())
 }

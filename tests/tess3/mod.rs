@@ -14,3 +14,4 @@ mod pipes;
 mod selections;
 mod sweeps;
 mod tables;
+mod weights;
