@@ -61,9 +61,8 @@ fn two_balls() {
         let [mut area, mut volume] = [0.0; 2];
         // Where the probe touches the balls.
         let [from, to] = [x * r / (r + p), d - (d - x) * s / (s + p)];
-        for (at, radius, cap) in [(0.0, r, from), (d, s, d - to)] {
+        for (radius, cap) in [(r, from), (s, d - to)] {
             area += 2.0 * PI * radius * (radius + cap);
-            let _ = at;
             volume += PI * (2.0 / 3.0 * radius.powi(3) + radius * radius * cap - cap.powi(3) / 3.0);
         }
         let steps = 20_000;
@@ -81,7 +80,7 @@ fn two_balls() {
         assert_near(found_area, area, 2e-6 * area, &format!("area of {r} {s} {p} {d}"));
         assert_near(found_volume, volume, 2e-6 * volume, &format!("volume of {r} {s} {p} {d}"));
     }
-    assert!(cusps > 50 && behind > 20, "{cusps} {behind}");
+    assert!(cusps > 25 && behind > 20, "{cusps} {behind}");
 }
 
 /// Three balls that a probe touches in three directions at right angles: its patch is an octant.
@@ -248,8 +247,9 @@ fn assert_areas(random: &mut Random, reach: &Reach<'_>, probe: f64, cells: &[Cel
     for i in 0..count {
         let radius = reach.radii[i] - probe;
         for _ in 0..samples {
-            let p = along(reach.centres[i], radius, unit_vector(random));
-            if is_on(p) {
+            let out = unit_vector(random);
+            let [p, rest] = [radius, reach.radii[i]].map(|by| along(reach.centres[i], by, out));
+            if reach.is_free(rest) && is_on(p) {
                 add(i, 4.0 * PI * radius * radius * share);
             }
         }

@@ -55,10 +55,10 @@ pub(super) fn layers(
     // Solid angle and volume of the cones over the faces.
     let (mut cut_off, mut under) = ([0.0; 3], [0.0; 3]);
     let borders = [0, 1, 2].map(|i| cross(rays[i], rays[(i + 1) % 3]));
-    let (mut whole, mut part, mut spare) = Default::default();
+    let (mut part, mut spare) = Default::default();
     for (place, bisector) in bisectors.iter().enumerate() {
         let plane = Plane::new(bisector, radius);
-        whole = plane.square();
+        let mut whole = plane.square();
         plane.cut(&mut whole, borders, 0.0, &mut spare);
         for (_, other) in bisectors.iter().enumerate().filter(|(other, _)| *other != place) {
             plane.cut(&mut whole, [other.normal.map(|c| -c)], -other.height, &mut spare);
@@ -86,31 +86,34 @@ fn bisectors(probe: &Probe, radius: f64, neighbours: &Neighbours<'_>) -> Option<
         // Nothing of it is beyond the plane of the three centres.
         return Some(bisectors);
     }
-    let mut is_empty = false;
-    let mut places: Vec<Point3> = Vec::new();
+    let mut others: Vec<&Probe> = Vec::new();
+    neighbours.for_each(probe.at, |other| others.push(other));
+    // The mirror image first: its direction is known best.
+    others.sort_by_key(|other| !probe.is_mirror_of(other));
     let near = |p: Point3, q: Point3| {
         let between = difference(p, q);
         dot(between, between) < (COINCIDENT * radius).powi(2)
     };
-    neighbours.for_each(probe.at, |other| {
-        if std::ptr::eq(other, probe) {
-            return;
+    let mut places: Vec<Point3> = Vec::new();
+    for other in others.into_iter().filter(|other| !std::ptr::eq(*other, probe)) {
+        if places.iter().any(|&place| near(place, other.at)) {
+            continue;
         }
         if probe.is_mirror_of(other) {
-            is_empty |= probe.height < COINCIDENT * radius;
+            if probe.height < COINCIDENT * radius {
+                return None;
+            }
             bisectors.push(Bisector { normal: probe.down, height: probe.height });
-            places.push(other.at);
-            return;
-        }
-        if near(other.at, probe.at) || places.iter().any(|&place| near(place, other.at)) {
-            return;
+        } else if near(other.at, probe.at) {
+            continue;
+        } else {
+            let between = difference(other.at, probe.at);
+            let distance = dot(between, between).sqrt();
+            bisectors.push(Bisector { normal: between.map(|c| c / distance), height: distance / 2.0 });
         }
         places.push(other.at);
-        let between = difference(other.at, probe.at);
-        let distance = dot(between, between).sqrt();
-        bisectors.push(Bisector { normal: between.map(|c| c / distance), height: distance / 2.0 });
-    });
-    (!is_empty).then_some(bisectors)
+    }
+    Some(bisectors)
 }
 
 /// The plane of a bisector, with axes around its point next to the probe.
