@@ -51,7 +51,7 @@ pub(super) fn layers(
         [towards(i + 1), towards(i + 2)]
     });
     let angles = nearer.map(|[first, second]| cone.cut(first).cut(second).solid_angle());
-    let Some(bisectors) = bisectors(probe, radius, neighbours) else { return Default::default() };
+    let Some(bisectors) = bisectors(probe, &cone, radius, neighbours) else { return Default::default() };
     // Solid angle and volume of the cones over the faces.
     let (mut cut_off, mut under) = ([0.0; 3], [0.0; 3]);
     let borders = [0, 1, 2].map(|i| cross(rays[i], rays[(i + 1) % 3]));
@@ -61,6 +61,9 @@ pub(super) fn layers(
         let mut whole = plane.square();
         plane.cut(&mut whole, borders, 0.0, &mut spare);
         for (_, other) in bisectors.iter().enumerate().filter(|(other, _)| *other != place) {
+            if whole.is_empty() {
+                break;
+            }
             plane.cut(&mut whole, [other.normal.map(|c| -c)], -other.height, &mut spare);
         }
         for i in (0..3).filter(|_| !whole.is_empty()) {
@@ -80,7 +83,7 @@ pub(super) fn layers(
 
 /// The planes half-way to all probes that may be nearer to a point of the probe's layer. `None` if the layer
 /// is empty.
-fn bisectors(probe: &Probe, radius: f64, neighbours: &Neighbours<'_>) -> Option<Vec<Bisector>> {
+fn bisectors(probe: &Probe, cone: &Cone, radius: f64, neighbours: &Neighbours<'_>) -> Option<Vec<Bisector>> {
     let mut bisectors: Vec<Bisector> = Vec::new();
     if probe.height >= radius {
         // Nothing of it is beyond the plane of the three centres.
@@ -113,6 +116,10 @@ fn bisectors(probe: &Probe, radius: f64, neighbours: &Neighbours<'_>) -> Option<
         }
         places.push(other.at);
     }
+    // A plane that misses the probe in the cone leaves the layer as it is; rounding must not lose one.
+    bisectors.retain(|bisector| bisector.height < radius * (cone.nearness(bisector.normal) + 1e-9));
+    // The nearest cut off most.
+    bisectors.sort_by(|p, q| p.height.total_cmp(&q.height));
     Some(bisectors)
 }
 

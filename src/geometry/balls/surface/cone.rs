@@ -16,6 +16,21 @@ impl Cone {
         Cone { rays: rays.to_vec() }
     }
 
+    /// A bound of the cosine of the angle between its rays and a direction of length 1.
+    pub(super) fn nearness(&self, direction: Point3) -> f64 {
+        let sum = self.rays.iter().fold([0.0; 3], |sum, ray| [0, 1, 2].map(|axis| sum[axis] + ray[axis]));
+        let size = dot(sum, sum).sqrt();
+        let axis = sum.map(|c| c / size);
+        // All rays are as near to the axis as the corners, if these are less than a right angle away.
+        let least = self.rays.iter().map(|&ray| dot(ray, axis)).fold(1.0, f64::min);
+        let cosine = dot(direction, axis);
+        // Not `<=`, so that a NaN bounds nothing.
+        if !(least > 0.0 && cosine < least) {
+            return 1.0;
+        }
+        cosine * least + ((1.0 - cosine * cosine) * (1.0 - least * least)).max(0.0).sqrt()
+    }
+
     /// The part on the positive side of a plane through the apex.
     #[must_use]
     pub(super) fn cut(&self, normal: Point3) -> Cone {
