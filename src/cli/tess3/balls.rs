@@ -29,8 +29,8 @@ pub(super) struct BallFlags {
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration"])]
     volumes: bool,
 
-    /// Write a table of the molecular (solvent-excluded) surface, on which the probe rolls: its area (Å²), and
-    /// the volume inside it, into which the probe cannot reach (Å³)
+    /// Write a table of the molecular (solvent-excluded) surface, on which the probe rolls: its area (Å²),
+    /// and the volume inside it, into which the probe cannot reach (Å³)
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
     ses: bool,
 

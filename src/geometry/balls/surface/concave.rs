@@ -3,8 +3,8 @@
 //! The layer next to the probe's centre is the part of the probe in the cone towards the centres of the three
 //! balls that is nearer to this centre than to that of any other probe at rest. Other probes are nearer only
 //! beyond the plane of the three centres. So the layer is convex: planes through the apex bound it, the
-//! sphere of the probe, and flat faces half-way to other probes. As for cells of balls, area and volume follow
-//! from the areas and solid angles of these faces.
+//! sphere of the probe, and flat faces half-way to other probes. As for cells of balls, area and volume
+//! follow from the areas and solid angles of these faces.
 
 use super::cone::Cone;
 use super::neighbours::Neighbours;

@@ -1,9 +1,9 @@
 //! The molecular surface: the boundary of what a rolling probe cannot reach.
 //!
 //! Let the radii of the balls include that of the probe. The probe's centre can reach what the union of the
-//! balls does not cover, and the *excluded* body is what is at least the probe's radius away from there. So it
-//! is the union without a *layer* along its boundary. Each point of the layer belongs to the nearest point of
-//! the boundary: on a sphere, on an arc of two spheres, or at a corner of three. The layers next to these
+//! balls does not cover, and the *excluded* body is what is at least the probe's radius away from there. So
+//! it is the union without a *layer* along its boundary. Each point of the layer belongs to the nearest point
+//! of the boundary: on a sphere, on an arc of two spheres, or at a corner of three. The layers next to these
 //! are bounded by convex patches, saddles and concave patches; `saddle` and `concave` have their measures.
 //!
 //! Source: Connolly, "Analytical molecular surface calculation", 1983. That other probes at rest are all that
@@ -32,8 +32,8 @@ use spmesh_core::parallel;
 /// Probes that a thread measures at a time.
 const BLOCK: usize = 1024;
 
-/// Area of the molecular (solvent-excluded) surface and volume of the body inside it, for each ball. The radii
-/// of the balls include that of the probe.
+/// Area of the molecular (solvent-excluded) surface and volume of the body inside it, for each ball. The
+/// radii of the balls include that of the probe.
 ///
 /// A ball has the part of the body in its cell, and the patches at this part. A concave patch counts for the
 /// three balls that its probe touches, also where it reaches into other cells; there the volume of a small
@@ -42,8 +42,8 @@ const BLOCK: usize = 1024;
 /// # Errors
 /// As [`super::measure`]; usage, if the radius of the probe is negative or greater than that of a ball.
 ///
-/// Cost: about that of [`super::measure`]. Memory: 150 bytes more for each place where the probe touches three
-/// balls.
+/// Cost: about that of [`super::measure`]. Memory: 150 bytes more for each place where the probe touches
+/// three balls.
 ///
 /// ```
 /// use spmesh_geometry::balls::{Balls, molecular_surface};

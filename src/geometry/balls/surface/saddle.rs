@@ -2,7 +2,8 @@
 //!
 //! In a half-plane at the axis through both centres, the probe is a disk at the distance `rho` from the axis.
 //! The layer next to the arc is the part of the disk in the triangle of the probe's centre and the centres of
-//! the balls. If `rho` is less than the radius of the probe, the axis cuts it: the saddle has two cusps there.
+//! the balls. If `rho` is less than the radius of the probe, the axis cuts it: the saddle has two cusps
+//! there.
 
 use crate::balls::shares::Measure;
 
@@ -24,8 +25,8 @@ pub(super) fn half_layer(height: f64, square: f64, probe: f64) -> Measure {
     Measure { area: sign * area, volume: sign * volume }
 }
 
-/// The same for both centres: what each has of it. Where the middle of the circle lies behind one of them, the
-/// other has all.
+/// The same for both centres: what each has of it. Where the middle of the circle lies behind one of them,
+/// the other has all.
 pub(super) fn layer(heights: [f64; 2], square: f64, probe: f64) -> [Measure; 2] {
     let mut halves = heights.map(|height| half_layer(height, square, probe));
     for end in 0..2 {
