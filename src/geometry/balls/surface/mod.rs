@@ -36,13 +36,13 @@ const BLOCK: usize = 1024;
 /// radii of the balls include that of the probe.
 ///
 /// A ball has the part of the body in its cell, and the patches at this part. A concave patch counts for the
-/// three balls that its probe touches, also where it reaches into other cells; there the volume of a small
-/// share may be negative. Sums are exact. With a probe of radius 0 the result is that of [`super::measure`].
+/// three balls that its probe touches, also where it reaches into other cells: with a large probe, or in thin
+/// layers, the volume of a ball may be negative. Sums are exact. With a probe of radius 0 the result is that of [`super::measure`].
 ///
 /// # Errors
 /// As [`super::measure`]; usage, if the radius of the probe is negative or greater than that of a ball.
 ///
-/// Cost: about that of [`super::measure`]. Memory: 150 bytes more for each place where the probe touches
+/// Cost: 1.5 to 2.5 times that of [`super::measure`]. Memory: 150 bytes more for each place where the probe touches
 /// three balls.
 ///
 /// ```
