@@ -41,8 +41,9 @@ Examples:
     tess3 1abc.cif --assembly 1 --classes polymer,ligand -o 1abc.spm
   Tetrahedra with circumradius and volume; only those of the alpha complex of radius 4 Å:
     tess3 1abc.pdb --hetatm off --alpha 4 --table | sort -gk10
-  Solvent-accessible area of each residue, areas of contacts between chains, and pockets:
+  Solvent-accessible area of each residue, molecular surface and volume, areas of contacts between chains, and pockets:
     tess3 1abc.cif.gz --classes polymer --sasa --per residue -o sasa.tsv
+    tess3 1abc.cif.gz --classes polymer --ses --per molecule
     tess3 1abc.cif.gz --classes polymer --contact-areas --between chains -o interface.tsv
     tess3 1abc.cif.gz --classes polymer --pockets -o pockets.tsv
   Persistent homology, with GUDHI or another program that reads lists of simplices:

@@ -50,6 +50,81 @@ fn two_atoms_by_closed_forms() {
     assert_near(alone.number(0, "area"), 2.0 * 2.0 * PI * 1.7 * (1.7 + 0.75), 1e-6);
 }
 
+/// A probe rolls around the axis of two atoms.
+#[test]
+fn the_molecular_surface_of_two_atoms() {
+    let text = pdb(&[Record::carbon(1, [0.0; 3]), Record::carbon(2, [1.5, 0.0, 0.0])]);
+    let rows = table(&text, &["--ses", "--radii", "bondi"]);
+    let (r, p) = (1.7f64, 1.4f64);
+    let rho = (CARBON * CARBON - 0.75 * 0.75).sqrt();
+    let angle = (0.75 / rho).atan();
+    let saddle = 2.0 * PI * p * (rho * angle - p * angle.sin());
+    let area = 2.0 * PI * r * (r + 0.75 * r / CARBON) + saddle;
+    for row in 0..2 {
+        assert_near(rows.number(row, "area"), area, 1e-6);
+        assert_eq!(rows.text(row, "serial"), (row + 1).to_string());
+    }
+    // Without a probe, all surfaces are one.
+    let spheres = of_sample("1aki.pdb", &["--sasa", "--volumes", "--probe", "0"]);
+    let surface = of_sample("1aki.pdb", &["--ses", "--probe", "0"]);
+    for row in 0..spheres.len() {
+        for column in ["area", "volume"] {
+            assert_eq!(surface.text(row, column), spheres.text(row, column));
+        }
+    }
+}
+
+/// Points of a grid tell by themselves what is excluded: what is within the balls, and at least the radius of
+/// the probe away from all other points of the grid.
+#[test]
+fn the_molecular_volume_of_a_peptide_against_a_grid() {
+    let atoms: Vec<([f64; 3], f64, &'static str)> = std::fs::read_to_string(sample("1aki.pdb"))
+        .unwrap()
+        .lines()
+        .filter(|line| line.starts_with("ATOM"))
+        .take(30)
+        .map(|line| {
+            let at = [30, 38, 46].map(|i| line[i..i + 8].trim().parse().unwrap());
+            let (radius, element) = match line[76..78].trim() {
+                "C" => (1.7, "C"),
+                "N" => (1.55, "N"),
+                "O" => (1.52, "O"),
+                "S" => (1.8, "S"),
+                other => panic!("element {other}"),
+            };
+            (at, radius, element)
+        })
+        .collect();
+    let records: Vec<Record> = (1..)
+        .zip(&atoms)
+        .map(|(serial, &(at, _, element))| Record { element, name: element, ..Record::carbon(serial, at) })
+        .collect();
+    let found = table(&pdb(&records), &["--ses", "--radii", "bondi", "--per", "molecule"]);
+    let probe = 1.4;
+    let step = 0.35;
+    let end = |axis: usize, sign: f64| {
+        atoms.iter().map(|(at, ..)| sign * at[axis]).fold(f64::NEG_INFINITY, f64::max) + 5.0
+    };
+    let lower = [0, 1, 2].map(|axis| -end(axis, -1.0));
+    let counts = [0, 1, 2].map(|axis| ((end(axis, 1.0) - lower[axis]) / step) as usize);
+    let at = |cell: [usize; 3]| [0, 1, 2].map(|axis| lower[axis] + cell[axis] as f64 * step);
+    let square = |p: [f64; 3], q: [f64; 3]| (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>();
+    let cells =
+        (0..counts[0]).flat_map(|x| (0..counts[1]).flat_map(move |y| (0..counts[2]).map(move |z| [x, y, z])));
+    let (inside, outside): (Vec<_>, Vec<_>) =
+        cells.map(at).partition(|&p| atoms.iter().any(|&(q, r, _)| square(p, q) < (r + probe).powi(2)));
+    // Only those next to the balls matter.
+    let outside: Vec<[f64; 3]> = outside
+        .into_iter()
+        .filter(|&p| atoms.iter().any(|&(q, r, _)| square(p, q) < (r + probe + 2.0 * step).powi(2)))
+        .collect();
+    let excluded = inside.iter().filter(|&&p| outside.iter().all(|&q| square(p, q) >= probe * probe)).count();
+    let volume = found.number(0, "volume");
+    // Distances to points of the grid are too great by about 0.37 of its step.
+    let expected = excluded as f64 * f64::powi(step, 3) - 0.37 * step * found.number(0, "area");
+    assert_near(volume, expected, 0.03 * expected);
+}
+
 /// Points on each sphere tell by themselves what is exposed (Shrake and Rupley, 1973).
 #[test]
 fn areas_of_a_protein_against_points_on_spheres() {
@@ -101,21 +176,23 @@ fn areas_of_a_protein_against_points_on_spheres() {
 
 #[test]
 fn levels_add_up() {
-    for column in ["area", "volume"] {
-        let atoms = of_sample("1aki.pdb", &["--sasa", "--volumes"]);
+    for (column, flags) in
+        ["area", "volume"].into_iter().flat_map(|c| [(c, &["--sasa", "--volumes"][..]), (c, &["--ses"])])
+    {
+        let atoms = of_sample("1aki.pdb", flags);
         let mut residues: BTreeMap<String, f64> = BTreeMap::new();
         for row in 0..atoms.len() {
             let name = atoms.text(row, "atom");
             let residue = name.rsplit_once('/').unwrap().0.to_string();
             *residues.entry(residue).or_default() += atoms.number(row, column);
         }
-        let rows = of_sample("1aki.pdb", &["--sasa", "--volumes", "--per", "residue"]);
+        let rows = of_sample("1aki.pdb", &[flags, &["--per", "residue"]].concat());
         assert_eq!(rows.len(), residues.len());
         for row in 0..rows.len() {
             assert_near(rows.number(row, column), residues[rows.text(row, "residue")], 1e-5);
         }
         for level in ["chain", "molecule"] {
-            let rows = of_sample("1aki.pdb", &["--sasa", "--volumes", "--per", level]);
+            let rows = of_sample("1aki.pdb", &[flags, &["--per", level]].concat());
             assert_eq!(rows.len(), 1);
             assert_near(rows.number(0, column), sum(&atoms, column), 1e-3);
         }
@@ -276,6 +353,9 @@ fn errors_name_remedies() {
         (&["--sasa", "--probe", "nan"], "--probe"),
         (&["--sasa", "--radii", "nowhere"], "expected a file of radii, or one of protor, bondi, united"),
         (&["--contact-areas", "--per", "molecule"], "a molecule has no pairs"),
+        (&["--ses", "--sasa"], "cannot be used with"),
+        (&["--ses", "--pockets"], "cannot be used with"),
+        (&["--ses", "--min-area", "3"], "--min-area goes with --contact-areas"),
         (&["--filtration", "--radii", "bondi", "--per", "atom"], "--per does not go with --filtration"),
         (&["--within", "3"], "--within goes with --contact-areas"),
         (&["--contacts", "--between", "chains"], "--between goes with --contact-areas"),

@@ -29,20 +29,25 @@ pub(super) struct BallFlags {
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration"])]
     volumes: bool,
 
+    /// Write a table of the molecular (solvent-excluded) surface, on which the probe rolls: its area (Å²),
+    /// and the volume inside it, into which the probe cannot reach (Å³)
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
+    ses: bool,
+
     /// Write a table of contacts: the area of the flat face between two cells, inside both balls (Å²); not
     /// the buried area
-    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes", "ses"])]
     contact_areas: bool,
 
     /// Write a table of pockets and voids, the largest first: spaces outside all balls whose way out narrows;
     /// voids have none (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
-    #[arg(conflicts_with = "contact_areas")]
+    #[arg(conflicts_with_all = ["ses", "contact_areas"])]
     pockets: bool,
 
-    /// Radii of atoms, also for a mesh or a filtration with weights: protor (united atoms, Tsai et al. 1999), bondi (by
-    /// element), united (Chothia 1976), or a file with lines RESIDUE ATOM RADIUS or ELEMENT RADIUS [default:
-    /// protor]
+    /// Radii of atoms, also for a mesh or a filtration with weights: protor (united atoms, Tsai et al. 1999),
+    /// bondi (by element), united (Chothia 1976), or a file with lines RESIDUE ATOM RADIUS or ELEMENT RADIUS
+    /// [default: protor]
     #[arg(long, value_name = "NAME|FILE")]
     radii: Option<String>,
 
@@ -99,6 +104,8 @@ impl BallFlags {
             Some(Product::ContactAreas)
         } else if self.pockets {
             Some(Product::Pockets)
+        } else if self.ses {
+            Some(Product::Surface)
         } else {
             (self.sasa || self.volumes).then_some(Product::Cells)
         }
@@ -130,11 +137,13 @@ impl BallFlags {
                 Some((flag, _)) => {
                     let remedy = match (is_filtration, flag) {
                         (true, "--probe") => "needs --radii",
-                        (false, "--probe") if product == Product::Mesh => {
-                            "needs --radii, or one of --sasa, --volumes, --contact-areas and --pockets"
+(false, "--probe") if product == Product::Mesh => {
+                            "needs --radii, or one of --sasa, --volumes, --ses, --contact-areas and --pockets"
                         }
-                        _ if flag == "--per" => "goes with --sasa, --volumes, --contact-areas or --pockets",
-                        _ => "goes with --sasa, --volumes, --contact-areas, --pockets or --filtration",
+                        _ if flag == "--per" => {
+                            "goes with --sasa, --volumes, --ses, --contact-areas or --pockets"
+                        }
+                        _ => "goes with --sasa, --volumes, --ses, --contact-areas, --pockets or --filtration",
                     };
                     Err(Error::usage(format!("{flag} {remedy}")))
                 }
@@ -153,8 +162,8 @@ impl BallFlags {
             radii,
             probe,
             level,
-            areas: self.sasa,
-            volumes: self.volumes,
+            areas: self.sasa || self.ses,
+            volumes: self.volumes || self.ses,
             contacts: ContactFilter {
                 min_area: self.min_area.unwrap_or(0.0),
                 within: self.within,
@@ -200,6 +209,7 @@ impl BallFlags {
         let products = [
             ("sasa", self.sasa),
             ("volumes", self.volumes),
+            ("ses", self.ses),
             ("contact-areas", self.contact_areas),
             ("pockets", self.pockets),
         ];

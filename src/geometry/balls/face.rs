@@ -29,6 +29,9 @@ pub(super) struct Face {
     pub(super) area: f64,
     /// As the centres see it; negative where they see it from behind.
     pub(super) angles: [f64; 2],
+    /// Angle of the circle's arcs in the polygon: of the circle where the spheres meet, what no third ball
+    /// covers. Zero without angles.
+    pub(super) arc: f64,
 }
 
 impl Pair {
@@ -93,6 +96,7 @@ impl Pair {
     fn add_sector(&self, offset: f64, [from, to]: [f64; 2], face: &mut Face) {
         let angle = (offset * (to - from)).atan2(offset * offset + from * to);
         face.area += 0.5 * self.square * angle;
+        face.arc += angle;
         for (end, &height) in self.heights.iter().enumerate() {
             face.angles[end] += signed(height) * angle * (1.0 - height.abs() / self.radii[end]);
         }
@@ -126,10 +130,10 @@ fn signed(height: f64) -> f64 {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Side {
     /// Signed distance of the line from the foot: positive if the third ball is beyond it.
-    offset: f64,
+    pub(super) offset: f64,
     /// Ends, measured along the line, counterclockwise as the second centre sees the face.
-    from: f64,
-    to: f64,
+    pub(super) from: f64,
+    pub(super) to: f64,
 }
 
 impl Pair {

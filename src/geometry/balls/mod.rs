@@ -21,6 +21,7 @@ mod contacts;
 mod face;
 mod pockets;
 mod shares;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod tile;
@@ -28,6 +29,7 @@ mod tiles;
 
 pub use contacts::Contacts;
 pub use pockets::{Pocket, pockets};
+pub use surface::molecular_surface;
 
 use crate::predicates::Point3;
 use spmesh_core::error::{Error, Result};
@@ -127,7 +129,7 @@ fn in_tiles(
     let tiles = tiles::cut(balls, tile_max);
     let measured = parallel::map(threads, tiles.iter(), |members| {
         let tile = Tile::new(balls, members)?;
-        Ok(tile.measure(contacts_above))
+        Ok(tile.measure(contacts_above, |_, _, _| ()))
     })?;
     let mut cells = vec![Cell::default(); balls.centres.len()];
     let mut parts = Vec::with_capacity(tiles.len());

@@ -87,9 +87,7 @@ impl<'t> Search<'t> {
         let count = tile.tetrahedra().len();
         let mut search = Search { tile, powers: Vec::with_capacity(count), states: Vec::new() };
         for t in 0..count {
-            let apex = tile.tetrahedra()[t].vertices[0];
-            let to_centre = difference(tile.centre(t), tile.point(apex));
-            search.powers.push(dot(to_centre, to_centre) - tile.radius(apex).powi(2));
+            search.powers.push(tile.power(t));
             let vertices = tile.tetrahedra()[t].vertices;
             let is_outer = vertices.iter().any(|&v| tile.ball(v).is_none());
             search.states.push(match (is_outer, search.powers[t] > 0.0) {

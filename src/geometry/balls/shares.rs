@@ -73,8 +73,9 @@ fn meeting_point(centres: [Point3; 3], radii: [f64; 3]) -> Option<Point3> {
 /// The point of the plane of three centres that has the same power distance from all three balls.
 pub(super) struct Foot {
     /// Relative to the first centre.
-    at: Point3,
-    normal: Point3,
+    pub(super) at: Point3,
+    /// Right-handed about the way around the centres, of any length.
+    pub(super) normal: Point3,
     pub(super) power: f64,
 }
 

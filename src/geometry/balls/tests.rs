@@ -4,7 +4,7 @@ use super::{Balls, in_tiles};
 use std::num::NonZeroUsize;
 
 /// Pseudo-random numbers in [0, 1).
-fn random(count: usize) -> Vec<f64> {
+pub(super) fn random(count: usize) -> Vec<f64> {
     let mut state = 9u64;
     let mut next = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

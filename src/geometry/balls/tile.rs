@@ -137,6 +137,13 @@ impl<'t> Tile<'t> {
         self.centres[t]
     }
 
+    /// The power distance of the orthocentre of a tetrahedron from its balls.
+    pub(super) fn power(&self, t: usize) -> f64 {
+        let apex = self.tetrahedra()[t].vertices[0];
+        let to_centre = difference(self.centre(t), self.point(apex));
+        dot(to_centre, to_centre) - self.radius(apex).powi(2)
+    }
+
     /// Calls `visit` with the ends of each edge whose balls share a face, even one without area.
     pub(super) fn for_each_face(
         &self,
@@ -156,12 +163,22 @@ impl<'t> Tile<'t> {
         });
     }
 
-    fn is_core(&self, vertex: u32) -> bool {
-        (self.places[vertex as usize] as usize) < self.members.core.len()
+    /// The place of a ball in the core; `None` for others.
+    pub(super) fn place_in_core(&self, vertex: u32) -> Option<usize> {
+        Some(self.places[vertex as usize] as usize).filter(|&place| place < self.members.core.len())
     }
 
-    /// The cells of the core, and their contacts with greater balls.
-    pub(super) fn measure(&self, contacts_above: Option<f64>) -> Part {
+    fn is_core(&self, vertex: u32) -> bool {
+        self.place_in_core(vertex).is_some()
+    }
+
+    /// The cells of the core, and their contacts with greater balls; `see` gets the ends of each face at the
+    /// core, and the face.
+    pub(super) fn measure(
+        &self,
+        contacts_above: Option<f64>,
+        mut see: impl FnMut([u32; 2], &Pair, &Face),
+    ) -> Part {
         let mut cells = vec![Cell::default(); self.members.core.len()];
         // Solid angles of what is exposed.
         let mut angles = vec![0.0; self.places.len()];
@@ -178,6 +195,7 @@ impl<'t> Tile<'t> {
                 return Ok(());
             }
             let face = self.face(ring, &pair, |_| ());
+            see(ring.ends, &pair, &face);
             for ((&v, height), angle) in ring.ends.iter().zip(pair.heights).zip(face.angles) {
                 if self.is_core(v) {
                     cells[self.places[v as usize] as usize].volume += height * face.area / 3.0;

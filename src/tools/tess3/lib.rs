@@ -44,7 +44,9 @@ pub enum Product {
     Contacts,
     /// A table of the cells of atoms as balls ([`Options::balls`]): areas and volumes.
     Cells,
-    /// A table of the faces between them.
+    /// A table of the molecular surface and of what is inside it, by atoms as balls.
+    Surface,
+    /// A table of the faces between cells.
     ContactAreas,
     /// A table of the pockets and voids between them.
     Pockets,
@@ -75,7 +77,8 @@ pub struct Options {
     pub method: Method,
     /// Whether the blocks of meshes are compressed.
     pub compress: bool,
-    /// How atoms become balls, for [`Product::Cells`] and [`Product::ContactAreas`].
+    /// How atoms become balls, for the tables of balls, and filtrations with
+    /// weights.
     pub balls: Option<BallOptions>,
 }
 

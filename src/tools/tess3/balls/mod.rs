@@ -15,7 +15,7 @@ use self::pockets::PocketTable;
 use super::{Product, Report};
 use groups::Groups;
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::balls::{Balls, Cells, measure, pockets};
+use spmesh_geometry::balls::{Balls, Cells, measure, molecular_surface, pockets};
 use spmesh_io::source::structure::{Radii, Selected};
 use tables::{CellTable, ContactTable};
 
@@ -99,17 +99,23 @@ impl Molecule<'_> {
             return Err(Error::usage(message));
         };
         let mut finder = options.radii.finder(first.structure);
-        // The unit of structures is 0.001 Å or a lesser power of ten, so this is an integer for them.
-        let units = if self.scale == 1.0 { 1.0 / STEPS } else { (1.0 / (STEPS * self.scale)).round() };
         let atoms = (0..self.selected.points().len()).filter_map(|index| self.selected.atom(index));
         atoms
             .map(|atom| {
                 let is_hydrogen = matches!(atom.element(), "H" | "D");
                 report.hydrogens += u64::from(is_hydrogen && options.has_united_radii);
-                let steps = finder.steps_of(&atom)? + options.probe;
-                Ok(if self.scale == 1.0 { f64::from(steps) / STEPS } else { f64::from(steps) * units })
+                Ok(self.length(finder.steps_of(&atom)? + options.probe))
             })
             .collect()
+    }
+
+    /// Steps of a radius in stored units.
+    fn length(&self, steps: u32) -> f64 {
+        if self.scale == 1.0 {
+            return f64::from(steps) / STEPS;
+        }
+        // The unit of structures is 0.001 Å or a lesser power of ten, so this is an integer for them.
+        f64::from(steps) * (1.0 / (STEPS * self.scale)).round()
     }
 
     /// The weights of all atoms: squares of their radii, in stored units.
@@ -120,8 +126,8 @@ impl Molecule<'_> {
         Ok(self.radii(options, report)?.into_iter().map(|radius| radius * radius).collect())
     }
 
-    /// Measures the balls, and writes the rows of a table: of cells, of contacts, or of pockets. The output
-    /// is opened when they are measured.
+    /// Measures the balls, and writes the rows of a table: of cells, of the molecular surface, of contacts, or
+    /// of pockets. The output is opened when they are measured.
     ///
     /// # Errors
     /// If an atom has no radius; those of measuring and writing.
@@ -143,7 +149,12 @@ impl Molecule<'_> {
                 .write(&found, open()?);
         }
         let is_contacts = product == Product::ContactAreas;
-        let Cells { cells, contacts } = measure(balls, is_contacts.then_some(0.0), options.threads)?;
+        let Cells { cells, contacts } = if product == Product::Surface {
+            let cells = molecular_surface(balls, self.length(options.probe), options.threads)?;
+            Cells { cells, ..Cells::default() }
+        } else {
+            measure(balls, is_contacts.then_some(0.0), options.threads)?
+        };
         report.without_cell = cells.iter().filter(|cell| cell.volume == 0.0).count() as u64;
         let groups = Groups::new(self.selected, options.level);
         if is_contacts {

@@ -171,6 +171,7 @@ fn ending(product: Product) -> &'static str {
         Product::Tetrahedra => ".tetrahedra.tsv",
         Product::Contacts => ".contacts.tsv",
         Product::Cells => ".cells.tsv",
+        Product::Surface => ".surface.tsv",
         Product::ContactAreas => ".contact-areas.tsv",
         Product::Pockets => ".pockets.tsv",
         Product::Filtration => ".filtration.txt",
