@@ -24,6 +24,17 @@ pub struct Stats {
     pub bytes: u64,
 }
 
+impl Stats {
+    /// Adds the work of another thread; times are those of all threads together.
+    pub(super) fn merge(&mut self, other: &Stats) {
+        self.created += other.created;
+        self.insphere_tests += other.insphere_tests;
+        self.locate += other.locate;
+        self.cavity += other.cavity;
+        self.update += other.update;
+    }
+}
+
 /// Splits the time of insertions into phases, on request only: reading the clock takes time itself.
 #[derive(Debug)]
 pub(super) struct PhaseTimer {
