@@ -19,8 +19,7 @@ pub(super) struct Build<'a, 's, W> {
     pub(super) is_timed: bool,
     /// Whether portable instructions are used only.
     pub(super) is_portable: bool,
-    /// The numbers of the vertices in the order of insertion; those of the complex are skipped if they are
-    /// `first`.
+    /// The numbers of the vertices in the order of insertion. Those of the complex are skipped.
     pub(super) insertions: &'a mut Insertions,
     pub(super) first: [u32; 4],
     /// A tetrahedron of the complex that is not frozen, where the first walk starts.

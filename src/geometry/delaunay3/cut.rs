@@ -134,32 +134,41 @@ impl<'c> Cut<'c> {
         numbers
     }
 
-    /// Writes the frozen tetrahedra, in the order of their numbers. Each part tells, by the numbers of the
-    /// tetrahedra, which facets of its own are next to them.
-    pub(super) fn freeze<'r>(
-        &self,
-        room: &mut Slots<'_>,
-        rims: impl Iterator<Item = (u16, &'r [(u32, [Facet; 4])])>,
-    ) {
-        let frozen = || self.tetrahedra.iter().zip(&self.places).filter(|(_, place)| place.part == FROZEN);
-        for (&Tetrahedron { vertices, neighbours }, _) in frozen() {
-            let neighbours = neighbours.map(|facet| word(self.place(facet).number, facet));
-            room.push(Tetrahedron { vertices, neighbours });
-        }
-        let originals: Vec<&Tetrahedron> = frozen().map(|(tetrahedron, _)| tetrahedron).collect();
-        for (part, rim) in rims {
-            for &(number, neighbours) in rim {
-                for (side, neighbour) in neighbours.into_iter().enumerate() {
-                    if self.place(originals[number as usize].neighbours[side]).part == part {
-                        room[number as usize].neighbours[side] = neighbour;
-                    }
-                }
-            }
-        }
+    /// The frozen tetrahedra, in the order of their numbers.
+    pub(super) fn frozen_tetrahedra(&self) -> Frozen {
+        let frozen = self.tetrahedra.iter().zip(&self.places).filter(|(_, place)| place.part == FROZEN);
+        let copy = |(&Tetrahedron { vertices, neighbours }, _)| {
+            let places = neighbours.map(|facet| self.place(facet));
+            let neighbours = [0, 1, 2, 3].map(|side| word(places[side].number, neighbours[side]));
+            (Tetrahedron { vertices, neighbours }, places.map(|place| place.part))
+        };
+        Frozen(frozen.map(copy).collect())
     }
 
     fn place(&self, facet: Facet) -> Place {
         self.places[facet as usize / WORDS]
+    }
+}
+
+/// The frozen tetrahedra, and the parts of their neighbours. They know as neighbours only each other.
+pub(super) struct Frozen(Vec<(Tetrahedron, [u16; 4])>);
+
+impl Frozen {
+    /// Writes the tetrahedra. Each part tells, by their numbers, which of its facets are next to them.
+    pub(super) fn write<'r>(
+        self,
+        room: &mut Slots<'_>,
+        rims: impl Iterator<Item = (u16, &'r [(u32, [Facet; 4])])>,
+    ) {
+        self.0.iter().for_each(|&(tetrahedron, _)| room.push(tetrahedron));
+        for (part, rim) in rims {
+            for &(number, neighbours) in rim {
+                let parts = self.0[number as usize].1;
+                for side in (0..4).filter(|&side| parts[side] == part) {
+                    room[number as usize].neighbours[side] = neighbours[side];
+                }
+            }
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use super::complex::{Complex, DELETED, Facet, TETRAHEDRA_PER_VERTEX};
 use super::cut::{Cut, PARTS_MAX};
 use super::insertion::Cavity;
 use super::slots::Slots;
-use super::tetrahedralization::{NONE, Tetrahedron, WORDS};
+use super::tetrahedralization::{Tetrahedron, Vertex, WORDS};
 use super::weights::Weights;
 use super::whole::{Setting, Tally, Whole};
 use crate::order::Insertions;
@@ -33,66 +33,98 @@ const SPARE: usize = 50;
 pub(super) fn insert<W: Weights>(
     whole: &mut Whole,
     setting: &Setting<W>,
-    insertions: Insertions,
-    first: [u32; 4],
-    threads: usize,
+    insertions: impl Iterator<Item = u32>,
+    threads: NonZeroUsize,
     tally: &mut Tally,
 ) -> Result<Vec<u32>> {
     let coarse = whole.tetrahedra.clone();
-    let cut = Cut::new(&coarse, &whole.vertices, threads.min(PARTS_MAX));
-    let mut numbers: Vec<Vec<u32>> = vec![Vec::new(); cut.parts()];
-    insertions.filter(|v| !first.contains(v)).for_each(|v| numbers[usize::from(cut.part_of(v))].push(v));
-    let sizes: Vec<usize> = (0..cut.parts()).map(|part| room(&cut, part, numbers[part].len())).collect();
+    let cut = Cut::new(&coarse, &whole.vertices, threads.get().min(PARTS_MAX));
+    let mut numbers = vec![Vec::new(); cut.parts()];
+    insertions.for_each(|v| numbers[usize::from(cut.part_of(v))].push(v));
+    let sizes: Vec<usize> =
+        (0..).zip(&numbers).map(|(part, numbers)| room(&cut, part, numbers.len())).collect();
     whole.tetrahedra.clear();
     whole.tetrahedra.reserve_exact(cut.frozen + sizes.iter().sum::<usize>());
-    let mut room = Slots::of(&mut whole.tetrahedra);
-    let mut frozen = room.split_off_front(cut.frozen);
-    let mut at = cut.frozen;
+    let mut rest = Slots::of(&mut whole.tetrahedra);
+    let mut frozen = rest.split_off_front(cut.frozen);
+    let mut len = cut.frozen;
     let mut jobs = Vec::new();
-    for (part, numbers) in (0..).zip(numbers) {
-        let size = sizes[usize::from(part)];
-        jobs.push(Job { part, numbers, room: room.split_off_front(size), base: (at * WORDS) as u32 });
-        at += size;
+    for ((part, numbers), size) in (0..).zip(numbers).zip(sizes) {
+        jobs.push((part, numbers, rest.split_off_front(size), word_of(len)));
+        len += size;
     }
-    let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
-    let done = parallel::map(threads, jobs, |job| Ok(job.run(&cut, setting)))?;
-    cut.freeze(&mut frozen, done.iter().map(|done| (done.part, &done.rim[..])));
+    let copy = |(part, numbers, room, base)| {
+        let (complex, rim) = cut.copy(part, room);
+        let frame = Frame { part, own: cut.vertices_of(part), infinite: cut.infinite(), base, rim };
+        Ok(Part { frame, complex, numbers })
+    };
+    let parts = parallel::map(threads, jobs, copy)?;
+    let between = cut.frozen_tetrahedra();
+    // Memory that the parts need.
+    drop((cut, coarse));
+    let vertices = std::mem::take(&mut whole.vertices);
+    let count = vertices.len();
+    drop(vertices);
+    let done = parallel::map(threads, parts, |part| Ok(part.run(setting)))?;
+    between.write(&mut frozen, done.iter().map(|done| (done.part, &done.rim[..])));
     // SAFETY: each part has filled its room, and the room of frozen tetrahedra is full.
-    unsafe { Slots::give_back(&mut whole.tetrahedra, at) };
+    unsafe { Slots::give_back(&mut whole.tetrahedra, len) };
     let mut refused = Vec::new();
     whole.free.clear();
     for part in done {
+        if whole.vertices.is_empty() {
+            whole.vertices = part.vertices;
+            whole.vertices.reserve_exact(count - whole.vertices.len());
+        } else {
+            whole.vertices.extend(part.vertices);
+        }
         whole.free.extend(part.free);
         refused.extend(part.refused);
         tally.merge(&part.tally);
     }
+    whole.vertices.push(Vertex::default());
     Ok(refused)
+}
+
+/// The first word of the tetrahedron of this number.
+fn word_of(number: usize) -> u32 {
+    (number * WORDS) as u32
 }
 
 /// Room for the tetrahedra of a part after `count` insertions: as many per vertex as there are now. If it is
 /// not enough, points are refused.
-fn room(cut: &Cut<'_>, part: usize, count: usize) -> usize {
-    let all = cut.vertices_of(part as u16).len();
+fn room(cut: &Cut<'_>, part: u16, count: usize) -> usize {
+    let (all, size) = (cut.vertices_of(part).len(), cut.sizes[usize::from(part)]);
     let now = (all - count).max(1);
-    let likely = (cut.sizes[part] as f64 * all as f64 / now as f64) as usize;
-    let likely = likely.min(TETRAHEDRA_PER_VERTEX * all).max(cut.sizes[part]);
+    let likely = (size as f64 * all as f64 / now as f64) as usize;
+    let likely = likely.min(TETRAHEDRA_PER_VERTEX * all).max(size);
     likely + likely / SPARE + cut.frozen
 }
 
-/// What a thread does.
-struct Job<'s> {
+/// How numbers of a part become those of the whole.
+struct Frame {
     part: u16,
+    /// The vertices of the part.
+    own: Range<u32>,
+    infinite: u32,
+    /// Where the room of the part is, in words.
+    base: u32,
+    /// The numbers of the frozen tetrahedra that the part has copies of.
+    rim: Vec<u32>,
+}
+
+/// A part before the insertions.
+struct Part<'s> {
+    frame: Frame,
+    complex: Complex<'s>,
     /// The vertices to insert.
     numbers: Vec<u32>,
-    /// Room for the tetrahedra of the part, and before them for copies of the frozen ones next to it.
-    room: Slots<'s>,
-    /// Where the room is in the whole, in words.
-    base: u32,
 }
 
 /// What is left of a part in the whole, beside its tetrahedra.
 struct Done {
     part: u16,
+    vertices: Vec<Vertex>,
     /// Frozen tetrahedra next to the part, by their numbers, and their neighbouring facets in it.
     rim: Vec<(u32, [Facet; 4])>,
     free: Vec<u32>,
@@ -100,17 +132,14 @@ struct Done {
     tally: Tally,
 }
 
-impl Job<'_> {
-    fn run<W: Weights>(self, cut: &Cut<'_>, setting: &Setting<W>) -> Done {
-        let Job { part, mut numbers, room, base } = self;
-        let own = cut.vertices_of(part);
-        let (complex, rim) = cut.copy(part, room);
-        let mut tally = Tally::default();
-        let mut refused = Vec::new();
+impl Part<'_> {
+    fn run<W: Weights>(self, setting: &Setting<W>) -> Done {
+        let Part { frame, mut complex, mut numbers } = self;
+        let (first, mut tally, mut refused) = (frame.own.start, Tally::default(), Vec::new());
+        numbers.iter_mut().for_each(|v| *v -= first);
+        let mut insertions = Insertions::listed(numbers);
         let start = complex.frozen;
-        let complex = if complex.tetrahedra.len() > rim.len() {
-            numbers.iter_mut().for_each(|v| *v -= own.start);
-            let mut insertions = Insertions::listed(numbers);
+        if complex.tetrahedra.len() > frame.rim.len() {
             let build = Build {
                 complex,
                 weights: &setting.weights,
@@ -119,46 +148,35 @@ impl Job<'_> {
                 is_timed: setting.is_timed,
                 is_portable: setting.is_portable,
                 insertions: &mut insertions,
-                // Those that are there already are not among the numbers.
-                first: [NONE; 4],
+                // They are not among the insertions.
+                first: [u32::MAX; 4],
                 start,
                 refused: &mut refused,
                 infinite_lift: setting.infinite_lift,
             };
-            let complex = setting.arithmetic.run(build, &mut tally.counts);
-            // If there was no more room.
-            refused.extend(insertions);
-            refused.iter_mut().for_each(|v| *v += own.start);
-            complex
-        } else {
-            refused = numbers;
-            complex
-        };
-        let (rim, free) = Restored { own, infinite: cut.infinite(), base, rim }.restore(complex);
-        Done { part, rim, free, refused, tally }
+            complex = setting.arithmetic.run(build, &mut tally.counts);
+        }
+        // Without room, or without a tetrahedron to start at.
+        refused.extend(insertions);
+        refused.iter_mut().for_each(|v| *v += first);
+        let mut vertices = std::mem::take(&mut complex.vertices);
+        vertices.truncate(frame.own.len());
+        let (rim, free) = frame.restore(complex);
+        Done { part: frame.part, vertices, rim, free, refused, tally }
     }
 }
 
-/// From numbers of a part to numbers of the whole.
-struct Restored {
-    own: Range<u32>,
-    infinite: u32,
-    base: u32,
-    /// The numbers of the frozen tetrahedra that the part has copies of.
-    rim: Vec<u32>,
-}
-
-impl Restored {
+impl Frame {
     fn facet(&self, facet: Facet) -> Facet {
         match self.rim.get(facet as usize / WORDS) {
-            Some(number) => number * WORDS as u32 + (facet & 3),
+            Some(&number) => word_of(number as usize) | facet & 3,
             None => facet + self.base,
         }
     }
 
-    /// Numbers all tetrahedra of a part as in the whole, and fills its room with deleted ones. Returns what the
-    /// copies of frozen tetrahedra have as neighbours, and all deleted tetrahedra.
-    fn restore(self, complex: Complex<'_>) -> (Vec<(u32, [Facet; 4])>, Vec<u32>) {
+    /// Numbers all tetrahedra of a part as in the whole, and fills its room with deleted ones. Returns the
+    /// neighbours of the copies of frozen tetrahedra, and all deleted tetrahedra.
+    fn restore(&self, complex: Complex<'_>) -> (Vec<(u32, [Facet; 4])>, Vec<u32>) {
         let Complex { mut tetrahedra, free, .. } = complex;
         let (copies, own) = tetrahedra.split_at_mut(self.rim.len());
         let neighbours = copies.iter().map(|copy| copy.neighbours.map(|facet| self.facet(facet)));
@@ -174,9 +192,8 @@ impl Restored {
             tetrahedra.push(GAP);
         }
         // The last one is taken first.
-        let word = |place: usize| place as u32 * WORDS as u32 + self.base;
-        let gaps = (len..tetrahedra.len()).rev().map(word).chain((0..self.rim.len()).rev().map(word));
-        (rim, gaps.chain(free.into_iter().map(|t| t + self.base)).collect())
+        let gaps = (len..tetrahedra.len()).rev().chain((0..self.rim.len()).rev()).map(word_of);
+        (rim, gaps.chain(free).map(|t| t + self.base).collect())
     }
 }
 

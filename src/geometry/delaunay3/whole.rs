@@ -12,6 +12,7 @@ use super::{Kernel, MAX_POINTS};
 use crate::order::{Insertions, Sequence};
 use crate::predicates::{Arithmetic3, PredicateCounts};
 use spmesh_core::error::{Error, ErrorKind, Result};
+use std::num::NonZeroUsize;
 
 /// Greatest number of tetrahedra. It leaves numbers for one more star of all vertices.
 const TETRAHEDRA_MAX: usize = (1 << 29) - 2 * MAX_POINTS;
@@ -182,8 +183,12 @@ impl Kernel {
             let count = end - done;
             let threads = self.threads.get().min(count / self.points_per_thread.max(1));
             let mut numbers = Insertions::listed(insertions.by_ref().take(count).collect());
-            if done > 0 && threads > 1 {
-                let refused = parts::insert(whole, setting, numbers, first, threads, tally)?;
+            if let Some(threads) = NonZeroUsize::new(threads)
+                && threads.get() > 1
+                && done > 0
+            {
+                let refused =
+                    parts::insert(whole, setting, numbers.filter(|v| !first.contains(v)), threads, tally)?;
                 numbers = Insertions::listed(refused);
             }
             whole.insert(setting, &mut numbers, first, &mut self.cavity, tally)?;
