@@ -61,7 +61,8 @@ pub(super) fn insert<W: Weights>(
     let parts = parallel::map(threads, jobs, copy)?;
     let between = cut.frozen_tetrahedra();
     // Memory that the parts need.
-    drop((cut, coarse));
+    drop(cut);
+    drop(coarse);
     let vertices = std::mem::take(&mut whole.vertices);
     let count = vertices.len();
     drop(vertices);
