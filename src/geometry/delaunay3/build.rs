@@ -22,8 +22,8 @@ pub(super) struct Build<'a, 's, W> {
     /// The numbers of the vertices in the order of insertion. Those of the complex are skipped.
     pub(super) insertions: &'a mut Insertions,
     pub(super) first: [u32; 4],
-    /// A tetrahedron of the complex that is not frozen, where the first walk starts.
-    pub(super) start: u32,
+    /// Tetrahedra of the complex that are not frozen, along the curve. The first walk starts at the first.
+    pub(super) starts: &'a [u32],
     /// Takes the vertices that frozen tetrahedra, or lack of room, kept from being inserted.
     pub(super) refused: &'a mut Vec<u32>,
     /// See [`Insertion`].
@@ -37,7 +37,9 @@ impl<'s, W: Weights> Build<'_, 's, W> {
     /// Inlined, like everything that it calls with lanes, into one function per kind of processor.
     #[inline(always)]
     pub(super) fn run<L: Lanes>(self, predicates: &mut dyn Exact, token: L::Token) -> Complex<'s> {
-        let Build { insertions, first, mut start, refused, .. } = self;
+        let Build { insertions, first, starts, refused, .. } = self;
+        let finite = self.complex.infinite() as usize;
+        let mut start = starts.first().copied().unwrap_or(0);
         self.cavity.clear();
         let mut insertion = Insertion::<L, W> {
             complex: self.complex,
@@ -55,16 +57,30 @@ impl<'s, W: Weights> Build<'_, 's, W> {
             if first.contains(&vertex) {
                 continue;
             }
-            match insertion.insert(vertex, start) {
-                Ok(next) => start = next,
-                Err(Refusal::Frozen(next)) => {
-                    refused.push(vertex);
-                    start = next;
+            let mut is_retried = false;
+            loop {
+                match insertion.insert(vertex, start) {
+                    Ok(next) => start = next,
+                    Err(Refusal::Blocked) if !is_retried => {
+                        is_retried = true;
+                        let nearest = starts[vertex as usize * starts.len() / finite];
+                        if !insertion.complex.is_deleted(nearest) {
+                            start = nearest;
+                            continue;
+                        }
+                        refused.push(vertex);
+                    }
+                    Err(Refusal::Blocked) => refused.push(vertex),
+                    Err(Refusal::Frozen(next)) => {
+                        refused.push(vertex);
+                        start = next;
+                    }
+                    Err(Refusal::Full) => {
+                        refused.push(vertex);
+                        return insertion.finish();
+                    }
                 }
-                Err(Refusal::Full) => {
-                    refused.push(vertex);
-                    break;
-                }
+                break;
             }
         }
         insertion.finish()

@@ -31,6 +31,8 @@ struct Pending {
 /// Why a point was not inserted. Nothing has changed then.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Refusal {
+    /// The walk to it came to a frozen tetrahedron.
+    Blocked,
     /// A frozen tetrahedron is in conflict with it, or may be; where to start the walk to a point nearby.
     Frozen(u32),
     /// There is no room for its tetrahedra.
@@ -41,8 +43,8 @@ pub(super) enum Refusal {
 enum Unopened {
     /// The tetrahedron that contains the point hides it.
     Hidden(u32),
-    /// The walk ended in a frozen tetrahedron.
-    Frozen,
+    /// The walk came to a frozen tetrahedron.
+    Blocked,
 }
 
 /// Buffers of one insertion, which the next one reuses.
@@ -103,7 +105,7 @@ impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
         let at = Site { at: self.complex.point(q), weight: self.weights.of(q) };
         match self.open_cavity(at, start) {
             Err(Unopened::Hidden(t)) => return Ok(t),
-            Err(Unopened::Frozen) => return Err(Refusal::Frozen(start)),
+            Err(Unopened::Blocked) => return Err(Refusal::Blocked),
             Ok(()) => {}
         }
         let mut next = 0;
@@ -333,7 +335,7 @@ impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
     fn find_conflict(&mut self, at: Site, start: u32) -> Result<(u32, [TranslatedVertex; 4]), Unopened> {
         let t = walk(&self.complex, start, at.at);
         if t < self.complex.frozen {
-            return Err(Unopened::Frozen);
+            return Err(Unopened::Blocked);
         }
         let test = InSphere::new::<W>(self.complex.corners(t).map(|v| self.translate(v, at)));
         if test.value > 0.0 && test.is_certain::<W>() {
@@ -344,7 +346,7 @@ impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
         }
         let t = walk_exactly(&self.complex, self.weights, t, at, self.predicates);
         if t < self.complex.frozen {
-            return Err(Unopened::Frozen);
+            return Err(Unopened::Blocked);
         }
         if !W::ARE_EQUAL && !is_in_conflict(&self.complex, self.weights, t, at, self.predicates) {
             return Err(Unopened::Hidden(t));

@@ -14,7 +14,7 @@ use super::complex::{Complex, DELETED, Facet, TETRAHEDRA_PER_VERTEX};
 use super::cut::{Cut, PARTS_MAX};
 use super::insertion::Cavity;
 use super::slots::Slots;
-use super::tetrahedralization::{Tetrahedron, Vertex, WORDS};
+use super::tetrahedralization::{NONE, Tetrahedron, Vertex, WORDS};
 use super::weights::Weights;
 use super::whole::{Setting, Tally, Whole};
 use crate::order::Insertions;
@@ -23,16 +23,20 @@ use spmesh_core::parallel;
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
+/// Greatest number of places along the curve where walks may start.
+const STARTS_MAX: usize = 1 << 14;
+
 /// A part has room for one of so many tetrahedra more than it is likely to have.
 const SPARE: usize = 50;
 
-/// Inserts vertices on so many threads. Returns those that are not inserted yet: the ones between parts.
+/// Inserts vertices on so many threads, where `inserted` vertices are already. Returns those that are not inserted yet: the ones between parts.
 ///
 /// # Errors
 /// None: for the sake of [`parallel::map`].
 pub(super) fn insert<W: Weights>(
     whole: &mut Whole,
     setting: &Setting<W>,
+    inserted: usize,
     insertions: impl Iterator<Item = u32>,
     threads: NonZeroUsize,
     tally: &mut Tally,
@@ -42,7 +46,7 @@ pub(super) fn insert<W: Weights>(
     let mut numbers = vec![Vec::new(); cut.parts()];
     insertions.for_each(|v| numbers[usize::from(cut.part_of(v))].push(v));
     let sizes: Vec<usize> =
-        (0..).zip(&numbers).map(|(part, numbers)| room(&cut, part, numbers.len())).collect();
+        (0..).zip(&numbers).map(|(part, numbers)| room(&cut, part, inserted, numbers.len())).collect();
     whole.tetrahedra.clear();
     whole.tetrahedra.reserve_exact(cut.frozen + sizes.iter().sum::<usize>());
     let mut rest = Slots::of(&mut whole.tetrahedra);
@@ -94,12 +98,34 @@ fn word_of(number: usize) -> u32 {
 
 /// Room for the tetrahedra of a part after `count` insertions: as many per vertex as there are now. If it is
 /// not enough, points are refused.
-fn room(cut: &Cut<'_>, part: u16, count: usize) -> usize {
+fn room(cut: &Cut<'_>, part: u16, inserted: usize, count: usize) -> usize {
     let (all, size) = (cut.vertices_of(part).len(), cut.sizes[usize::from(part)]);
-    let now = (all - count).max(1);
-    let likely = (size as f64 * all as f64 / now as f64) as usize;
+    // Those inserted so far are evenly spread along the curve.
+    let now = inserted as f64 * all as f64 / f64::from(cut.infinite());
+    let likely = (size as f64 * (now + count as f64) / now) as usize;
     let likely = likely.min(TETRAHEDRA_PER_VERTEX * all).max(size);
     likely + likely / SPARE + cut.frozen
+}
+
+/// Tetrahedra of a part along the curve, from which walks start that would cross other parts otherwise.
+fn starts(complex: &Complex<'_>) -> Vec<u32> {
+    let finite = complex.infinite() as usize;
+    let count = finite.min(STARTS_MAX);
+    let mut starts = vec![NONE; count];
+    let own = complex.words_of_tetrahedra().filter(|&t| t >= complex.frozen);
+    for t in own {
+        let least = complex.corners(t).into_iter().fold(NONE, u32::min) as usize;
+        starts[least * count / finite] = t;
+    }
+    let mut last = starts.iter().copied().find(|&t| t != NONE);
+    for start in &mut starts {
+        match last {
+            Some(before) if *start == NONE => *start = before,
+            Some(_) => last = Some(*start),
+            None => return Vec::new(),
+        }
+    }
+    starts
 }
 
 /// How numbers of a part become those of the whole.
@@ -139,8 +165,8 @@ impl Part<'_> {
         let (first, mut tally, mut refused) = (frame.own.start, Tally::default(), Vec::new());
         numbers.iter_mut().for_each(|v| *v -= first);
         let mut insertions = Insertions::listed(numbers);
-        let start = complex.frozen;
-        if complex.tetrahedra.len() > frame.rim.len() {
+        let starts = starts(&complex);
+        if !starts.is_empty() {
             let build = Build {
                 complex,
                 weights: &setting.weights,
@@ -151,7 +177,7 @@ impl Part<'_> {
                 insertions: &mut insertions,
                 // They are not among the insertions.
                 first: [u32::MAX; 4],
-                start,
+                starts: &starts,
                 refused: &mut refused,
                 infinite_lift: setting.infinite_lift,
             };

@@ -123,7 +123,7 @@ impl Whole {
                 is_portable: *is_portable,
                 insertions,
                 first,
-                start,
+                starts: &[start],
                 refused,
                 infinite_lift: *infinite_lift,
             };
@@ -187,8 +187,14 @@ impl Kernel {
                 && threads.get() > 1
                 && done > 0
             {
-                let refused =
-                    parts::insert(whole, setting, numbers.filter(|v| !first.contains(v)), threads, tally)?;
+                let refused = parts::insert(
+                    whole,
+                    setting,
+                    done,
+                    numbers.filter(|v| !first.contains(v)),
+                    threads,
+                    tally,
+                )?;
                 numbers = Insertions::listed(refused);
             }
             whole.insert(setting, &mut numbers, first, &mut self.cavity, tally)?;
