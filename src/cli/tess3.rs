@@ -113,8 +113,7 @@ pub struct Flags {
     #[arg(long, value_name = "FILE", requires = "out_dir")]
     lof: Option<PathBuf>,
 
-    /// Number of files of a sweep in parallel, or of threads that measure the balls of one structure
-    /// [default: one per core]
+    /// Number of files of a sweep in parallel, or of threads for one structure [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
@@ -319,13 +318,13 @@ impl Flags {
             (.., true) => Product::Filtration,
             _ => Product::Mesh,
         };
-        let method = self.method.method()?;
-        if product == Product::Filtration && method.arithmetic != Arithmetic::Exact {
-            return Err(Error::usage("--filtration needs --arithmetic exact"));
-        }
         // A sweep has threads for its files.
         let threads = if self.out_dir.is_some() { 1 } else { self.threads() };
         let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
+        let method = self.method.method(threads)?;
+        if product == Product::Filtration && method.arithmetic != Arithmetic::Exact {
+            return Err(Error::usage("--filtration needs --arithmetic exact"));
+        }
         let balls = self.balls.options(self.filtration, threads)?;
         Ok(Options {
             selection: self.selection.selection(),
