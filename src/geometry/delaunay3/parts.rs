@@ -88,6 +88,7 @@ pub(super) fn insert<W: Weights>(
         tally.merge(&part.tally);
     }
     whole.vertices.push(Vertex::default());
+    tally.stats.refused += refused.len() as u64;
     Ok(refused)
 }
 
