@@ -247,13 +247,15 @@ fn long_meshes_come_in_patches() {
 fn the_bytes_of_a_mesh_do_not_depend_on_the_number_of_threads() {
     let mut random = spmesh_core::random::Random::new(4);
     // Multiples of a tenth, so that many points are cospherical, and some coincide.
-    let mut line =
-        || format!("{}.{} {} {}.5\n", random.below(60), random.below(10), random.below(60), random.below(60));
+    let mut line = || {
+        let [x, tenths, y, z] = [60, 10, 60, 60].map(|bound| random.below(bound));
+        format!("{x}.{tenths} {y} {z}.5\n")
+    };
     let text: String = (0..70_000).map(|_| line()).collect();
     let mesh = |threads| {
-        let run = run("tess3", &["--from", "points", "-q", "--threads", threads, "-"], text.as_bytes());
-        assert_eq!(run.code, Some(0), "{}", run.stderr);
-        run.stdout
+        let output = run("tess3", &["--from", "points", "-q", "--threads", threads, "-"], text.as_bytes());
+        assert_eq!(outcome(&output).0, Some(0), "{}", outcome(&output).1);
+        output.stdout
     };
     let expected = mesh("1");
     for threads in ["2", "3", "8"] {
