@@ -33,8 +33,8 @@ pub struct Corners {
 pub struct CornerParts<'c> {
     /// The vertices in order along the curve.
     pub vertices: &'c [Vertex],
-    /// The corners of each tetrahedron: indices of vertices, positively oriented, the greatest last and of the
-    /// others the least first.
+    /// The corners of each tetrahedron: indices of vertices, positively oriented, the greatest last and of
+    /// the others the least first.
     pub tetrahedra: &'c [[u32; 4]],
     /// Unused memory of arbitrary content: four words or more for each of the tetrahedra.
     pub spare: &'c mut [u32],
@@ -110,8 +110,8 @@ struct Sorter {
 }
 
 impl Sorter {
-    /// Sorts tetrahedra whose last vertices are `first` and the next `1 << shift`: a counting sort by the last
-    /// vertex, then a sort of the few that have it in common.
+    /// Sorts tetrahedra whose last vertices are `first` and the next `1 << shift`: a counting sort by the
+    /// last vertex, then a sort of the few that have it in common.
     fn sort(&mut self, group: &mut [[u32; 4]], first: u32, shift: u32) {
         self.places.clear();
         self.places.resize(1 << shift, 0);

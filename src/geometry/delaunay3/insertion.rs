@@ -152,8 +152,8 @@ impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
         self.cavity.star.slots[0]
     }
 
-    /// Whether the frozen tetrahedron beyond a facet may be in conflict. That of an infinite one may depend on
-    /// a tetrahedron that is not here.
+    /// Whether the frozen tetrahedron beyond a facet may be in conflict. That of an infinite one may depend
+    /// on a tetrahedron that is not here.
     #[cold]
     #[inline(never)]
     fn may_be_in_conflict(&mut self, at: Site, facet: &Pending) -> bool {

@@ -11,8 +11,8 @@ use spmesh_model::simplex::TETRAHEDRON_FACETS;
 /// Steps after which the exact walk takes over: rounding may lead the other one in circles.
 const STEPS_MAX: usize = 10_000;
 
-/// Walks from `start` to a tetrahedron that probably contains the point at `q`, in rounded arithmetic, or to a
-/// frozen one.
+/// Walks from `start` to a tetrahedron that probably contains the point at `q`, in rounded arithmetic, or
+/// to a frozen one.
 #[inline(always)]
 pub(super) fn walk(complex: &Complex<'_>, start: u32, q: Point3) -> u32 {
     let infinite = complex.infinite();

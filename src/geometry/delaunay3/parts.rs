@@ -1,13 +1,14 @@
 //! Insertion on several threads: each has a part of the complex, which others neither read nor write.
 //!
-//! The vertices, in order along the curve, are cut into ranges, one for each thread. A tetrahedron whose finite
-//! vertices are all in one range belongs to this part. Tetrahedra with vertices of several ranges belong to
-//! none; they lie between the parts, as neighbours have three vertices in common, and are *frozen*: a part has
-//! copies of those next to it. A thread inserts points of its own range. If a frozen tetrahedron is in conflict
-//! with a point, the point is refused, and inserted when the parts are one complex again. Otherwise the cavity
-//! and all around it are in the part, and new tetrahedra are the part's as well: their vertices are those of
-//! the cavity and the point. So parts fit together whatever the threads did, and are Delaunay wherever no
-//! point is missing. The tetrahedralization is canonical: it does not depend on the order of insertion.
+//! The vertices, in order along the curve, are cut into ranges, one for each thread. A tetrahedron whose
+//! finite vertices are all in one range belongs to this part. Tetrahedra with vertices of several ranges
+//! belong to none; they lie between the parts, as neighbours have three vertices in common, and are
+//! *frozen*: a part has copies of those next to it. A thread inserts points of its own range. If a frozen
+//! tetrahedron is in conflict with a point, the point is refused, and inserted when the parts are one
+//! complex again. Otherwise the cavity and all around it are in the part, and new tetrahedra are the part's
+//! as well: their vertices are those of the cavity and the point. So parts fit together whatever the
+//! threads did, and are Delaunay wherever no point is missing. The tetrahedralization is canonical: it does
+//! not depend on the order of insertion.
 
 use super::build::Build;
 use super::complex::{Complex, DELETED, Facet, TETRAHEDRA_PER_VERTEX};
@@ -29,7 +30,8 @@ const STARTS_MAX: usize = 1 << 14;
 /// A part has room for one of so many tetrahedra more than it is likely to have.
 const SPARE: usize = 50;
 
-/// Inserts vertices on so many threads, where `inserted` vertices are already. Returns those that are not inserted yet: the ones between parts.
+/// Inserts vertices on so many threads, where `inserted` vertices are already. Returns those that are not
+/// inserted yet: the ones between parts.
 ///
 /// # Errors
 /// None: for the sake of [`parallel::map`].

@@ -147,8 +147,9 @@ impl Whole {
 
 /// The numbers of points at the ends of phases: all points of the first phase are inserted on one thread.
 ///
-/// A phase has `PHASE_FACTOR` times the points of the one before, so that tetrahedra between parts, which stay
-/// as they are during a phase, are thin. It is worth its own threads if it has so many points for each of two.
+/// A phase has `PHASE_FACTOR` times the points of the one before, so that tetrahedra between parts, which
+/// stay as they are during a phase, are thin. It is worth its own threads if it has so many points for each
+/// of two.
 fn phases(count: usize, points_per_thread: usize) -> Vec<usize> {
     let mut ends = vec![count];
     let mut end = count;

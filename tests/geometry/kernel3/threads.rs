@@ -1,4 +1,5 @@
-//! Several threads: each set is cut into parts of a few points, and the result proved as that of one thread is.
+//! Several threads: each set is cut into parts of a few points, and the result proved as that of one thread
+//! is.
 
 use super::promises::tetrahedra;
 use super::proved;
