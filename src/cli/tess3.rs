@@ -197,7 +197,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         Some(folder) => run_sweep(&flags, folder)?,
         None => run_one(&flags)?,
     };
-    report::print(flags.stats, &stats.stats, &flags.method.method()?, started.elapsed());
+    report::print(flags.stats, &stats.stats, &flags.method.method(NonZeroUsize::MIN)?, started.elapsed());
     stats.failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
