@@ -96,12 +96,12 @@ impl<'s> Complex<'s> {
 
     #[inline(always)]
     fn words(&self) -> &[u32] {
-        cast_slice(&*self.tetrahedra)
+        cast_slice(&self.tetrahedra)
     }
 
     #[inline(always)]
     fn words_mut(&mut self) -> &mut [u32] {
-        cast_slice_mut(&mut *self.tetrahedra)
+        cast_slice_mut(&mut self.tetrahedra)
     }
 
     /// All tetrahedra, including deleted ones.
