@@ -114,8 +114,7 @@ pub struct Flags {
     #[arg(long, value_name = "FILE", requires = "out_dir")]
     lof: Option<PathBuf>,
 
-    /// Number of files of a sweep in parallel, or of threads that measure the balls of one structure
-    /// [default: one per core]
+    /// Number of files of a sweep in parallel, or of threads for one structure [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
@@ -199,7 +198,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         Some(folder) => run_sweep(&flags, folder)?,
         None => run_one(&flags)?,
     };
-    report::print(flags.stats, &stats.stats, &flags.method.method()?, started.elapsed());
+    report::print(flags.stats, &stats.stats, &flags.method.method(NonZeroUsize::MIN)?, started.elapsed());
     stats.failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
@@ -320,10 +319,10 @@ impl Flags {
             (.., true) => Product::Filtration,
             _ => Product::Mesh,
         };
-        let method = self.method.method()?;
         // A sweep has threads for its files.
         let threads = if self.out_dir.is_some() { 1 } else { self.threads() };
         let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
+        let method = self.method.method(threads)?;
         let balls = self.balls.options(product, threads)?;
         let has_weights = product == Product::Filtration || balls.is_some();
         if has_weights && method.arithmetic != Arithmetic::Exact {

@@ -3,6 +3,7 @@
 mod large;
 mod promises;
 mod small;
+mod threads;
 mod weighted;
 
 use promises::prove;

@@ -244,6 +244,26 @@ fn long_meshes_come_in_patches() {
 }
 
 #[test]
+fn the_bytes_of_a_mesh_do_not_depend_on_the_number_of_threads() {
+    let mut random = spmesh_core::random::Random::new(4);
+    // Multiples of a tenth, so that many points are cospherical, and some coincide.
+    let mut line = || {
+        let [x, tenths, y, z] = [60, 10, 60, 60].map(|bound| random.below(bound));
+        format!("{x}.{tenths} {y} {z}.5\n")
+    };
+    let text: String = (0..70_000).map(|_| line()).collect();
+    let mesh = |threads| {
+        let output = run("tess3", &["--from", "points", "-q", "--threads", threads, "-"], text.as_bytes());
+        assert_eq!(outcome(&output).0, Some(0), "{}", outcome(&output).1);
+        output.stdout
+    };
+    let expected = mesh("1");
+    for threads in ["2", "3", "8"] {
+        assert!(mesh(threads) == expected, "{threads} threads");
+    }
+}
+
+#[test]
 fn one_model_is_chosen_by_its_number_and_the_first_by_default() {
     let text = models(&[cloud(20, 9_000, 6), cloud(30, 9_000, 7), cloud(40, 9_000, 8)]);
     assert_eq!(mesh_of(&text, &[]).points.len(), 20);

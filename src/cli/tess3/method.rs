@@ -1,6 +1,7 @@
 //! Flags for experiments with the kernel.
 
 use std::fmt;
+use std::num::NonZeroUsize;
 
 use clap::{Args, ValueEnum};
 
@@ -84,7 +85,7 @@ enum SequenceFlag {
 impl MethodFlags {
     /// # Errors
     /// Usage, if exact signs are to be checked, or if the build lacks experiments and a flag asks for one.
-    pub(super) fn method(&self) -> Result<Method> {
+    pub(super) fn method(&self, threads: NonZeroUsize) -> Result<Method> {
         if !HAS_EXPERIMENTS && !self.is_default() {
             return Err(Error::usage(NO_EXPERIMENTS));
         }
@@ -107,7 +108,8 @@ impl MethodFlags {
             (false, false) => Arithmetic::Exact,
             (false, true) => return Err(Error::usage("--check-signs goes with --arithmetic float")),
         };
-        Ok(Method { arithmetic, curve, sequence, by_bit_levels, seed: self.seed, is_timed: self.timed })
+        let (seed, is_timed) = (self.seed, self.timed);
+        Ok(Method { arithmetic, curve, sequence, by_bit_levels, seed, is_timed, threads })
     }
 
     fn is_default(&self) -> bool {
@@ -123,7 +125,7 @@ impl MethodFlags {
 impl fmt::Display for MethodFlags {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Ok(Method { arithmetic: Arithmetic::Float { .. }, curve, sequence, by_bit_levels, seed, .. }) =
-            self.method()
+            self.method(NonZeroUsize::MIN)
         else {
             return Ok(());
         };

@@ -1,85 +1,106 @@
 //! The first tetrahedron, then point after point.
 
-use super::MAX_POINTS;
 use super::complex::Complex;
 use super::exact::Exact;
-use super::insertion::{Cavity, Insertion};
+use super::insertion::{Cavity, Insertion, Refusal};
 use super::lanes::Lanes;
 use super::stats::{PhaseTimer, Stats};
-use super::tetrahedralization::{Tetrahedron, Vertex};
+use super::tetrahedralization::Vertex;
 use super::weights::Weights;
 use crate::order::Insertions;
-use crate::predicates::{Point3, Sign};
+use crate::predicates::{Point3, Predicates3, Sign, WithPredicates3};
 
-/// Tetrahedralizes distinct points, all in one arithmetic.
-pub(super) struct Build<'a, W> {
-    /// The vertices, that at infinity last.
-    pub(super) vertices: Vec<Vertex>,
-    pub(super) weights: W,
-    /// Memory for the tetrahedra.
-    pub(super) tetrahedra: Vec<Tetrahedron>,
+/// Inserts vertices into a complex, all in one arithmetic.
+pub(super) struct Build<'a, 's, W> {
+    pub(super) complex: Complex<'s>,
+    pub(super) weights: &'a W,
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
     pub(super) is_timed: bool,
     /// Whether portable instructions are used only.
     pub(super) is_portable: bool,
-    /// The numbers of the vertices in the order of insertion.
-    pub(super) insertions: Insertions,
+    /// The numbers of the vertices in the order of insertion. Those of the complex are skipped.
+    pub(super) insertions: &'a mut Insertions,
+    pub(super) first: [u32; 4],
+    /// Tetrahedra of the complex that are not frozen, along the curve. The first walk starts at the first.
+    pub(super) starts: &'a [u32],
+    /// Takes the vertices that frozen tetrahedra, or lack of room, kept from being inserted.
+    pub(super) refused: &'a mut Vec<u32>,
     /// See [`Insertion`].
     pub(super) infinite_lift: f64,
 }
 
-/// The result of a build.
-pub(super) enum Built {
-    /// The whole.
-    Complex(Complex),
-    /// Nothing, because all points lie in a plane; the memory is given back.
-    Flat(Vec<Vertex>, Vec<Tetrahedron>),
-    /// More tetrahedra than can be numbered.
-    TooMany,
-}
-
-/// Greatest number of tetrahedra. It leaves numbers for one more star of all vertices.
-pub(super) const TETRAHEDRA_MAX: usize = (1 << 29) - 2 * MAX_POINTS;
-
-impl<W: Weights> Build<'_, W> {
-    /// The complex.
+impl<'s, W: Weights> Build<'_, 's, W> {
+    /// The complex with the vertices inserted: all but those refused, or, if there is no more room, all until
+    /// the one refused last.
     ///
     /// Inlined, like everything that it calls with lanes, into one function per kind of processor.
     #[inline(always)]
-    pub(super) fn run<L: Lanes>(self, predicates: &mut dyn Exact, token: L::Token) -> Built {
-        let Some(first) = self.first_tetrahedron(predicates) else {
-            return Built::Flat(self.vertices, self.tetrahedra);
-        };
+    pub(super) fn run<L: Lanes>(self, predicates: &mut dyn Exact, token: L::Token) -> Complex<'s> {
+        let Build { insertions, first, starts, refused, .. } = self;
+        let finite = self.complex.infinite() as usize;
+        let mut start = starts.first().copied().unwrap_or(0);
         self.cavity.clear();
         let mut insertion = Insertion::<L, W> {
-            complex: Complex::new(self.vertices, self.tetrahedra, first),
-            weights: &self.weights,
+            complex: self.complex,
+            weights: self.weights,
             predicates,
             cavity: self.cavity,
             stats: self.stats,
             timer: PhaseTimer::new(self.is_timed),
             infinite_lift: self.infinite_lift,
+            tests: 0,
             unfiltered: 0,
             token,
         };
-        insertion.stats.created = 5;
-        let mut start = 0;
-        for vertex in self.insertions {
-            if !first.contains(&vertex) {
-                start = insertion.insert(vertex, start);
-                if insertion.complex.tetrahedra.len() > TETRAHEDRA_MAX {
-                    return Built::TooMany;
+        for vertex in insertions {
+            if first.contains(&vertex) {
+                continue;
+            }
+            let mut is_retried = false;
+            loop {
+                match insertion.insert(vertex, start) {
+                    Ok(next) => start = next,
+                    Err(Refusal::Blocked) if !is_retried => {
+                        is_retried = true;
+                        let nearest = starts[vertex as usize * starts.len() / finite];
+                        if !insertion.complex.is_deleted(nearest) {
+                            start = nearest;
+                            continue;
+                        }
+                        refused.push(vertex);
+                    }
+                    Err(Refusal::Blocked) => refused.push(vertex),
+                    Err(Refusal::Frozen(next)) => {
+                        refused.push(vertex);
+                        start = next;
+                    }
+                    Err(Refusal::Full) => {
+                        refused.push(vertex);
+                        return insertion.finish();
+                    }
                 }
+                break;
             }
         }
-        Built::Complex(insertion.finish())
+        insertion.finish()
     }
+}
 
-    /// The first four vertices that are not in a plane, positively oriented.
-    fn first_tetrahedron(&self, predicates: &mut dyn Exact) -> Option<[u32; 4]> {
+/// Searches the first four vertices that are not in a plane.
+pub(super) struct First<'a> {
+    pub(super) vertices: &'a [Vertex],
+    /// The numbers of the vertices in the order of insertion.
+    pub(super) insertions: Insertions,
+}
+
+impl WithPredicates3 for First<'_> {
+    /// They are positively oriented.
+    type Output = Option<[u32; 4]>;
+
+    fn with(mut self, predicates: &mut impl Predicates3) -> Option<[u32; 4]> {
         let point = |v: u32| self.vertices[v as usize].at;
-        let mut sequence = self.insertions.clone();
+        let sequence = &mut self.insertions;
         let (a, b) = (sequence.next()?, sequence.next()?);
         let c = sequence.find(|&c| !is_line(point(a), point(b), point(c), predicates))?;
         let mut orientation = Sign::Zero;
@@ -92,7 +113,7 @@ impl<W: Weights> Build<'_, W> {
 }
 
 /// Whether three points lie on a line: so do then their projections along all axes.
-fn is_line(a: Point3, b: Point3, c: Point3, predicates: &mut dyn Exact) -> bool {
+fn is_line(a: Point3, b: Point3, c: Point3, predicates: &mut impl Predicates3) -> bool {
     [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
         let [p, q, r] = [a, b, c].map(|point| [point[i], point[j], 0.0]);
         predicates.orient3d(p, q, r, [p[0], p[1], 1.0]) == Sign::Zero

@@ -1,5 +1,7 @@
 //! A triangulated 3-sphere in a flat array: the tetrahedralization and one vertex at infinity (thesis 4.3).
 
+use super::MAX_POINTS;
+use super::slots::Slots;
 use super::tetrahedralization::{Tetrahedron, Vertex, WORDS};
 use crate::predicates::Point3;
 use bytemuck::{Zeroable, cast_slice, cast_slice_mut};
@@ -11,10 +13,11 @@ const FIRST_NEIGHBOUR: usize = 4;
 
 /// Tetrahedra per vertex that memory is reserved for at first: uniform points have 6.8, points of a surface
 /// up to 9. Memory costs nothing until it is touched; enlarging it would cost a copy.
-const TETRAHEDRA_PER_VERTEX: usize = 9;
+pub(super) const TETRAHEDRA_PER_VERTEX: usize = 9;
 
-/// Stands for each vertex of a deleted tetrahedron.
-pub(super) const DELETED: u32 = u32::MAX;
+/// Flag of each vertex of a deleted tetrahedron: with it, a number is above those of all vertices.
+pub(super) const DELETED: u32 = 1 << 31;
+const _: () = assert!(MAX_POINTS < DELETED as usize);
 
 /// A facet of a tetrahedron is the word of the vertex opposite to it; a tetrahedron is the word of its first
 /// vertex.
@@ -49,26 +52,28 @@ pub(super) fn corner(facet: Facet) -> usize {
 
 /// Vertices and tetrahedra. The last vertex is that at infinity.
 #[derive(Debug)]
-pub(super) struct Complex {
+pub(super) struct Complex<'s> {
     pub(super) vertices: Vec<Vertex>,
-    pub(super) tetrahedra: Vec<Tetrahedron>,
+    pub(super) tetrahedra: Slots<'s>,
     /// Deleted tetrahedra, whose places are reused before the array grows.
     pub(super) free: Vec<u32>,
+    /// Tetrahedra before this word belong to other parts, too, and stay as they are: see [`super::parts`].
+    pub(super) frozen: u32,
 }
 
-impl Complex {
-    /// The first tetrahedron, positively oriented, and the four infinite ones around it.
-    pub(super) fn new(vertices: Vec<Vertex>, mut tetrahedra: Vec<Tetrahedron>, first: [u32; 4]) -> Complex {
+impl<'s> Complex<'s> {
+    /// The first tetrahedron, positively oriented, and the four infinite ones around it, in empty room for
+    /// five at least.
+    pub(super) fn new(vertices: Vec<Vertex>, mut tetrahedra: Slots<'s>, first: [u32; 4]) -> Complex<'s> {
         let infinite = vertices.len() as u32 - 1;
         let outer = TETRAHEDRON_FACETS.map(|corners| {
             let [a, b, c] = corners.map(|i| first[i]);
             [infinite, a, c, b]
         });
-        tetrahedra.clear();
-        tetrahedra.reserve_exact(TETRAHEDRA_PER_VERTEX * vertices.len());
-        tetrahedra.push(Tetrahedron { vertices: first, neighbours: [0; 4] });
-        tetrahedra.extend(outer.map(|vertices| Tetrahedron { vertices, neighbours: [0; 4] }));
-        let mut complex = Complex { vertices, tetrahedra, free: Vec::new() };
+        for vertices in [first].into_iter().chain(outer) {
+            tetrahedra.push(Tetrahedron { vertices, neighbours: [0; 4] });
+        }
+        let mut complex = Complex { vertices, tetrahedra, free: Vec::new(), frozen: 0 };
         complex.link_all();
         complex
     }
@@ -100,7 +105,7 @@ impl Complex {
     }
 
     /// All tetrahedra, including deleted ones.
-    pub(super) fn words_of_tetrahedra(&self) -> impl Iterator<Item = u32> + use<> {
+    pub(super) fn words_of_tetrahedra(&self) -> impl Iterator<Item = u32> + use<'s> {
         (0..self.words().len() as u32).step_by(WORDS)
     }
 
@@ -162,27 +167,38 @@ impl Complex {
     /// Marks a tetrahedron as deleted; its neighbouring facets stay.
     #[inline(always)]
     pub(super) fn delete(&mut self, t: u32) {
-        self.tetrahedra[t as usize / WORDS].vertices = [DELETED; 4];
+        let vertices = &mut self.tetrahedra[t as usize / WORDS].vertices;
+        *vertices = vertices.map(|v| v | DELETED);
     }
 
-    /// The place of a tetrahedron yet to be written: one that was deleted, or a new one.
+    /// Undoes [`Complex::delete`], if nothing was written since.
+    pub(super) fn restore(&mut self, t: u32) {
+        let vertices = &mut self.tetrahedra[t as usize / WORDS].vertices;
+        *vertices = vertices.map(|v| v & !DELETED);
+    }
+
+    /// Whether a tetrahedron is deleted.
+    #[inline(always)]
+    pub(super) fn is_deleted(&self, t: u32) -> bool {
+        self.corners(t)[0] >= DELETED
+    }
+
+    /// Whether there is room for so many tetrahedra.
+    #[inline(always)]
+    pub(super) fn has_room(&self, count: usize) -> bool {
+        count <= self.free.len() + self.tetrahedra.left()
+    }
+
+    /// The place of a tetrahedron yet to be written: one that was deleted, or a new one, for which there must
+    /// be room.
     #[inline(always)]
     pub(super) fn allocate(&mut self) -> u32 {
         if let Some(slot) = self.free.pop() {
             return slot;
         }
         let slot = self.tetrahedra.len();
-        if slot == self.tetrahedra.capacity() {
-            self.grow();
-        }
         self.tetrahedra.push(Tetrahedron::zeroed());
         (slot * WORDS) as u32
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn grow(&mut self) {
-        self.tetrahedra.reserve_exact(self.tetrahedra.len() / 4);
     }
 
     /// Writes a tetrahedron.

@@ -1,6 +1,7 @@
 //! Runs the same insertion with the instructions of the processor at hand.
 
-use super::build::{Build, Built};
+use super::build::Build;
+use super::complex::Complex;
 use super::exact::Exact;
 use super::lanes::Portable;
 use super::weights::Weights;
@@ -8,7 +9,7 @@ use super::weights::Weights;
 use {super::avx2::Avx2, crate::processor::Avx2Fma};
 
 /// Runs `build` with the widest vectors of the processor, or with portable code if the build asks for it.
-pub(super) fn run<W: Weights>(build: Build<W>, predicates: &mut dyn Exact) -> Built {
+pub(super) fn run<'s, W: Weights>(build: Build<'_, 's, W>, predicates: &mut dyn Exact) -> Complex<'s> {
     #[cfg(target_arch = "x86_64")]
     if let Some(token) = Avx2Fma::detect()
         && !build.is_portable
@@ -21,6 +22,10 @@ pub(super) fn run<W: Weights>(build: Build<W>, predicates: &mut dyn Exact) -> Bu
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn run_avx2<W: Weights>(build: Build<W>, predicates: &mut dyn Exact, token: Avx2Fma) -> Built {
+fn run_avx2<'s, W: Weights>(
+    build: Build<'_, 's, W>,
+    predicates: &mut dyn Exact,
+    token: Avx2Fma,
+) -> Complex<'s> {
     build.run::<Avx2>(predicates, token)
 }

@@ -1,16 +1,16 @@
 //! From the triangulated 3-sphere to a [`super::Tetrahedralization`], in place: infinite tetrahedra go.
 
-use super::complex::{Complex, DELETED};
+use super::complex::Complex;
 use super::tetrahedralization::{NONE, Tetrahedron, WORDS};
 
 /// Leaves the finite tetrahedra and vertices in the arrays of the complex; returns the number of facets of
 /// the hull. Tells `see` the vertices of each finite tetrahedron.
 #[inline]
-pub(super) fn extract(complex: &mut Complex, mut see: impl FnMut([u32; 4])) -> usize {
+pub(super) fn extract(complex: &mut Complex<'_>, mut see: impl FnMut([u32; 4])) -> usize {
     let mut holes = Vec::new();
     let mut hull_facets = 0;
     for t in complex.words_of_tetrahedra() {
-        if complex.corners(t)[0] == DELETED {
+        if complex.is_deleted(t) {
             holes.push(t);
         } else if let Some(side) = complex.hull_facet(t) {
             holes.push(t);
@@ -23,18 +23,19 @@ pub(super) fn extract(complex: &mut Complex, mut see: impl FnMut([u32; 4])) -> u
     }
     holes.iter().for_each(|&t| complex.delete(t));
     fill(complex, &holes);
-    complex.tetrahedra.truncate(complex.tetrahedra.len() - holes.len());
+    let count = complex.tetrahedra.len() - holes.len();
+    complex.tetrahedra.truncate(count);
     complex.vertices.pop();
     hull_facets
 }
 
 /// Moves the last tetrahedra to the places of those that are not there.
-fn fill(complex: &mut Complex, holes: &[u32]) {
+fn fill(complex: &mut Complex<'_>, holes: &[u32]) {
     let count = complex.tetrahedra.len() - holes.len();
     let mut last = complex.tetrahedra.len();
     for &hole in holes.iter().take_while(|&&hole| (hole as usize) < count * WORDS) {
         last -= 1;
-        while complex.tetrahedra[last].vertices[0] == DELETED {
+        while complex.is_deleted((last * WORDS) as u32) {
             last -= 1;
         }
         let Tetrahedron { vertices, neighbours } = complex.tetrahedra[last];

@@ -28,6 +28,25 @@ struct Pending {
     apex: u32,
 }
 
+/// Why a point was not inserted. Nothing has changed then.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// The walk to it came to a frozen tetrahedron.
+    Blocked,
+    /// A frozen tetrahedron is in conflict with it, or may be; where to start the walk to a point nearby.
+    Frozen(u32),
+    /// There is no room for its tetrahedra.
+    Full,
+}
+
+/// What stops the search of a cavity before it begins.
+enum Unopened {
+    /// The tetrahedron that contains the point hides it.
+    Hidden(u32),
+    /// The walk came to a frozen tetrahedron.
+    Blocked,
+}
+
 /// Buffers of one insertion, which the next one reuses.
 #[derive(Debug, Default)]
 pub(super) struct Cavity {
@@ -47,8 +66,8 @@ impl Cavity {
 }
 
 /// The tetrahedralization of the points inserted so far, and what inserting needs.
-pub(super) struct Insertion<'a, L: Lanes, W> {
-    pub(super) complex: Complex,
+pub(super) struct Insertion<'a, 's, L: Lanes, W> {
+    pub(super) complex: Complex<'s>,
     pub(super) weights: &'a W,
     pub(super) predicates: &'a mut dyn Exact,
     pub(super) cavity: &'a mut Cavity,
@@ -57,29 +76,37 @@ pub(super) struct Insertion<'a, L: Lanes, W> {
     /// The lift of the vertex at infinity: of about the size of others, for the sake of the filter; integer
     /// if coordinates are.
     pub(super) infinite_lift: f64,
-    /// In-sphere tests that the filter did not decide.
+    /// In-sphere tests of cavities so far.
+    pub(super) tests: u64,
+    /// Those that the filter did not decide.
     pub(super) unfiltered: u64,
     /// Proves that the processor has the instructions of the vectors.
     pub(super) token: L::Token,
 }
 
-impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
+impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
     /// The complex. Adds the decisions made here to the counts of the predicates.
-    pub(super) fn finish(self) -> Complex {
-        self.predicates.counts_mut().filter += self.stats.insphere_tests - self.unfiltered;
+    pub(super) fn finish(self) -> Complex<'s> {
+        self.predicates.counts_mut().filter += self.tests - self.unfiltered;
+        self.stats.insphere_tests += self.tests;
         self.complex
     }
 
     /// Inserts vertex `q`, which is not in the mesh yet, unless others hide it; returns where to start the
     /// walk to a point nearby.
     ///
+    /// # Errors
+    /// If a frozen tetrahedron would have to go, or if there is no room.
+    ///
     /// The test of a tetrahedron is computed when its facet is queued, and used when the facet is taken from
     /// the queue, so that no test waits for the branch before it.
     #[inline(always)]
-    pub(super) fn insert(&mut self, q: u32, start: u32) -> u32 {
+    pub(super) fn insert(&mut self, q: u32, start: u32) -> Result<u32, Refusal> {
         let at = Site { at: self.complex.point(q), weight: self.weights.of(q) };
-        if let Err(hiding) = self.open_cavity(at, start) {
-            return hiding;
+        match self.open_cavity(at, start) {
+            Err(Unopened::Hidden(t)) => return Ok(t),
+            Err(Unopened::Blocked) => return Err(Refusal::Blocked),
+            Ok(()) => {}
         }
         let mut next = 0;
         while next < self.cavity.end {
@@ -91,8 +118,14 @@ impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
             self.complex.fetch_neighbours(later.neighbour);
             if facet.value < 0.0 {
                 self.cavity.star.border.push((facet.corners, facet.neighbour));
-            } else if self.complex.opposite(facet.neighbour) == DELETED {
+            } else if self.complex.opposite(facet.neighbour) >= DELETED {
                 // Another facet has led to it in the meantime.
+            } else if facet.neighbour < self.complex.frozen {
+                if self.may_be_in_conflict(at, &facet) {
+                    self.tests += next as u64;
+                    return Err(Refusal::Frozen(self.undo()));
+                }
+                self.cavity.star.border.push((facet.corners, facet.neighbour));
             } else if facet.value > 0.0 || self.decide(at, &facet) {
                 self.take(at, &facet);
             } else {
@@ -100,17 +133,39 @@ impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
             }
         }
         self.timer.end_phase(&mut self.stats.cavity);
-        self.stats.insphere_tests += next as u64;
+        self.tests += next as u64;
+        if !self.complex.has_room(self.cavity.star.growth()) {
+            self.undo();
+            return Err(Refusal::Full);
+        }
         self.stats.created += self.cavity.star.border.len() as u64;
         let start = self.cavity.star.close(&mut self.complex, q);
         self.timer.end_phase(&mut self.stats.update);
-        start
+        Ok(start)
     }
 
-    /// Makes a tetrahedron in conflict the whole cavity; returns the tetrahedron that hides the point if
-    /// there is no conflict.
+    /// Restores the tetrahedra of the cavity; returns the first of them.
+    #[cold]
+    #[inline(never)]
+    fn undo(&mut self) -> u32 {
+        self.cavity.star.slots.iter().for_each(|&t| self.complex.restore(t));
+        self.cavity.star.slots[0]
+    }
+
+    /// Whether the frozen tetrahedron beyond a facet may be in conflict. That of an infinite one may depend
+    /// on a tetrahedron that is not here.
+    #[cold]
+    #[inline(never)]
+    fn may_be_in_conflict(&mut self, at: Site, facet: &Pending) -> bool {
+        let infinite = self.complex.infinite();
+        self.complex.corners(tetrahedron_of(facet.neighbour)).contains(&infinite)
+            || facet.value > 0.0
+            || self.decide(at, facet)
+    }
+
+    /// Makes a tetrahedron in conflict the whole cavity.
     #[inline(always)]
-    fn open_cavity(&mut self, at: Site, start: u32) -> Result<(), u32> {
+    fn open_cavity(&mut self, at: Site, start: u32) -> Result<(), Unopened> {
         let found = self.find_conflict(at, start);
         self.timer.end_phase(&mut self.stats.locate);
         let (t, translated) = found?;
@@ -160,7 +215,7 @@ impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
             // The entry of a tetrahedron that is in the cavity already is overwritten, without a branch.
             places[len.min(2)] =
                 Pending { value: values[i], corners: corners[i], neighbour: neighbours[i], apex: apexes[i] };
-            len += usize::from(apexes[i] != DELETED);
+            len += usize::from(apexes[i] < DELETED);
         }
         self.cavity.end += len;
     }
@@ -275,21 +330,26 @@ impl<L: Lanes, W: Weights> Insertion<'_, L, W> {
         is_in_conflict(&self.complex, self.weights, tetrahedron_of(facet.neighbour), at, self.predicates)
     }
 
-    /// A tetrahedron in conflict with a point, and its corners relative to the point; the tetrahedron that
-    /// contains the point if weights hide it.
+    /// A tetrahedron in conflict with a point, and its corners relative to the point.
     #[inline(always)]
-    fn find_conflict(&mut self, at: Site, start: u32) -> Result<(u32, [TranslatedVertex; 4]), u32> {
+    fn find_conflict(&mut self, at: Site, start: u32) -> Result<(u32, [TranslatedVertex; 4]), Unopened> {
         let t = walk(&self.complex, start, at.at);
+        if t < self.complex.frozen {
+            return Err(Unopened::Blocked);
+        }
         let test = InSphere::new::<W>(self.complex.corners(t).map(|v| self.translate(v, at)));
         if test.value > 0.0 && test.is_certain::<W>() {
             return Ok((t, test.corners));
         }
         if !W::ARE_EQUAL && test.value < 0.0 && test.is_certain::<W>() && test.has_origin_inside() {
-            return Err(t);
+            return Err(Unopened::Hidden(t));
         }
         let t = walk_exactly(&self.complex, self.weights, t, at, self.predicates);
+        if t < self.complex.frozen {
+            return Err(Unopened::Blocked);
+        }
         if !W::ARE_EQUAL && !is_in_conflict(&self.complex, self.weights, t, at, self.predicates) {
-            return Err(t);
+            return Err(Unopened::Hidden(t));
         }
         Ok((t, self.complex.corners(t).map(|v| self.translate(v, at))))
     }

@@ -1,6 +1,6 @@
 //! Where a new point begins to change the tetrahedralization: a tetrahedron in conflict with it.
 
-use super::complex::{Complex, DELETED, Facet, corner, tetrahedron_of};
+use super::complex::{Complex, Facet, corner, tetrahedron_of};
 use super::exact::Exact;
 use super::translated::volume;
 use super::weights::Weights;
@@ -11,11 +11,15 @@ use spmesh_model::simplex::TETRAHEDRON_FACETS;
 /// Steps after which the exact walk takes over: rounding may lead the other one in circles.
 const STEPS_MAX: usize = 10_000;
 
-/// Walks from `start` to a tetrahedron that probably contains the point at `q`, in rounded arithmetic.
+/// Walks from `start` to a tetrahedron that probably contains the point at `q`, in rounded arithmetic, or
+/// to a frozen one.
 #[inline(always)]
-pub(super) fn walk(complex: &Complex, start: u32, q: Point3) -> u32 {
+pub(super) fn walk(complex: &Complex<'_>, start: u32, q: Point3) -> u32 {
     let infinite = complex.infinite();
     let t = complex.hull_facet(start).map_or(start, |side| tetrahedron_of(complex.neighbour(side)));
+    if t < complex.frozen {
+        return t;
+    }
     let vertices = complex.corners(t);
     let at = vertices.map(|v| difference(complex.point(v), q));
     let mut entered: Option<(Facet, u32, [Point3; 3])> = None;
@@ -29,7 +33,7 @@ pub(super) fn walk(complex: &Complex, start: u32, q: Point3) -> u32 {
     let Some((mut facet, mut first, [mut a, mut b, mut c])) = entered else { return t };
     for _ in 0..STEPS_MAX {
         let apex = complex.opposite(facet);
-        if apex == infinite {
+        if apex == infinite || facet < complex.frozen {
             break;
         }
         let d = difference(complex.point(apex), q);
@@ -55,12 +59,12 @@ pub(super) struct Site {
 }
 
 /// Walks from `t` to the tetrahedron that contains `q`, exactly: finite, or infinite and in conflict with it.
-/// A finite one is in conflict, too, unless weights hide the point. In a Delaunay or regular
-/// tetrahedralization this walk ends.
+/// A finite one is in conflict, too, unless weights hide the point. It may be a frozen one, where the walk
+/// stops. In a Delaunay or regular tetrahedralization this walk ends.
 #[cold]
 #[inline(never)]
 pub(super) fn walk_exactly<W: Weights>(
-    complex: &Complex,
+    complex: &Complex<'_>,
     weights: &W,
     mut t: u32,
     q: Site,
@@ -75,7 +79,7 @@ pub(super) fn walk_exactly<W: Weights>(
     let q = q.at;
     loop {
         let vertices = complex.corners(t);
-        if vertices.contains(&complex.infinite()) {
+        if vertices.contains(&complex.infinite()) || t < complex.frozen {
             return t;
         }
         let side = TETRAHEDRON_FACETS.iter().position(|corners| {
@@ -98,16 +102,16 @@ pub(super) fn walk_exactly<W: Weights>(
 #[cold]
 #[inline(never)]
 pub(super) fn is_in_conflict<W: Weights>(
-    complex: &Complex,
+    complex: &Complex<'_>,
     weights: &W,
     t: u32,
     q: Site,
     predicates: &mut dyn Exact,
 ) -> bool {
-    let vertices = complex.corners(t);
-    if vertices[0] == DELETED {
+    if complex.is_deleted(t) {
         return true;
     }
+    let vertices = complex.corners(t);
     let Some(side) = complex.hull_facet(t) else {
         let abcd @ [a, b, c, d] = vertices.map(|v| complex.point(v));
         let sign = if W::ARE_EQUAL {

@@ -11,6 +11,7 @@ mod avx2;
 mod build;
 mod complex;
 mod corners;
+mod cut;
 mod dispatch;
 mod edges;
 mod exact;
@@ -18,7 +19,9 @@ mod extract;
 mod insertion;
 mod lanes;
 mod locate;
+mod parts;
 mod queries;
+mod slots;
 mod star;
 mod stats;
 #[cfg(test)]
@@ -27,6 +30,7 @@ mod tetrahedralization;
 mod tie;
 mod translated;
 mod weights;
+mod whole;
 
 pub use corners::{CornerParts, Corners};
 pub(crate) use edges::EDGES;
@@ -36,21 +40,26 @@ pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vert
 
 use crate::order::{Curve, Insertions, Sequence, SpatialOrder, Suffixes};
 use crate::predicates::{Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3};
-use build::{Build, Built};
+use build::{Build, First};
 use complex::Complex;
 use insertion::Cavity;
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::error::{Error, Result};
 use std::borrow::Cow;
+use std::num::NonZeroUsize;
 use std::time::Instant;
 use tie::EXACT;
 use weights::{Equal, PerVertex, Weights};
+use whole::{Setting, Tally, Whole};
 
 /// Greatest number of points: the words of tetrahedra, 8 for each of about 8 per point, are numbered in 32
 /// bits.
 pub const MAX_POINTS: usize = 60_000_000;
 
+/// Fewer points are not worth a thread.
+const POINTS_PER_THREAD: usize = 20_000;
+
 /// The kernel with its buffers.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Kernel {
     cavity: Cavity,
     counts: PredicateCounts,
@@ -60,10 +69,31 @@ pub struct Kernel {
     pub sequence: Sequence,
     /// Whether points that have more low bits in common are inserted first (thesis 3.4.1).
     pub by_bit_levels: bool,
+    /// How many threads triangulate points without weights. The tetrahedra do not depend on it; their order
+    /// does. It makes no difference along [`Sequence::Pass`], nor by bit levels.
+    pub threads: NonZeroUsize,
+    /// The least number of points that is worth a thread.
+    pub points_per_thread: usize,
     /// Whether the parts of insertions are timed ([`Stats`]), which takes some time itself.
     pub is_timed: bool,
     /// Whether portable instructions are used only: for tests.
     is_portable: bool,
+}
+
+impl Default for Kernel {
+    fn default() -> Kernel {
+        Kernel {
+            cavity: Cavity::default(),
+            counts: PredicateCounts::default(),
+            curve: Curve::default(),
+            sequence: Sequence::default(),
+            by_bit_levels: false,
+            threads: NonZeroUsize::MIN,
+            points_per_thread: POINTS_PER_THREAD,
+            is_timed: false,
+            is_portable: false,
+        }
+    }
 }
 
 impl Kernel {
@@ -141,41 +171,39 @@ impl Kernel {
         let insertions = self.insertions(&mesh.vertices);
         mesh.stats.order = started.elapsed();
         let started = Instant::now();
-        // The vertex at infinity.
-        mesh.vertices.push(Vertex::default());
-        let build = Build {
-            infinite_lift: infinite_lift(extent, mesh.vertices.len()),
-            vertices: std::mem::take(&mut mesh.vertices),
-            weights,
-            tetrahedra: std::mem::take(&mut mesh.tetrahedra),
-            cavity: &mut self.cavity,
-            stats: &mut mesh.stats,
-            is_timed: self.is_timed,
-            is_portable: self.is_portable,
-            insertions,
-        };
-        (mesh.vertices, mesh.tetrahedra) = match Arithmetic3::of(extent).run(build, &mut self.counts) {
-            Built::Complex(mut complex) => {
+        let arithmetic = Arithmetic3::of(extent);
+        let search = First { vertices: &mesh.vertices, insertions: insertions.clone() };
+        if let Some(first) = arithmetic.run(search, &mut self.counts) {
+            // The vertex at infinity.
+            mesh.vertices.push(Vertex::default());
+            let setting = Setting {
+                infinite_lift: infinite_lift(extent, mesh.vertices.len()),
+                weights,
+                arithmetic,
+                is_timed: self.is_timed,
+                is_portable: self.is_portable,
+            };
+            let (vertices, tetrahedra) = (&mut mesh.vertices, &mut mesh.tetrahedra);
+            let mut whole = Whole::new(std::mem::take(vertices), std::mem::take(tetrahedra), first);
+            let mut tally = Tally::default();
+            let inserted = self.insert_all(&mut whole, &setting, insertions, first, &mut tally);
+            self.counts.merge(&tally.counts);
+            if let Err(error) = inserted {
+                mesh.clear();
+                return Err(error);
+            }
+            mesh.stats.merge(&tally.stats);
+            mesh.stats.created += 5;
+            whole.change(|mut complex| {
                 mesh.hull_facets = if W::ARE_EQUAL {
                     extract::extract(&mut complex, |_| ())
                 } else {
                     extract_with_hidden(&mut complex, &mut mesh.hidden)
                 };
-                (complex.vertices, complex.tetrahedra)
-            }
-            Built::Flat(mut vertices, tetrahedra) => {
-                vertices.pop();
-                (vertices, tetrahedra)
-            }
-            Built::TooMany => {
-                mesh.clear();
-                let limit = build::TETRAHEDRA_MAX;
-                return Err(Error::new(
-                    ErrorKind::Io,
-                    format!("more than {limit} tetrahedra, the kernel's maximum"),
-                ));
-            }
-        };
+                complex
+            });
+            (mesh.vertices, mesh.tetrahedra) = (whole.vertices, whole.tetrahedra);
+        }
         mesh.stats.insertion = started.elapsed();
         Ok(())
     }
@@ -299,7 +327,7 @@ fn checked_extent(points: &[Point3]) -> Result<Extent<3>> {
 }
 
 /// [`extract::extract`]; adds the input points of the vertices that are in no tetrahedron to `hidden`.
-fn extract_with_hidden(complex: &mut Complex, hidden: &mut Vec<u32>) -> usize {
+fn extract_with_hidden(complex: &mut Complex<'_>, hidden: &mut Vec<u32>) -> usize {
     let mut is_visible = vec![false; complex.vertices.len()];
     let hull_facets =
         extract::extract(complex, |vertices| vertices.iter().for_each(|&v| is_visible[v as usize] = true));
@@ -308,10 +336,10 @@ fn extract_with_hidden(complex: &mut Complex, hidden: &mut Vec<u32>) -> usize {
     hull_facets
 }
 
-impl<W: Weights> WithPredicates3 for Build<'_, W> {
-    type Output = Built;
+impl<'s, W: Weights> WithPredicates3 for Build<'_, 's, W> {
+    type Output = Complex<'s>;
 
-    fn with(self, predicates: &mut impl Predicates3) -> Built {
+    fn with(self, predicates: &mut impl Predicates3) -> Complex<'s> {
         dispatch::run(self, predicates)
     }
 }

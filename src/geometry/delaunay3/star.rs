@@ -88,9 +88,16 @@ impl Star {
         self.vertices.resize(2 * self.vertices.len(), NO_VERTEX);
     }
 
-    /// Writes the star of vertex `q` into the complex; returns one of its tetrahedra.
+    /// How many tetrahedra the star has beyond those of the cavity.
     #[inline(always)]
-    pub(super) fn close(&mut self, complex: &mut Complex, q: u32) -> u32 {
+    pub(super) fn growth(&self) -> usize {
+        self.border.len().saturating_sub(self.slots.len())
+    }
+
+    /// Writes the star of vertex `q` into the complex, which must have room for it; returns one of its
+    /// tetrahedra.
+    #[inline(always)]
+    pub(super) fn close(&mut self, complex: &mut Complex<'_>, q: u32) -> u32 {
         let wanted = self.border.len();
         while self.slots.len() < wanted {
             let slot = complex.allocate();
@@ -108,7 +115,7 @@ impl Star {
     /// A tetrahedron of the star has the new vertex as its corner 0, then those of the facet. Across from a
     /// corner of the facet is what lies to the left of the other two in opposite direction.
     #[inline(always)]
-    fn write_by_table(&mut self, complex: &mut Complex, q: u32) {
+    fn write_by_table(&mut self, complex: &mut Complex<'_>, q: u32) {
         let edge = |a: u32, b: u32| (a as usize * STRIDE + b as usize) % (STRIDE * STRIDE);
         for (&([a, b, c], _), &slot) in self.border.iter().zip(&self.slots) {
             self.left[edge(b, c)] = slot + 1;
@@ -126,7 +133,7 @@ impl Star {
     /// The same for any number of vertices.
     #[cold]
     #[inline(never)]
-    fn write_by_sorting(&mut self, complex: &mut Complex, q: u32) {
+    fn write_by_sorting(&mut self, complex: &mut Complex<'_>, q: u32) {
         let mut edges: Vec<([u32; 2], Facet)> = Vec::with_capacity(3 * self.border.len());
         for (&([a, b, c], outside), &slot) in self.border.iter().zip(&self.slots) {
             let [u, v, w] = [a, b, c].map(|number| self.vertices[number as usize]);

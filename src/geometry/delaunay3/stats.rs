@@ -9,6 +9,8 @@ pub struct Stats {
     pub created: u64,
     /// In-sphere tests of the search for cavities.
     pub insphere_tests: u64,
+    /// Points that threads have left to the calling thread, as they lie between parts.
+    pub refused: u64,
     /// Time for ordering and copying the points.
     pub order: Duration,
     /// Time for all insertions.
@@ -22,6 +24,18 @@ pub struct Stats {
     pub update: Duration,
     /// Greatest number of bytes that the kernel and its result held at once.
     pub bytes: u64,
+}
+
+impl Stats {
+    /// Adds the work of another thread; times are those of all threads together.
+    pub(super) fn merge(&mut self, other: &Stats) {
+        self.created += other.created;
+        self.insphere_tests += other.insphere_tests;
+        self.refused += other.refused;
+        self.locate += other.locate;
+        self.cavity += other.cavity;
+        self.update += other.update;
+    }
 }
 
 /// Splits the time of insertions into phases, on request only: reading the clock takes time itself.

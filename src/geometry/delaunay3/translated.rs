@@ -20,7 +20,7 @@ impl TranslatedVertex {
     /// The vertex at infinity, lifted, is the direction upwards: (0, 0, 0; any positive number).
     #[inline(always)]
     pub(super) fn new<W: Weights>(
-        complex: &Complex,
+        complex: &Complex<'_>,
         weights: &W,
         vertex: u32,
         from: Site,

@@ -2,7 +2,7 @@
 //! one, dual to the power diagram.
 
 /// The weight of each vertex.
-pub(super) trait Weights {
+pub(super) trait Weights: Sync {
     /// Weights make no difference, and cost nothing.
     const ARE_EQUAL: bool;
 

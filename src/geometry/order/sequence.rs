@@ -71,6 +71,14 @@ enum Form {
     Stored(std::vec::IntoIter<u32>),
 }
 
+impl Insertions {
+    /// These numbers, in this order.
+    #[must_use]
+    pub fn listed(numbers: Vec<u32>) -> Insertions {
+        Insertions(Form::Stored(numbers.into_iter()))
+    }
+}
+
 impl Iterator for Insertions {
     type Item = u32;
 

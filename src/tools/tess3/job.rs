@@ -205,7 +205,7 @@ impl Job<'_> {
         }
         let mut writer = StreamWriter::new((self.open)(Some(model.name))?, header)?;
         let is_kept = |t: usize| kept.as_ref().is_none_or(|bits| bits[t / 64] >> (t % 64) & 1 == 1);
-        let mut corners = mesh.into_corners(is_kept);
+        let mut corners = mesh.into_corners(is_kept, self.options.method.threads)?;
         let label = |index: u32| match model.selected {
             Some(selected) => selected.label(index as usize),
             None => u64::from(index) + 1,

@@ -1,6 +1,7 @@
 //! How points are triangulated: by the exact kernel, or in floating point as by the program of the thesis.
 
 use std::borrow::Cow;
+use std::num::NonZeroUsize;
 #[cfg(feature = "experiments")]
 use std::time::Duration;
 
@@ -37,7 +38,7 @@ pub enum Arithmetic {
 }
 
 /// How the kernel works, for experiments. With exact arithmetic, the result is always the same.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Method {
     /// The arithmetic of the predicates.
     pub arithmetic: Arithmetic,
@@ -51,6 +52,22 @@ pub struct Method {
     pub seed: u64,
     /// Whether to time the parts of exact insertions too, which slows them down.
     pub is_timed: bool,
+    /// How many threads triangulate points without weights in exact arithmetic.
+    pub threads: NonZeroUsize,
+}
+
+impl Default for Method {
+    fn default() -> Method {
+        Method {
+            arithmetic: Arithmetic::Exact,
+            curve: Curve::default(),
+            sequence: Sequence::default(),
+            by_bit_levels: false,
+            seed: 0,
+            is_timed: false,
+            threads: NonZeroUsize::MIN,
+        }
+    }
 }
 
 impl Method {
@@ -89,6 +106,7 @@ impl Method {
         kernel.sequence = self.sequence;
         kernel.by_bit_levels = self.by_bit_levels;
         kernel.is_timed = self.is_timed;
+        kernel.threads = self.threads;
         let mut mesh = Tetrahedralization::default();
         match weights {
             Some(weights) => kernel.triangulate_weighted(points, weights, &mut mesh)?,

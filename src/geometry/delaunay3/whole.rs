@@ -1,0 +1,206 @@
+//! The complex of all points between insertions, and insertion on one thread or several.
+
+use super::build::Build;
+use super::complex::{Complex, TETRAHEDRA_PER_VERTEX};
+use super::insertion::Cavity;
+use super::parts;
+use super::slots::Slots;
+use super::stats::Stats;
+use super::tetrahedralization::{Tetrahedron, Vertex};
+use super::weights::Weights;
+use super::{Kernel, MAX_POINTS};
+use crate::order::{Insertions, Sequence};
+use crate::predicates::{Arithmetic3, PredicateCounts};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use std::num::NonZeroUsize;
+
+/// Greatest number of tetrahedra. It leaves numbers for one more star of all vertices.
+const TETRAHEDRA_MAX: usize = (1 << 29) - 2 * MAX_POINTS;
+
+/// How much denser points are after a phase than before.
+const PHASE_FACTOR: usize = 8;
+
+/// What all insertions of a run have in common.
+#[derive(Debug)]
+pub(super) struct Setting<W> {
+    pub(super) weights: W,
+    pub(super) arithmetic: Arithmetic3,
+    /// See [`super::insertion::Insertion`].
+    pub(super) infinite_lift: f64,
+    pub(super) is_timed: bool,
+    pub(super) is_portable: bool,
+}
+
+/// What insertions did.
+#[derive(Debug, Default)]
+pub(super) struct Tally {
+    pub(super) stats: Stats,
+    pub(super) counts: PredicateCounts,
+}
+
+impl Tally {
+    pub(super) fn merge(&mut self, other: &Tally) {
+        self.stats.merge(&other.stats);
+        self.counts.merge(&other.counts);
+    }
+}
+
+/// The complex, with its tetrahedra in an array.
+#[derive(Debug)]
+pub(super) struct Whole {
+    /// The vertices, that at infinity last.
+    pub(super) vertices: Vec<Vertex>,
+    pub(super) tetrahedra: Vec<Tetrahedron>,
+    pub(super) free: Vec<u32>,
+}
+
+impl Whole {
+    /// The first tetrahedron and those around it, in the memory of an array.
+    pub(super) fn new(vertices: Vec<Vertex>, mut tetrahedra: Vec<Tetrahedron>, first: [u32; 4]) -> Whole {
+        tetrahedra.clear();
+        tetrahedra.reserve_exact(TETRAHEDRA_PER_VERTEX * vertices.len());
+        let mut whole = Whole { vertices: Vec::new(), tetrahedra, free: Vec::new() };
+        whole.change(|empty| Complex::new(vertices, empty.tetrahedra, first));
+        whole
+    }
+
+    /// Changes the complex.
+    pub(super) fn change(&mut self, change: impl for<'s> FnOnce(Complex<'s>) -> Complex<'s>) {
+        let (vertices, free) = (std::mem::take(&mut self.vertices), std::mem::take(&mut self.free));
+        let tetrahedra = Slots::of(&mut self.tetrahedra);
+        let complex = change(Complex { vertices, tetrahedra, free, frozen: 0 });
+        let len = complex.tetrahedra.len();
+        (self.vertices, self.free) = (complex.vertices, complex.free);
+        // SAFETY: the slots of the complex are those of the array, and have so many tetrahedra.
+        unsafe { Slots::give_back(&mut self.tetrahedra, len) };
+    }
+
+    /// Inserts vertices on the calling thread, but those of the first tetrahedron.
+    ///
+    /// # Errors
+    /// I/O, if there are too many tetrahedra.
+    pub(super) fn insert<W: Weights>(
+        &mut self,
+        setting: &Setting<W>,
+        insertions: &mut Insertions,
+        first: [u32; 4],
+        cavity: &mut Cavity,
+        tally: &mut Tally,
+    ) -> Result<()> {
+        let mut refused = Vec::new();
+        loop {
+            self.run(setting, insertions, first, cavity, tally, &mut refused);
+            // Only lack of room refuses vertices here.
+            while let Some(vertex) = refused.pop() {
+                self.grow()?;
+                self.run(setting, &mut Insertions::listed(vec![vertex]), first, cavity, tally, &mut refused);
+            }
+            if insertions.len() == 0 {
+                return Ok(());
+            }
+        }
+    }
+
+    fn run<W: Weights>(
+        &mut self,
+        setting: &Setting<W>,
+        insertions: &mut Insertions,
+        first: [u32; 4],
+        cavity: &mut Cavity,
+        tally: &mut Tally,
+        refused: &mut Vec<u32>,
+    ) {
+        let Tally { stats, counts } = tally;
+        self.change(|complex| {
+            let start = complex.words_of_tetrahedra().find(|&t| !complex.is_deleted(t)).unwrap_or(0);
+            let Setting { weights, infinite_lift, is_timed, is_portable, .. } = setting;
+            let build = Build {
+                complex,
+                weights,
+                cavity,
+                stats,
+                is_timed: *is_timed,
+                is_portable: *is_portable,
+                insertions,
+                first,
+                starts: &[start],
+                refused,
+                infinite_lift: *infinite_lift,
+            };
+            setting.arithmetic.run(build, counts)
+        });
+    }
+
+    /// # Errors
+    /// I/O, if there would be too many tetrahedra.
+    #[cold]
+    fn grow(&mut self) -> Result<()> {
+        let len = self.tetrahedra.len();
+        if len >= TETRAHEDRA_MAX {
+            let message = format!("more than {TETRAHEDRA_MAX} tetrahedra, the kernel's maximum");
+            return Err(Error::new(ErrorKind::Io, message));
+        }
+        self.tetrahedra.reserve_exact(len / 4 + 2 * self.vertices.len());
+        Ok(())
+    }
+}
+
+/// The numbers of points at the ends of phases: all points of the first phase are inserted on one thread.
+///
+/// A phase has `PHASE_FACTOR` times the points of the one before, so that tetrahedra between parts, which
+/// stay as they are during a phase, are thin. It is worth its own threads if it has so many points for each
+/// of two.
+fn phases(count: usize, points_per_thread: usize) -> Vec<usize> {
+    let mut ends = vec![count];
+    let mut end = count;
+    while end - end / PHASE_FACTOR >= 2 * points_per_thread.max(1) {
+        end /= PHASE_FACTOR;
+        ends.push(end);
+    }
+    ends.reverse();
+    ends
+}
+
+impl Kernel {
+    /// Inserts all vertices, with threads if that is worth it.
+    ///
+    /// # Errors
+    /// I/O, if there are too many tetrahedra.
+    pub(super) fn insert_all<W: Weights>(
+        &mut self,
+        whole: &mut Whole,
+        setting: &Setting<W>,
+        mut insertions: Insertions,
+        first: [u32; 4],
+        tally: &mut Tally,
+    ) -> Result<()> {
+        let has_threads =
+            self.threads.get() > 1 && W::ARE_EQUAL && self.sequence != Sequence::Pass && !self.by_bit_levels;
+        if !has_threads {
+            return whole.insert(setting, &mut insertions, first, &mut self.cavity, tally);
+        }
+        let mut done = 0;
+        for end in phases(insertions.len(), self.points_per_thread) {
+            let count = end - done;
+            let threads = self.threads.get().min(count / self.points_per_thread.max(1));
+            let mut numbers = Insertions::listed(insertions.by_ref().take(count).collect());
+            if let Some(threads) = NonZeroUsize::new(threads)
+                && threads.get() > 1
+                && done > 0
+            {
+                let refused = parts::insert(
+                    whole,
+                    setting,
+                    done,
+                    numbers.filter(|v| !first.contains(v)),
+                    threads,
+                    tally,
+                )?;
+                numbers = Insertions::listed(refused);
+            }
+            whole.insert(setting, &mut numbers, first, &mut self.cavity, tally)?;
+            done = end;
+        }
+        Ok(())
+    }
+}
