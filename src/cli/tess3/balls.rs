@@ -137,7 +137,7 @@ impl BallFlags {
                 Some((flag, _)) => {
                     let remedy = match (is_filtration, flag) {
                         (true, "--probe") => "needs --radii",
-(false, "--probe") if product == Product::Mesh => {
+                        (false, "--probe") if product == Product::Mesh => {
                             "needs --radii, or one of --sasa, --volumes, --ses, --contact-areas and --pockets"
                         }
                         _ if flag == "--per" => {
