@@ -69,10 +69,9 @@ def orders(flags):
     rows = measured(flags, sets, contestants)
     write_tsv(flags.out / "figure-3.8.tsv", HEAD, rows)
     panels = []
-    for left, program in ((56, "CGAL"), (496, "spmesh")):
+    for left, program, title in ((56, "CGAL", "CGAL's Delaunay hierarchy"), (496, "spmesh", "The kernel of spmesh")):
         own = {name: colour for name, (colour, _) in contestants.items() if name.startswith(program)}
-        title = f"{program}{"'s Delaunay hierarchy" if program == 'CGAL' else ''}: µs per point"
-        panels += panel(left, title, [row for row in rows if row[0] in own], own)
+        panels += panel(left, f"{title}: µs per point", [row for row in rows if row[0] in own], own)
     alt = "Time per point of CGAL's Delaunay hierarchy and of spmesh under three orders of insertion"
     (flags.out / "figure-3.8.svg").write_text(document(930, 380, alt, panels))
 
