@@ -15,12 +15,15 @@ from target import EXAMPLES
 
 KERNEL = EXAMPLES / "kernel3_time"
 BITS, SEED = 10, 1
-SIZES, QUICK_SIZES = (10_000, 30_000, 100_000, 300_000), (1_000, 3_000)
+SIZES, QUICK_SIZES = (10_000, 30_000, 100_000), (1_000, 3_000)
 # Copies of the largest structure along each axis.
-COPIES, QUICK_COPIES = ((2, 1, 1), (2, 2, 1)), ((2, 1, 1),)
-STRUCTURES = 8
+COPIES = ((2, 1, 1),)
+# Least ratio of the sizes of two structures.
+RATIO = 1.5
 GAP = 3.0
 LIMIT_S = 300
+# The greatest sets of atoms for slow programs.
+POINTS_MAX = {"Qhull": 50_000}
 # Names, colours, and how to call the program: the recipe of the installer, or a way of our kernel.
 PROGRAMS = {
     "spmesh": (PURPLE, "rounds"),
@@ -48,14 +51,18 @@ def structures(flags):
     place = folder(flags, "structures")
     found, _ = files.prepare(flags.structures, place)
     counted = sorted((path.stat().st_size // 24, name, path) for name, path in found)
-    step = max(1, (len(counted) - 1) // (STRUCTURES - 1))
-    chosen = [(name, count, path) for count, name, path in counted[::-1][:: step][:STRUCTURES]]
+    if not counted:
+        raise SystemExit(f"{flags.structures} has no structure of {files.ATOMS_MIN} atoms: name a folder with --structures")
+    chosen = []
+    for count, name, path in reversed(counted):
+        if not chosen or count * RATIO <= chosen[-1][1]:
+            chosen.append((name, count, path))
     name, count, path = chosen[0]
-    for copies in QUICK_COPIES if flags.quick else COPIES:
+    for copies in COPIES:
         times = copies[0] * copies[1] * copies[2]
         chosen.append((f"{name} x {times}", count * times, replicated(path, copies)))
     chosen.sort(key=lambda of_set: of_set[1])
-    figure(flags, "3.7", "Atoms of structures", chosen, programs(flags))
+    figure(flags, "3.7", "Atoms of structures", chosen, programs(flags), POINTS_MAX)
 
 
 def orders(flags):
@@ -76,8 +83,8 @@ def orders(flags):
     (flags.out / "figure-3.8.svg").write_text(document(930, 380, alt, panels))
 
 
-def figure(flags, number, title, sets, contestants):
-    rows = measured(flags, sets, contestants)
+def figure(flags, number, title, sets, contestants, points_max=None):
+    rows = measured(flags, sets, contestants, points_max or {})
     write_tsv(flags.out / f"figure-{number}.tsv", HEAD, rows)
     colours = {name: colour for name, (colour, _) in contestants.items()}
     fast = {name: colour for name, colour in colours.items() if name != "Qhull"}
@@ -90,24 +97,26 @@ def figure(flags, number, title, sets, contestants):
 
 
 def panel(left, title, rows, colours):
-    counts = sorted({count for _, _, count, _, _ in rows})
-    # Ticks of sizes that are near each other would overlap.
-    ticks = [counts[0]] + [b for a, b in zip(counts, counts[1:]) if b > 1.6 * a]
-    across = axis_of_counts(ticks if ticks[-1] == counts[-1] else [*ticks[:-1], counts[-1]], "points")
+    counts = [count for _, _, count, _, _ in rows]
+    round_counts = [factor * 10**power for power in range(9) for factor in (1, 3)]
+    low = max(count for count in round_counts if count <= min(counts))
+    high = min(count for count in round_counts if count >= max(counts))
+    across = axis_of_counts([count for count in round_counts if low <= count <= high], "points")
     up = axis_from_zero(max(time for *_, time, _ in rows))
     curves = [Curve(name, colour, sorted((count, time) for program, _, count, time, _ in rows if program == name))
               for name, colour in colours.items()]  # fmt: skip
     return Panel(left, left + 290, 64, 320, title, across, up).draw(curves)
 
 
-def measured(flags, sets, contestants):
+def measured(flags, sets, contestants, points_max=()):
     """A row for each program and set; programs take turns."""
     few = folder(flags, "random") / "four.f64"
     few.write_bytes(b"".join(struct.pack("<3d", *point) for point in ((0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9))))
     start = cpu_times(flags, few, contestants)
     rows = []
     for name, count, path in sets:
-        for program, times in cpu_times(flags, path, contestants).items():
+        small = {key: of_key for key, of_key in contestants.items() if key not in points_max or count <= points_max[key]}
+        for program, times in cpu_times(flags, path, small).items():
             if times:
                 time = statistics.median(times) - statistics.median(start[program])
                 rows.append((program, name, count, f"{time / count * 1e6:.3f}", len(times)))
