@@ -5,24 +5,24 @@ many of them are nearly on one sphere.
 """
 
 import math
+from fractions import Fraction
 
 from panel import Panel, figure
 from programs import Workplace, progress, write_tsv
 from svg import RED, TEXT
 
-# Points of each shell, and its radius in steps of 0.001 angstroms, as in files of atoms.
-SHELLS, QUICK_SHELLS = ((250, 600), (40_000, 120_000)), ((60,), (40_000,))
-MARGIN = 3_000
+SHELLS, QUICK_SHELLS = ((250, 600), (40.0, 120.0)), ((60,), (40.0,))
+MARGIN = 3.0
 FACETS = ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
 
 
 def run(flags):
     counts, radii = QUICK_SHELLS if flags.quick else SHELLS
     with Workplace() as place:
-        lines = [f"{x:.0f} {y:.0f} {z:.0f}\n" for count, radius in zip(counts, radii) for x, y, z in shell(count, radius)]
+        lines = [f"{x!r} {y!r} {z!r}\n" for count, radius in zip(counts, radii) for x, y, z in shell(count, radius)]
         place.points.write_text("".join(lines))
         said = place.triangulate("--arithmetic", "float")
-        points, tetrahedra = place.tetrahedra()
+        points, tetrahedra = place.tetrahedra(lambda word: Fraction(float(word)))
     wrong = [corners for corners, is_wrong in zip(tetrahedra, violations(points, tetrahedra)) if is_wrong]
     if len(wrong) != said["violations"]:
         raise SystemExit(f"{len(wrong)} wrong tetrahedra, but tess3 counts {said['violations']}")
@@ -42,7 +42,7 @@ def shell(count, radius):
 
 
 def violations(points, tetrahedra):
-    """For each tetrahedron, whether it is not positive or has a vertex of a neighbour inside, in integers."""
+    """For each tetrahedron, whether it is not positive or has a vertex of a neighbour inside, in fractions."""
     beyond = {}
     for number, corners in enumerate(tetrahedra):
         for side, facet in enumerate(FACETS):
@@ -87,9 +87,9 @@ def draw(path, points, wrong):
 
 
 def flat(point):
-    return point[0], point[2]
+    return float(point[0]), float(point[2])
 
 
 def span(points, axis):
-    values = [point[axis] for point in points]
+    values = [float(point[axis]) for point in points]
     return min(values) - MARGIN, max(values) + MARGIN
