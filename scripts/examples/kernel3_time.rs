@@ -3,8 +3,9 @@
 //! `kernel3_time POINTS` is our contestant in `scripts/bench`: one run with fresh buffers. With `--parts` it
 //! also times the parts of insertions, the columns of thesis table 3.3; this takes additional time. With
 //! `--weighted`, each point has a fourth number, its weight.
-//! `kernel3_time POINTS --way WAY` inserts in `rounds`, in one `pass` along the curve or at `random`; or, if built
-//! with `--features experiments`, in floating point as the program of the thesis: `float`, or `float-random`.
+//! `kernel3_time POINTS --way WAY` inserts in `rounds`, in one `pass` along the curve or at `random`; or, if
+//! built with `--features experiments`, in floating point as the program of the thesis: `float`, or
+//! `float-random`.
 //! `kernel3_time POINTS ROUNDS`, for tuning, runs several rounds with the same buffers. POINTS has triples of
 //! little-endian f64; `scripts/bench` keeps its files of points in its folder.
 

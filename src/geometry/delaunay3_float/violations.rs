@@ -4,8 +4,8 @@ use super::check::orient3d;
 use crate::delaunay3::Tetrahedralization;
 use crate::predicates::{FiniteFloatPredicates3, Predicates3, Sign};
 
-/// The number of tetrahedra that are inverted or flat, or have a vertex of a neighbour inside of their sphere,
-/// by exact arithmetic. Spheres of flat tetrahedra have no inside.
+/// The number of tetrahedra that are inverted or flat, or have a vertex of a neighbour inside of their
+/// sphere, by exact arithmetic. Spheres of flat tetrahedra have no inside.
 ///
 /// Cost: five exact signs per tetrahedron.
 #[must_use]

@@ -174,8 +174,8 @@ pub struct Rounding {
     pub rounded: u64,
     /// Distinct points that are in no tetrahedron.
     pub missing: u64,
-    /// Tetrahedra that are inverted or flat, or have a vertex of a neighbour inside of their sphere; `None` in
-    /// exact arithmetic.
+    /// Tetrahedra that are inverted or flat, or have a vertex of a neighbour inside of their sphere; `None`
+    /// in exact arithmetic.
     pub violations: Option<u64>,
 }
 

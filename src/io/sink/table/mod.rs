@@ -66,8 +66,8 @@ impl TableFormat {
         if self != TableFormat::Parquet || cfg!(feature = "parquet") {
             return Ok(());
         }
-        let message = "this program was built without the feature `parquet`: take a name that ends in .tsv or \
-                       .jsonl, or --format tsv or jsonl";
+        let message = "this program was built without the feature `parquet`: take a name that ends in .tsv \
+                       or .jsonl, or --format tsv or jsonl";
         Err(Error::usage(message))
     }
 }

@@ -1,5 +1,5 @@
-//! Radii of the force field CHARMM36m, for each atom of amino acids, nucleotides and water, hydrogens too, and of
-//! ions.
+//! Radii of the force field CHARMM36m, for each atom of amino acids, nucleotides and water, hydrogens too,
+//! and of ions.
 
 use super::residues::{
     ADENINE, ARGININE, ASPARTATE, CYSTEINE, CYTOSINE, GLUTAMATE, GUANINE, Group, HISTIDINE, LYSINE, PEPTIDE,
@@ -42,15 +42,15 @@ const O: u32 = 1700;
 /// OH1, ON2, ON4 to ON6.
 const OH: u32 = 1770;
 
-/// Half the distance of least energy between equal atoms ("Rmin/2"), rounded to steps of 0.001 Å. Where two groups
-/// have an atom of a residue, the last one counts.
+/// Half the distance of least energy between equal atoms ("Rmin/2"), rounded to steps of 0.001 Å. Where two
+/// groups have an atom of a residue, the last one counts.
 ///
 /// Names of hydrogens are those of the Protein Data Bank, and those of CHARMM.
 ///
-/// Source: the files top_all36_prot, par_all36m_prot, top_all36_na, par_all36_na and toppar_water_ions of the force
-/// field of July 2024 (Best and others 2012, J. Chem. Theory Comput. 8, 3257; Huang and others 2017, Nature
-/// Methods 14, 71; Hart and others 2012, J. Chem. Theory Comput. 8, 348), which its authors give to all, as the
-/// program `OpenMM` (MIT licence) has them.
+/// Source: the files top_all36_prot, par_all36m_prot, top_all36_na, par_all36_na and toppar_water_ions of the
+/// force field of July 2024 (Best and others 2012, J. Chem. Theory Comput. 8, 3257; Huang and others 2017,
+/// Nature Methods 14, 71; Hart and others 2012, J. Chem. Theory Comput. 8, 348), which its authors give to
+/// all, as the program `OpenMM` (MIT licence) has them.
 pub(super) const CHARMM: &[Group] = &[
     Group {
         residues: &[PEPTIDE],

@@ -1,8 +1,8 @@
 //! Van der Waals radii of atoms, from tables of the literature and from files.
 //!
 //! Radii are exact multiples of 0.001 Å. Those of the tables "protor" and "united" belong to heavy atoms with
-//! their hydrogens, so hydrogens are usually left out with them; those of "bondi" and "charmm" belong to single
-//! atoms.
+//! their hydrogens, so hydrogens are usually left out with them; those of "bondi" and "charmm" belong to
+//! single atoms.
 
 mod charmm;
 mod elements;
@@ -66,8 +66,8 @@ impl Radii {
     /// * `united`: by residue and atom for amino acids, by element for other heavy atoms (Chothia 1976, as in
     ///   the program NACCESS); other elements, and hydrogens, as in `bondi`.
     ///
-    /// * `charmm`: by residue and atom, hydrogens too, for amino acids, nucleotides, water and ions (the force
-    ///   field CHARMM36m); other atoms as in `bondi`.
+    /// * `charmm`: by residue and atom, hydrogens too, for amino acids, nucleotides, water and ions (the
+    ///   force field CHARMM36m); other atoms as in `bondi`.
     ///
     /// The radii of `protor` and `united` include those of hydrogens, which are usually left out with them
     /// ([`Atoms::Heavy`](super::Atoms::Heavy)).
