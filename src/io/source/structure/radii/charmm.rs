@@ -49,8 +49,8 @@ const OH: u32 = 1770;
 ///
 /// Source: the files top_all36_prot, par_all36m_prot, top_all36_na, par_all36_na and toppar_water_ions of the
 /// force field of July 2024 (Best and others 2012, J. Chem. Theory Comput. 8, 3257; Huang and others 2017,
-/// Nature Methods 14, 71; Hart and others 2012, J. Chem. Theory Comput. 8, 348), which its authors give to
-/// all, as the program `OpenMM` (MIT licence) has them.
+/// Nature Methods 14, 71; Hart and others 2012, J. Chem. Theory Comput. 8, 348), as the program
+/// `OpenMM` 8.6 (MIT licence) has them.
 pub(super) const CHARMM: &[Group] = &[
     Group {
         residues: &[PEPTIDE],

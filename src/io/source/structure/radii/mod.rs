@@ -65,7 +65,6 @@ impl Radii {
     ///   has from Hu, Zhou and Robertson 2009).
     /// * `united`: by residue and atom for amino acids, by element for other heavy atoms (Chothia 1976, as in
     ///   the program NACCESS); other elements, and hydrogens, as in `bondi`.
-    ///
     /// * `charmm`: by residue and atom, hydrogens too, for amino acids, nucleotides, water and ions (the
     ///   force field CHARMM36m); other atoms as in `bondi`.
     ///
