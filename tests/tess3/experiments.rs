@@ -93,13 +93,14 @@ fn sweeps_count_wrong_tetrahedra_as_the_audit_does() {
     let output = run("tess3", &flags, &[]);
     assert!(output.status.success(), "{:?}", outcome(&output));
     let summary = Rows::new(&std::fs::read_to_string(folder.path("out/summary.tsv")).unwrap());
-    for (file, is_wrong) in [("cylinder", true), ("cloud", false)] {
-        let mesh = folder.path(&format!("out/{file}.spm"));
+    for (file, is_wrong) in [("cylinder.xyz", true), ("cloud.pdb", false)] {
+        let row = summary.of_file(file);
+        let mesh = folder.path(&format!("out/{}", summary.text(row, "output")));
         let audit = run("spinfo", &["--audit", "--count-violations", "--json", &mesh], &[]);
         let audit: serde_json::Value = serde_json::from_slice(&audit.stdout).unwrap();
         let count = |key: &str| audit["census"]["exact"][key].as_u64().unwrap_or_else(|| panic!("{audit}"));
         assert_eq!(count("inverted"), 0);
-        let found = summary.number(summary.of_file(file), "violations") as u64;
+        let found = summary.number(row, "violations") as u64;
         assert_eq!(found, count("flat") + count("inside"), "{file}");
         assert_eq!(found > 0, is_wrong, "{file}");
     }

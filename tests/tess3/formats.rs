@@ -74,7 +74,7 @@ fn names_tell_the_format_unless_a_flag_does() {
         (&["--table", "-o", "t.json"], ".jsonl, .ndjson or .parquet"),
     ];
     for (flags, part) in wrong {
-        assert_outcome("tess3", &[flags, &[&file]].concat(), &[], 2, part);
+        assert_outcome("tess3", &[flags, &[&file[..]]].concat(), &[], 2, part);
     }
 }
 
