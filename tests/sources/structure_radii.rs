@@ -160,7 +160,7 @@ fn a_damaged_file_is_refused_with_its_line() {
         ("Xx 1.7\n", "found \"Xx\", expected the symbol"),
         ("ALA CB 1.7\n\nala cb 1.8\n", "line 3: a second radius for \"ALA CB\", which differs"),
         ("H 1\nD 1.1\n", "line 2: a second radius for \"H\", which differs"),
-        ("table charmm\n", "expected the name of a table: protor, bondi, united"),
+        ("table amber\n", "expected the name of a table: protor, bondi, united, charmm"),
         ("table bondi\ntable bondi\n", "line 2: a second table"),
         ("C 1.7\0\n", "line 1: zero byte"),
     ];
