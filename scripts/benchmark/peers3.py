@@ -31,6 +31,10 @@ class Peers3(Installer):
         version = debian("CGAL", "libcgal-dev", "libgmp-dev", "libmpfr-dev")
         return self.compile("cgal3", "-frounding-math", "-lmpfr", "-lgmp"), version
 
+    def cgal_orders(self):
+        version = debian("CGAL", "libcgal-dev", "libgmp-dev", "libmpfr-dev")
+        return self.compile("cgal3_orders", "-frounding-math", "-lmpfr", "-lgmp"), version
+
     def cgal_parallel(self):
         version = debian("CGAL", "libcgal-dev", "libgmp-dev", "libmpfr-dev")
         with_tbb = f"{version}, TBB {debian('tbb', 'libtbb-dev')}"

@@ -3,6 +3,9 @@
 //! `kernel3_time POINTS` is our contestant in `scripts/bench`: one run with fresh buffers. With `--parts` it
 //! also times the parts of insertions, the columns of thesis table 3.3; this takes additional time. With
 //! `--weighted`, each point has a fourth number, its weight.
+//! `kernel3_time POINTS --way WAY` inserts in `rounds`, in one `pass` along the curve or at `random`; or, if
+//! built with `--features experiments`, in floating point as the program of the thesis: `float`, or
+//! `float-random`.
 //! `kernel3_time POINTS ROUNDS`, for tuning, runs several rounds with the same buffers. POINTS has triples of
 //! little-endian f64; `scripts/bench` keeps its files of points in its folder.
 
@@ -16,6 +19,7 @@ use std::fs::File;
 
 use files::{read_tuples, timed};
 use spmesh_geometry::delaunay3::{Kernel, Stats, Tetrahedralization};
+use spmesh_geometry::order::Sequence;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -23,8 +27,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         [points, flag] if flag == "--weighted" => compare_weighted(read_tuples(&mut File::open(points)?)?),
         [points] => compare(read_tuples(&mut File::open(points)?)?, false),
         [points, flag] if flag == "--parts" => compare(read_tuples(&mut File::open(points)?)?, true),
+        [points, flag, way] if flag == "--way" => in_a_way(read_tuples(&mut File::open(points)?)?, way),
         [points, rounds] => tune(&read_tuples(&mut File::open(points)?)?, rounds.parse()?),
-        _ => Err("usage: kernel3_time POINTS [--parts|--weighted|ROUNDS]".into()),
+        _ => Err("usage: kernel3_time POINTS [--parts|--weighted|--way WAY|ROUNDS]".into()),
     }
 }
 
@@ -38,6 +43,41 @@ fn compare(points: Vec<[f64; 3]>, is_timed: bool) -> Result<(), Box<dyn Error>> 
     result?;
     report(&mesh, count, seconds);
     Ok(())
+}
+
+/// One run with another sequence or arithmetic.
+fn in_a_way(points: Vec<[f64; 3]>, way: &str) -> Result<(), Box<dyn Error>> {
+    let sequence = match way {
+        "rounds" => Sequence::Rounds,
+        "pass" | "float" => Sequence::Pass,
+        "random" | "float-random" => Sequence::Random { seed: 1 },
+        _ => return Err(format!("{way}: not rounds, pass, random, float or float-random").into()),
+    };
+    if way.starts_with("float") {
+        return in_floating_point(&points, sequence);
+    }
+    let count = points.len();
+    let mut mesh = Tetrahedralization::default();
+    let mut kernel = Kernel::new();
+    kernel.sequence = sequence;
+    let (result, seconds) = timed(|| kernel.triangulate(Cow::Owned(points), &mut mesh));
+    result?;
+    report(&mesh, count, seconds);
+    Ok(())
+}
+
+#[cfg(feature = "experiments")]
+fn in_floating_point(points: &[[f64; 3]], sequence: Sequence) -> Result<(), Box<dyn Error>> {
+    use spmesh_geometry::delaunay3_float::{Options, triangulate};
+    let options = Options { sequence, ..Options::default() };
+    let (result, seconds) = timed(|| triangulate(points, &options));
+    report(&result?.0, points.len(), seconds);
+    Ok(())
+}
+
+#[cfg(not(feature = "experiments"))]
+fn in_floating_point(_: &[[f64; 3]], _: Sequence) -> Result<(), Box<dyn Error>> {
+    Err("floating point needs a build with --features experiments".into())
 }
 
 /// One run with weights.

@@ -27,7 +27,7 @@ pub(super) const MATRIX: &[&str] = &["mtx", "npz"];
 pub(super) const MESH: &[&str] = &["vtu", "mesh", "ply", "obj"];
 
 /// What endings stand for.
-const MEANINGS: [(&str, &[&str]); 16] = [
+const MEANINGS: [(&str, &[&str]); 17] = [
     ("a stream of spmesh", STREAM),
     ("a raster", RASTER),
     (
@@ -39,6 +39,7 @@ const MEANINGS: [(&str, &[&str]); 16] = [
     ("a picture", PICTURE),
     ("a document", &["pdf", "eps", "ps"]),
     ("a table", TABLE),
+    ("a table of JSON Lines", &["jsonl"]),
     ("a table of another program", &["xls", "xlsx", "ods"]),
     ("an array of numpy", ARRAY),
     ("a sparse matrix or several arrays", MATRIX),

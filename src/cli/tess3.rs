@@ -4,6 +4,7 @@ mod balls;
 mod method;
 mod report;
 mod selection;
+mod tables;
 
 pub use spmesh_tess3::heap::CountingHeap;
 
@@ -24,9 +25,11 @@ use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
+use spmesh_io::sink::TableFormat;
 use spmesh_io::source::structure::{Format, Structure, read_structure};
 use spmesh_tess3::sweep::{News, Outcome, Sweep, sweep};
 use spmesh_tess3::{Arithmetic, Options, Product, Radius, Stats};
+use tables::TableFlag;
 
 const SUMMARY_NAME: &str = "summary.tsv";
 
@@ -46,6 +49,8 @@ Examples:
     tess3 1abc.cif.gz --classes polymer --ses --per molecule
     tess3 1abc.cif.gz --classes polymer --contact-areas --between chains -o interface.tsv
     tess3 1abc.cif.gz --classes polymer --pockets -o pockets.tsv
+  The same areas for pandas, Polars or DuckDB:
+    tess3 1abc.cif.gz --classes polymer --sasa -o sasa.parquet
   Persistent homology, with GUDHI or another program that reads lists of simplices:
     tess3 1abc.pdb --filtration -o 1abc.txt
   Many structures, two at a time; later only what is new or changed:
@@ -97,6 +102,11 @@ pub struct Flags {
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha"])]
     filtration: bool,
 
+    /// Format of tables, also in a sweep: text with tabs, JSON Lines, or Parquet [default: that of the ending
+    /// of --output, else tsv]
+    #[arg(long, value_enum, value_name = "tsv|jsonl|parquet", hide_possible_values = true)]
+    format: Option<TableFlag>,
+
     /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere
     /// of at most that radius
     #[arg(long, value_name = "RADIUS")]
@@ -118,8 +128,8 @@ pub struct Flags {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Where the summary of a sweep goes, a line per mesh: a table, or JSON Lines if the name ends in .jsonl;
-    /// - is stdout [default: summary.tsv in the folder]
+    /// Where the summary of a sweep goes, a line per mesh: a table, JSON Lines if the name ends in .jsonl, or
+    /// Parquet if it ends in .parquet; - is stdout [default: summary.tsv in the folder]
     #[arg(long, value_name = "FILE", requires = "out_dir")]
     summary: Option<PathBuf>,
 
@@ -220,13 +230,13 @@ fn run_one(flags: &Flags) -> Result<Finished> {
         refuse_terminal()?;
     }
     let options = flags.options()?;
-    let is_binary = options.product == Product::Mesh;
+    let is_binary = options.product == Product::Mesh || options.format == TableFormat::Parquet;
     let inputs = std::iter::once(input.as_path()).chain(flags.balls.file());
     check_apart(inputs, &[("--output", &flags.output)])?;
     let ending = match options.product {
         Product::Mesh => endings::STREAM,
         Product::Filtration => endings::NUMBERS,
-        _ => endings::TABLE,
+        _ => tables::ENDINGS,
     };
     endings::check(&flags.output, &[ending])?;
     // Fail before the work if the output cannot be created.
@@ -261,7 +271,13 @@ fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Resu
 }
 
 fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
-    let summary = flags.summary.clone().unwrap_or_else(|| folder.join(SUMMARY_NAME));
+    let shown = flags.summary.clone().unwrap_or_else(|| folder.join(SUMMARY_NAME));
+    let is_parquet = TableFormat::of(&shown) == Some(TableFormat::Parquet);
+    if is_parquet {
+        TableFormat::Parquet.check()?;
+    }
+    // Parquet is written at the end. Until then, and for --resume, the summary is in its usual place.
+    let summary = if is_parquet { folder.join(SUMMARY_NAME) } else { shown.clone() };
     if flags.resume && summary == Path::new("-") {
         return Err(Error::usage(
             "--resume reads the summary of the earlier run: give it a file with --summary",
@@ -276,7 +292,8 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
         version: env!("CARGO_PKG_VERSION").to_string(),
         options,
         folder: folder.to_path_buf(),
-        summary: summary.clone(),
+        summary,
+        parquet: is_parquet.then(|| shown.clone()),
         threads: flags.threads(),
         resume: flags.resume,
         strict: flags.strict,
@@ -299,8 +316,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
     drop(progress);
     let Outcome { done, skipped, failed, stats } = outcome;
     let before = if skipped > 0 { format!(", {skipped} had been done before") } else { String::new() };
-    let summary =
-        if summary == Path::new("-") { String::new() } else { format!("; see {}", summary.display()) };
+    let summary = if shown == Path::new("-") { String::new() } else { format!("; see {}", shown.display()) };
     if failed > 0 {
         let files = done + skipped + failed;
         let message = format!("{failed} of {files} files failed{before}{summary}");
@@ -337,9 +353,15 @@ impl Flags {
             alpha: self.alpha.clone(),
             method,
             compress: self.compression.of_output(product == Product::Mesh)?,
+            format: tables::format(self.format, self.output_file(), product)?,
             product,
             balls,
         })
+    }
+
+    /// The output of a run without a folder.
+    fn output_file(&self) -> Option<&Path> {
+        self.out_dir.is_none().then_some(&*self.output)
     }
 
     fn threads(&self) -> usize {
@@ -365,6 +387,9 @@ impl Flags {
         ];
         for (flag, name) in names {
             text += if flag { name } else { "" };
+        }
+        if options.format != TableFormat::default() {
+            text += &format!(" --format {}", options.format.ending());
         }
         text + options.balls.as_ref().map_or("", |balls| &balls.text)
     }

@@ -39,22 +39,22 @@ fn every_name_of_a_table_is_known() {
 #[test]
 fn tables_have_the_radii_of_the_literature() {
     let cases = [
-        ("ATOM      1  CA  ALA A   1", "C", [1880, 1700, 1870]),
-        ("ATOM      1  C   ALA A   1", "C", [1610, 1700, 1760]),
-        ("ATOM      1  O   ALA A   1", "O", [1420, 1520, 1400]),
-        ("ATOM      1  NZ  LYS A   1", "N", [1640, 1550, 1500]),
-        ("ATOM      1  CZ  PHE A   1", "C", [1760, 1700, 1760]),
-        ("ATOM      1  SD  MET A   1", "S", [1770, 1800, 1850]),
-        ("HETATM    1 SE   MSE A   1", "SE", [1900, 1900, 1800]),
-        ("ATOM      1  CE1 HSD A   1", "C", [1760, 1700, 1760]),
-        ("ATOM      1  O1P   G A   1", "O", [1420, 1520, 1400]),
-        ("ATOM      1  C1*  DA A   1", "C", [1880, 1700, 1800]),
-        ("HETATM    1  O   HOH A   1", "O", [1460, 1520, 1400]),
-        ("HETATM    1  C1  LIG A   1", "C", [1700, 1700, 1800]),
-        ("ATOM      1  HA  ALA A   1", "H", [1100, 1100, 1100]),
-        ("ATOM      1  DA  ALA A   1", "D", [1100, 1100, 1100]),
-        ("HETATM    1 FE   HEM A   1", "FE", [2040, 2040, 2040]),
-        ("HETATM    1 ZN    ZN A   1", "ZN", [1390, 1390, 1390]),
+        ("ATOM      1  CA  ALA A   1", "C", [1880, 1700, 1870, 2000]),
+        ("ATOM      1  C   ALA A   1", "C", [1610, 1700, 1760, 2000]),
+        ("ATOM      1  O   ALA A   1", "O", [1420, 1520, 1400, 1700]),
+        ("ATOM      1  NZ  LYS A   1", "N", [1640, 1550, 1500, 1850]),
+        ("ATOM      1  CZ  PHE A   1", "C", [1760, 1700, 1760, 1992]),
+        ("ATOM      1  SD  MET A   1", "S", [1770, 1800, 1850, 2000]),
+        ("HETATM    1 SE   MSE A   1", "SE", [1900, 1900, 1800, 1900]),
+        ("ATOM      1  CE1 HSD A   1", "C", [1760, 1700, 1760, 1800]),
+        ("ATOM      1  O1P   G A   1", "O", [1420, 1520, 1400, 1700]),
+        ("ATOM      1  C1*  DA A   1", "C", [1880, 1700, 1800, 2275]),
+        ("HETATM    1  O   HOH A   1", "O", [1460, 1520, 1400, 1768]),
+        ("HETATM    1  C1  LIG A   1", "C", [1700, 1700, 1800, 1700]),
+        ("ATOM      1  HA  ALA A   1", "H", [1100, 1100, 1100, 1320]),
+        ("ATOM      1  DA  ALA A   1", "D", [1100, 1100, 1100, 1100]),
+        ("HETATM    1 FE   HEM A   1", "FE", [2040, 2040, 2040, 2040]),
+        ("HETATM    1 ZN    ZN A   1", "ZN", [1390, 1390, 1390, 1090]),
     ];
     for (start, element, expected) in cases {
         for (table, expected) in Radii::NAMES.into_iter().map(named).zip(expected) {
@@ -160,7 +160,7 @@ fn a_damaged_file_is_refused_with_its_line() {
         ("Xx 1.7\n", "found \"Xx\", expected the symbol"),
         ("ALA CB 1.7\n\nala cb 1.8\n", "line 3: a second radius for \"ALA CB\", which differs"),
         ("H 1\nD 1.1\n", "line 2: a second radius for \"H\", which differs"),
-        ("table charmm\n", "expected the name of a table: protor, bondi, united"),
+        ("table amber\n", "expected the name of a table: protor, bondi, united, charmm"),
         ("table bondi\ntable bondi\n", "line 2: a second table"),
         ("C 1.7\0\n", "line 1: zero byte"),
     ];

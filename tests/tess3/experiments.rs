@@ -1,8 +1,8 @@
 //! Flags for experiments: they may change some outputs, and must not change others.
 
 use super::meshes::Mesh;
-use super::molecules::{cloud, pdb};
-use crate::programs::{outcome, run};
+use super::molecules::{Rows, cloud, pdb};
+use crate::programs::{Folder, outcome, run};
 
 fn mesh(text: &str, arguments: &[&str]) -> Mesh {
     let output = run("tess3", &[arguments, &["-q", "-"]].concat(), text.as_bytes());
@@ -76,4 +76,32 @@ fn floating_point_is_what_the_mesh_says_it_is() {
     let (code, message) = outcome(&run("tess3", &["--check-signs", "-"], wide.as_bytes()));
     assert_eq!(code, Some(2));
     assert!(message.contains("--arithmetic float"), "{message}");
+}
+
+/// The audit counts with its own arithmetic. No tetrahedron here is inverted, so none counts twice there.
+#[test]
+fn sweeps_count_wrong_tetrahedra_as_the_audit_does() {
+    let cylinder: String = (0..40)
+        .flat_map(|z| (0..30).map(move |i| (f64::from(z), f64::from(i) * std::f64::consts::TAU / 30.0)))
+        .map(|(z, angle)| format!("{} {} {z}\n", 10.0 * angle.cos(), 10.0 * angle.sin()))
+        .collect();
+    let folder = Folder::new();
+    let files =
+        [folder.write("cylinder.xyz", cylinder), folder.write("cloud.pdb", pdb(&cloud(300, 9_000, 54)))];
+    let out = folder.path("out");
+    let flags = ["--arithmetic", "float", "--out-dir", &out, &files[0], &files[1]];
+    let output = run("tess3", &flags, &[]);
+    assert!(output.status.success(), "{:?}", outcome(&output));
+    let summary = Rows::new(&std::fs::read_to_string(folder.path("out/summary.tsv")).unwrap());
+    for (file, is_wrong) in [("cylinder.xyz", true), ("cloud.pdb", false)] {
+        let row = summary.of_file(file);
+        let mesh = folder.path(&format!("out/{}", summary.text(row, "output")));
+        let audit = run("spinfo", &["--audit", "--count-violations", "--json", &mesh], &[]);
+        let audit: serde_json::Value = serde_json::from_slice(&audit.stdout).unwrap();
+        let count = |key: &str| audit["census"]["exact"][key].as_u64().unwrap_or_else(|| panic!("{audit}"));
+        assert_eq!(count("inverted"), 0);
+        let found = summary.number(row, "violations") as u64;
+        assert_eq!(found, count("flat") + count("inside"), "{file}");
+        assert_eq!(found > 0, is_wrong, "{file}");
+    }
 }

@@ -8,6 +8,7 @@ mod classes;
 mod experiments;
 mod failures;
 mod filtration;
+mod formats;
 mod meshes;
 mod molecules;
 mod pipes;

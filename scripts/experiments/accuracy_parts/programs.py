@@ -45,15 +45,16 @@ class Workplace:
             sys.exit(f"{' '.join(map(str, command))}: {done.stderr}")
         return json.loads(done.stdout)["census"]
 
-    def tetrahedra(self):
-        """The points as integers, and the tetrahedra of the mesh as quadruples of indices."""
+    def tetrahedra(self, number=int):
+        """The points with coordinates made by `number`, and the tetrahedra of the mesh as quadruples of indices."""
         medit = self.mesh.with_suffix(".mesh")
         subprocess.run([BIN / "spconvert", "--quiet", self.mesh, "-o", medit], check=True)
         lines = iter(medit.read_text().splitlines())
         section = {}
         for line in lines:
             if line in ("Vertices", "Tetrahedra"):
-                section[line] = [[int(word) for word in next(lines).split()[:-1]] for _ in range(int(next(lines)))]
+                read = number if line == "Vertices" else int
+                section[line] = [[read(word) for word in next(lines).split()[:-1]] for _ in range(int(next(lines)))]
         return section["Vertices"], [[vertex - 1 for vertex in corners] for corners in section["Tetrahedra"]]
 
 

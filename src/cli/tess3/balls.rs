@@ -46,8 +46,8 @@ pub(super) struct BallFlags {
     pockets: bool,
 
     /// Radii of atoms, also for a mesh or a filtration with weights: protor (united atoms, Tsai et al. 1999),
-    /// bondi (by element), united (Chothia 1976), or a file with lines RESIDUE ATOM RADIUS or ELEMENT RADIUS
-    /// [default: protor]
+    /// bondi (by element), united (Chothia 1976), charmm (CHARMM36m, hydrogens too), or a file with lines
+    /// RESIDUE ATOM RADIUS or ELEMENT RADIUS [default: protor]
     #[arg(long, value_name = "NAME|FILE")]
     radii: Option<String>,
 

@@ -68,6 +68,7 @@ fn counts(stats: &Stats, method: &Method) -> Vec<Row<u64>> {
         ]),
         Arithmetic::Float { check_signs } => {
             rows.push(("points in no tetrahedron", "missing", rounding.missing));
+            rows.push(("wrong tetrahedra", "violations", rounding.violations.unwrap_or_default()));
             if check_signs {
                 rows.extend([
                     ("in-sphere: wrong signs", "wrong_signs", rounding.wrong_signs),

@@ -27,10 +27,12 @@ mod sphere;
 mod star;
 mod state;
 mod stats;
+mod violations;
 mod wall;
 
 pub use options::Options;
 pub use stats::{Seconds, Stats};
+pub use violations::violations;
 
 use crate::delaunay3::Tetrahedralization;
 use crate::predicates::{Extent, Point3};

@@ -1,5 +1,5 @@
 //! Writers of every format that a stream can be converted to. Their input is the events of a stream.
-//! Arrays and sparse matrices for numpy get their rows from their caller.
+//! Tables, and arrays and sparse matrices for numpy, get their rows from their caller.
 
 mod constrained;
 mod constraint_geojson;
@@ -21,6 +21,7 @@ mod sparse_matrix;
 mod spb;
 mod spm;
 mod spool;
+mod table;
 mod triangles;
 mod twin;
 mod twin4;
@@ -45,6 +46,7 @@ pub use spa::SpaSink;
 pub use sparse_matrix::{MatrixFormat, SparseRows};
 pub use spb::SpbSink;
 pub use spm::SpmSink;
+pub use table::{Column, ColumnKind, TableFormat, TableSink};
 pub use twin::TwinSink;
 pub use volume::write_volume;
 pub use vtu::VtuSink;

@@ -1,19 +1,19 @@
 //! One structure: select, triangulate, write.
 
 use std::borrow::Cow;
-use std::io::Write;
 use std::time::Instant;
 
 use super::alpha::AlphaComplex;
 use super::balls::{BallOptions, Molecule};
 use super::filtration::Filtration;
 use super::mesh::write_mesh;
-use super::rows::write_error;
+use super::rows::columns;
 use super::tables::{CONTACTS, ModelTables, TETRAHEDRA};
 use super::{Arithmetic, Options, Product, Report, selection};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_geometry::delaunay3::Tetrahedralization;
+use spmesh_io::sink::TableSink;
 use spmesh_io::source::structure::{Models, Selected, Structure};
 use spmesh_model::attributes::Attributes;
 use spmesh_model::bounds::Bounds;
@@ -59,7 +59,7 @@ struct Job<'o> {
     options: Options,
     open: &'o mut dyn FnMut(Option<ModelName>) -> Result<Output>,
     /// The table of all models.
-    table: Option<Output>,
+    table: Option<TableSink>,
 }
 
 impl Job<'_> {
@@ -108,6 +108,8 @@ impl Job<'_> {
         report.atoms = points.len() as u64;
         let mesh = self.options.method.triangulate(points, weights.as_deref(), &mut report)?;
         report.times.triangulate = started.elapsed();
+        self.options.method.count_violations(&mesh, &mut report);
+        let measured = Instant::now();
         let model = Model { name, coordinates: structure.coordinates, selected };
         match (selected, self.options.product) {
             (Some(selected), Product::Tetrahedra | Product::Contacts) => {
@@ -122,7 +124,7 @@ impl Job<'_> {
             }
             _ => self.write_mesh(&model, mesh, weights.as_deref(), &mut report)?,
         }
-        report.times.write = started.elapsed() - report.times.triangulate;
+        report.times.write = measured.elapsed();
         Ok(report)
     }
 
@@ -176,13 +178,11 @@ impl Job<'_> {
         }
     }
 
-    /// The table, which begins with the names of the columns.
-    fn table(&mut self) -> Result<&mut Output> {
+    /// The table, which is created when it gets its first rows.
+    fn table(&mut self) -> Result<&mut TableSink> {
         if self.table.is_none() {
-            let columns = self.columns();
-            let mut table = (self.open)(None)?;
-            table.write_all(columns.as_bytes()).map_err(write_error)?;
-            self.table = Some(table);
+            let columns = columns(&self.columns());
+            self.table = Some(TableSink::create(self.options.format, columns, (self.open)(None)?)?);
         }
         Ok(self.table.as_mut().expect("there is one now"))
     }

@@ -12,7 +12,6 @@ mod job;
 mod mesh;
 mod method;
 mod names;
-mod number;
 mod radius;
 mod rows;
 mod selection;
@@ -31,6 +30,7 @@ pub use spheres::{Measure, measure};
 use std::time::Duration;
 
 use spmesh_geometry::predicates::PredicateCounts;
+use spmesh_io::sink::TableFormat;
 use spmesh_io::source::structure::Selection;
 
 /// The output made of a triangulation.
@@ -55,6 +55,12 @@ pub enum Product {
 }
 
 impl Product {
+    /// Whether the output is a table.
+    #[must_use]
+    pub fn is_table(self) -> bool {
+        !self.is_per_model()
+    }
+
     /// Whether each model has an output of its own.
     #[must_use]
     pub fn is_per_model(self) -> bool {
@@ -75,6 +81,8 @@ pub struct Options {
     pub alpha: Option<Radius>,
     /// How the kernel works.
     pub method: Method,
+    /// The format of tables.
+    pub format: TableFormat,
     /// Whether the blocks of meshes are compressed.
     pub compress: bool,
     /// How atoms become balls, for the tables of balls, and filtrations with
@@ -169,15 +177,21 @@ pub struct Rounding {
     pub rounded: u64,
     /// Distinct points that are in no tetrahedron.
     pub missing: u64,
+    /// Tetrahedra that are inverted or flat, or have a vertex of a neighbour inside of their sphere; `None`
+    /// in exact arithmetic.
+    pub violations: Option<u64>,
 }
 
 impl Rounding {
     fn add(&mut self, other: &Rounding) {
-        let Rounding { wrong_signs, wrong_zeros, rounded, missing } = self;
+        let Rounding { wrong_signs, wrong_zeros, rounded, missing, violations } = self;
         *wrong_signs += other.wrong_signs;
         *wrong_zeros += other.wrong_zeros;
         *rounded += other.rounded;
         *missing += other.missing;
+        if let Some(count) = other.violations {
+            *violations.get_or_insert(0) += count;
+        }
     }
 }
 

@@ -123,6 +123,15 @@ impl Method {
         Ok(mesh)
     }
 
+    /// Counts what rounding made wrong in a mesh of this method.
+    #[cfg_attr(not(feature = "experiments"), expect(unused_variables, reason = "nothing is rounded"))]
+    pub(super) fn count_violations(&self, mesh: &Tetrahedralization, report: &mut Report) {
+        #[cfg(feature = "experiments")]
+        if self.arithmetic != Arithmetic::Exact {
+            report.rounding.violations = Some(delaunay3_float::violations(mesh));
+        }
+    }
+
     #[cfg(not(feature = "experiments"))]
     fn in_floating_point(&self, _: &[Point3], _: bool, _: &mut Report) -> Result<Tetrahedralization> {
         Err(Error::usage(NO_EXPERIMENTS))
@@ -143,7 +152,7 @@ impl Method {
         let delaunay3_float::Stats { wrong_signs, wrong_zeros, rounded, missing, .. } = stats;
         report.created = stats.created;
         report.in_sphere_tests = stats.in_sphere_tests;
-        report.rounding = Rounding { wrong_signs, wrong_zeros, rounded, missing };
+        report.rounding = Rounding { wrong_signs, wrong_zeros, rounded, missing, violations: None };
         report.times.order = Duration::from_secs_f64(stats.seconds.order);
         report.times.locate = Duration::from_secs_f64(stats.seconds.locate);
         report.times.predicates = Duration::from_secs_f64(stats.seconds.predicates);

@@ -1,17 +1,16 @@
-//! Tables of tetrahedra and of contacts: lines of columns separated by tabs, below a line with their names.
+//! Tables of tetrahedra and of contacts.
 //!
 //! Rows do not depend on how the triangulation was made: the atoms of a row, and the rows, are in the order
 //! of the input.
 
-use std::io::Write;
-
 use super::alpha::AlphaComplex;
 use super::names::AtomNames;
-use super::rows::{Rows, distance};
+use super::rows::distance;
 use super::spheres::measure;
 use spmesh_core::error::Result;
 use spmesh_geometry::delaunay3::Tetrahedralization;
 use spmesh_geometry::predicates::Point3;
+use spmesh_io::sink::TableSink;
 use spmesh_io::source::structure::Selected;
 
 /// Columns of the table of tetrahedra.
@@ -41,20 +40,20 @@ impl<'s> ModelTables<'s> {
     ///
     /// # Errors
     /// If writing fails.
-    pub(super) fn write_tetrahedra(&self, output: &mut impl Write) -> Result<()> {
+    pub(super) fn write_tetrahedra(&self, rows: &mut TableSink) -> Result<()> {
         let tetrahedra = self.mesh.tetrahedra().iter().enumerate();
         let kept = tetrahedra.filter(|&(t, _)| self.alpha.is_none_or(|alpha| alpha.has_tetrahedron(t)));
-        let mut rows: Vec<[u32; 4]> = kept.map(|(_, t)| self.in_order_of_input(t.vertices)).collect();
-        rows.sort_unstable();
-        let mut table = Table::new(output, self);
-        for row in rows {
+        let mut found: Vec<[u32; 4]> = kept.map(|(_, t)| self.in_order_of_input(t.vertices)).collect();
+        found.sort_unstable();
+        let mut table = Table::new(rows, self);
+        for row in found {
             table.start_row(&row)?;
             let measure = measure(row.map(|index| self.point(index)));
             table.rows.number(measure.circumradius * self.scale)?;
             table.rows.number(measure.volume * self.scale.powi(3))?;
             table.rows.end()?;
         }
-        table.rows.finish()
+        Ok(())
     }
 
     /// Writes a row per edge: its atoms, their distance, and the number of tetrahedra around it.
@@ -63,28 +62,28 @@ impl<'s> ModelTables<'s> {
     ///
     /// # Errors
     /// If writing fails.
-    pub(super) fn write_contacts(&self, output: &mut impl Write) -> Result<()> {
-        let mut rows: Vec<([u32; 2], u32)> = Vec::new();
+    pub(super) fn write_contacts(&self, rows: &mut TableSink) -> Result<()> {
+        let mut found: Vec<([u32; 2], u32)> = Vec::new();
         self.mesh.for_each_edge(
             |_| true,
             |ring| -> Result<()> {
                 if self.alpha.is_none_or(|alpha| alpha.has_edge(ring)) {
                     let is_kept = |t: u32| self.alpha.is_none_or(|alpha| alpha.has_tetrahedron(t as usize));
                     let tetrahedra = ring.tetrahedra.iter().filter(|&&t| is_kept(t)).count();
-                    rows.push((self.in_order_of_input(ring.ends), tetrahedra as u32));
+                    found.push((self.in_order_of_input(ring.ends), tetrahedra as u32));
                 }
                 Ok(())
             },
         )?;
-        rows.sort_unstable();
-        let mut table = Table::new(output, self);
-        for (row, tetrahedra) in rows {
+        found.sort_unstable();
+        let mut table = Table::new(rows, self);
+        for (row, tetrahedra) in found {
             table.start_row(&row)?;
             table.rows.number(distance(row.map(|index| self.point(index))) * self.scale)?;
             table.rows.integer(tetrahedra)?;
             table.rows.end()?;
         }
-        table.rows.finish()
+        Ok(())
     }
 
     /// Indices in the selection, increasing, of vertices of the mesh.
@@ -100,22 +99,22 @@ impl<'s> ModelTables<'s> {
 }
 
 /// Rows of atoms by their names.
-struct Table<'t, W> {
+struct Table<'t> {
     number: i64,
     selected: &'t Selected<'t>,
     names: AtomNames,
-    rows: Rows<'t, W>,
+    rows: &'t mut TableSink,
 }
 
-impl<'t, W: Write> Table<'t, W> {
-    fn new(output: &'t mut W, of: &ModelTables<'t>) -> Self {
+impl<'t> Table<'t> {
+    fn new(rows: &'t mut TableSink, of: &ModelTables<'t>) -> Self {
         let ModelTables { number, selected, .. } = *of;
-        Table { number, selected, names: AtomNames::new(selected), rows: Rows::new(output) }
+        Table { number, selected, names: AtomNames::new(selected), rows }
     }
 
     /// Model, names and serial numbers of atoms.
     fn start_row(&mut self, atoms: &[u32]) -> Result<()> {
-        self.rows.start(self.number)?;
+        self.rows.integer(self.number)?;
         atoms.iter().for_each(|&index| self.rows.field(self.names.name(index as usize)));
         atoms.iter().try_for_each(|&index| self.rows.integer(self.selected.label(index as usize)))
     }

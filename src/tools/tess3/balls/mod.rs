@@ -7,7 +7,6 @@ mod tables;
 
 pub use radii::NamedRadii;
 
-use std::io::Write;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
@@ -16,6 +15,7 @@ use super::{Product, Report};
 use groups::Groups;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::balls::{Balls, Cells, measure, molecular_surface, pockets};
+use spmesh_io::sink::TableSink;
 use spmesh_io::source::structure::{Radii, Selected};
 use tables::{CellTable, ContactTable};
 
@@ -131,12 +131,12 @@ impl Molecule<'_> {
     ///
     /// # Errors
     /// If an atom has no radius; those of measuring and writing.
-    pub(super) fn write<'o, W: Write + 'o>(
+    pub(super) fn write<'o>(
         &self,
         product: Product,
         options: &BallOptions,
         report: &mut Report,
-        open: impl FnOnce() -> Result<&'o mut W>,
+        open: impl FnOnce() -> Result<&'o mut TableSink>,
     ) -> Result<()> {
         let radii = self.radii(options, report)?;
         let balls = Balls { centres: self.selected.points(), radii: &radii };

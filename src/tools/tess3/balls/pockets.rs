@@ -1,13 +1,12 @@
 //! Rows of pockets and voids, and of what is around them.
 
 use std::collections::BTreeSet;
-use std::io::Write;
 
 use super::groups::Groups;
 use super::{BallOptions, Level, Molecule};
-use crate::rows::Rows;
 use spmesh_core::error::Result;
 use spmesh_geometry::balls::Pocket;
+use spmesh_io::sink::TableSink;
 
 pub(super) fn columns(options: &BallOptions) -> String {
     match options.level {
@@ -28,27 +27,26 @@ pub(super) struct PocketTable<'t> {
 
 impl PocketTable<'_> {
     /// Pockets are numbered from 1, the largest first.
-    pub(super) fn write(&self, pockets: &[Pocket], output: &mut impl Write) -> Result<()> {
-        let mut rows = Rows::new(output);
+    pub(super) fn write(&self, pockets: &[Pocket], rows: &mut TableSink) -> Result<()> {
         for (number, pocket) in (1..).zip(pockets) {
             if self.level == Level::Molecule {
-                self.start_row(number, pocket, &mut rows)?;
-                self.end_pocket(pocket, &mut rows)?;
+                self.start_row(number, pocket, rows)?;
+                self.end_pocket(pocket, rows)?;
             } else {
-                self.write_around(number, pocket, &mut rows)?;
+                self.write_around(number, pocket, rows)?;
             }
         }
-        rows.finish()
+        Ok(())
     }
 
-    fn start_row<W: Write>(&self, number: u32, pocket: &Pocket, rows: &mut Rows<'_, W>) -> Result<()> {
-        rows.start(self.molecule.number)?;
+    fn start_row(&self, number: u32, pocket: &Pocket, rows: &mut TableSink) -> Result<()> {
+        rows.integer(self.molecule.number)?;
         rows.integer(number)?;
         rows.field(if pocket.mouths == 0 { "void" } else { "pocket" });
         Ok(())
     }
 
-    fn end_pocket<W: Write>(&self, pocket: &Pocket, rows: &mut Rows<'_, W>) -> Result<()> {
+    fn end_pocket(&self, pocket: &Pocket, rows: &mut TableSink) -> Result<()> {
         let scale = self.molecule.scale;
         rows.number(pocket.volume * scale.powi(3))?;
         rows.number(pocket.area * scale.powi(2))?;
@@ -61,7 +59,7 @@ impl PocketTable<'_> {
     }
 
     /// A row for each atom, residue or chain around a pocket.
-    fn write_around<W: Write>(&self, number: u32, pocket: &Pocket, rows: &mut Rows<'_, W>) -> Result<()> {
+    fn write_around(&self, number: u32, pocket: &Pocket, rows: &mut TableSink) -> Result<()> {
         let groups: BTreeSet<u32> = pocket.balls.iter().map(|&ball| self.groups.of(ball)).collect();
         for group in groups {
             self.start_row(number, pocket, rows)?;

@@ -1,13 +1,13 @@
 //! Rows of cells and of contacts.
 
 use std::collections::BTreeMap;
-use std::io::Write;
 
 use super::groups::{Groups, Key, key};
 use super::{BallOptions, Level, Molecule};
-use crate::rows::{Rows, distance};
+use crate::rows::distance;
 use spmesh_core::error::Result;
 use spmesh_geometry::balls::{Cell, Contact, Contacts};
+use spmesh_io::sink::TableSink;
 
 pub(super) fn cell_columns(options: &BallOptions) -> String {
     let mut columns = vec!["model", options.level.name()];
@@ -32,14 +32,13 @@ pub(super) struct CellTable<'t> {
 }
 
 impl CellTable<'_> {
-    pub(super) fn write(&self, cells: &[Cell], output: &mut impl Write) -> Result<()> {
-        let mut rows = Rows::new(output);
+    pub(super) fn write(&self, cells: &[Cell], rows: &mut TableSink) -> Result<()> {
         if self.options.level == Level::Atom {
             for (atom, cell) in (0..).zip(cells) {
                 let serial = self.molecule.selected.label(atom as usize);
-                self.row(atom, serial, cell, &mut rows)?;
+                self.row(atom, serial, cell, rows)?;
             }
-            return rows.finish();
+            return Ok(());
         }
         let mut sums = vec![Cell::default(); self.groups.sizes.len()];
         for (atom, cell) in (0..).zip(cells) {
@@ -48,13 +47,13 @@ impl CellTable<'_> {
             sum.volume += cell.volume;
         }
         for ((group, sum), &atoms) in (0..).zip(&sums).zip(&self.groups.sizes) {
-            self.row(group, u64::from(atoms), sum, &mut rows)?;
+            self.row(group, u64::from(atoms), sum, rows)?;
         }
-        rows.finish()
+        Ok(())
     }
 
-    fn row<W: Write>(&self, group: u32, count: u64, cell: &Cell, rows: &mut Rows<'_, W>) -> Result<()> {
-        rows.start(self.molecule.number)?;
+    fn row(&self, group: u32, count: u64, cell: &Cell, rows: &mut TableSink) -> Result<()> {
+        rows.integer(self.molecule.number)?;
         rows.field(self.groups.name(group));
         rows.integer(count)?;
         let scale = self.molecule.scale;
@@ -76,14 +75,13 @@ pub(super) struct ContactTable<'t> {
 }
 
 impl ContactTable<'_> {
-    pub(super) fn write(&self, contacts: &Contacts, output: &mut impl Write) -> Result<()> {
-        let mut rows = Rows::new(output);
+    pub(super) fn write(&self, contacts: &Contacts, rows: &mut TableSink) -> Result<()> {
         let wanted = contacts.iter().filter(|contact| self.is_wanted(contact));
         if self.options.level == Level::Atom {
             for contact in wanted.filter(|contact| self.area(contact) >= self.options.contacts.min_area) {
-                self.row_of_atoms(contact, &mut rows)?;
+                self.row_of_atoms(contact, rows)?;
             }
-            return rows.finish();
+            return Ok(());
         }
         let mut sums: BTreeMap<[u32; 2], (u64, f64)> = BTreeMap::new();
         for contact in wanted {
@@ -97,13 +95,13 @@ impl ContactTable<'_> {
         }
         for (pair, (count, area)) in sums {
             if area >= self.options.contacts.min_area {
-                self.start_row(pair, &mut rows)?;
+                self.start_row(pair, rows)?;
                 rows.integer(count)?;
                 rows.number(area)?;
                 rows.end()?;
             }
         }
-        rows.finish()
+        Ok(())
     }
 
     fn area(&self, contact: &Contact) -> f64 {
@@ -126,7 +124,7 @@ impl ContactTable<'_> {
             * self.molecule.scale
     }
 
-    fn row_of_atoms<W: Write>(&self, contact: &Contact, rows: &mut Rows<'_, W>) -> Result<()> {
+    fn row_of_atoms(&self, contact: &Contact, rows: &mut TableSink) -> Result<()> {
         self.start_row(contact.balls, rows)?;
         for ball in contact.balls {
             rows.integer(self.molecule.selected.label(ball as usize))?;
@@ -136,8 +134,8 @@ impl ContactTable<'_> {
         rows.end()
     }
 
-    fn start_row<W: Write>(&self, pair: [u32; 2], rows: &mut Rows<'_, W>) -> Result<()> {
-        rows.start(self.molecule.number)?;
+    fn start_row(&self, pair: [u32; 2], rows: &mut TableSink) -> Result<()> {
+        rows.integer(self.molecule.number)?;
         pair.iter().for_each(|&group| rows.field(self.groups.name(group)));
         Ok(())
     }

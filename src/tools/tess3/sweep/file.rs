@@ -9,7 +9,7 @@ use super::done::DoneFile;
 use super::input::Input;
 use super::summary::{Line, Written};
 use crate::heap::peak_during;
-use crate::{ModelName, Product, Report, job};
+use crate::{ModelName, Options, Product, Report, job};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::{Output, create_folder};
 use spmesh_core::places::Inputs;
@@ -68,7 +68,7 @@ impl End {
 /// # Errors
 /// Usage, if it does.
 pub(super) fn check(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<()> {
-    check_free(&sweep.folder.join(output_name(&job.stem, sweep.options.product, None)), taken)
+    check_free(&sweep.folder.join(output_name(&job.stem, &sweep.options, None)), taken)
 }
 
 fn check_free(output: &Path, taken: &Inputs) -> Result<()> {
@@ -94,9 +94,9 @@ pub(super) fn run(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> End {
 /// Removes outputs of this kind that an earlier sweep made of a file and this one did not.
 fn remove_stale(job: &Job<'_>, sweep: &Sweep, taken: &Inputs, result: &Result<Vec<Model>>) -> Result<()> {
     let made: Vec<&Path> = result.iter().flatten().map(|model| &*model.output).collect();
-    let product = sweep.options.product;
-    let usual = output_name(&job.stem, product, None);
-    let of_kind = |output: &&PathBuf| output.to_string_lossy().ends_with(ending(product));
+    let usual = output_name(&job.stem, &sweep.options, None);
+    let ending = ending(&sweep.options);
+    let of_kind = |output: &&PathBuf| output.to_string_lossy().ends_with(&ending);
     for output in job.outputs.iter().chain(result.is_err().then_some(&usual)).filter(of_kind) {
         let path = sweep.folder.join(output);
         if made.contains(&&**output) || taken.at(&path).is_some() {
@@ -124,7 +124,7 @@ fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model
     let mut open = |model: Option<ModelName>| {
         let model = model.filter(|_| sweep.options.selection.models == Models::All);
         let model = model.map(|name| if has_distinct_numbers { name.number } else { name.place as i64 });
-        let output = output_name(&job.stem, sweep.options.product, model);
+        let output = output_name(&job.stem, &sweep.options, model);
         let path = sweep.folder.join(&output);
         create_folder_of(&path)?;
         check_free(&path, taken)?;
@@ -156,26 +156,27 @@ fn has_distinct_numbers(structure: &Structure) -> bool {
 }
 
 /// Stem, model and the extension of the product.
-fn output_name(stem: &Path, product: Product, model: Option<i64>) -> PathBuf {
+fn output_name(stem: &Path, options: &Options, model: Option<i64>) -> PathBuf {
     let mut name = stem.as_os_str().to_os_string();
-    if let Some(number) = model.filter(|_| product.is_per_model()) {
+    if let Some(number) = model.filter(|_| options.product.is_per_model()) {
         name.push(format!(".model{number}"));
     }
-    name.push(ending(product));
+    name.push(ending(options));
     name.into()
 }
 
-fn ending(product: Product) -> &'static str {
-    match product {
-        Product::Mesh => ".spm",
-        Product::Tetrahedra => ".tetrahedra.tsv",
-        Product::Contacts => ".contacts.tsv",
-        Product::Cells => ".cells.tsv",
-        Product::Surface => ".surface.tsv",
-        Product::ContactAreas => ".contact-areas.tsv",
-        Product::Pockets => ".pockets.tsv",
-        Product::Filtration => ".filtration.txt",
-    }
+fn ending(options: &Options) -> String {
+    let table = match options.product {
+        Product::Mesh => return ".spm".to_string(),
+        Product::Filtration => return ".filtration.txt".to_string(),
+        Product::Tetrahedra => "tetrahedra",
+        Product::Contacts => "contacts",
+        Product::Cells => "cells",
+        Product::Surface => "surface",
+        Product::ContactAreas => "contact-areas",
+        Product::Pockets => "pockets",
+    };
+    format!(".{table}.{}", options.format.ending())
 }
 
 fn create_folder_of(path: &Path) -> Result<()> {

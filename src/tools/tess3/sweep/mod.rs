@@ -44,6 +44,8 @@ pub struct Sweep {
     /// Where the summary goes; "-" is stdout. If its name ends in `.jsonl` or `.ndjson`, it is written as
     /// JSON Lines.
     pub summary: PathBuf,
+    /// Where the summary goes as Parquet when the sweep ends, if anywhere.
+    pub parquet: Option<PathBuf>,
     /// Number of files in parallel.
     pub threads: usize,
     /// Skip files that the summary lists as done, if their outputs exist.
@@ -92,7 +94,8 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     let files: Vec<&Path> = sweep.files.iter().map(PathBuf::as_path).collect();
     check_distinct(&files)?;
     let inputs: Vec<&Path> = files.iter().copied().chain(sweep.list.as_deref()).collect();
-    check_apart(inputs.iter().copied(), &[("--summary", &sweep.summary)])?;
+    let summaries = std::iter::once(&sweep.summary).chain(&sweep.parquet).map(|path| ("--summary", &**path));
+    check_apart(inputs.iter().copied(), &summaries.collect::<Vec<_>>())?;
     create_folder(folder)?;
     let _folder_lock = lock::lock(folder)?;
     let summary_file = file_of(&sweep.summary);
@@ -112,12 +115,13 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     let files = files.into_iter().map(|(file, known)| (file, known.or_else(|| earlier.take(file)))).collect();
     let jobs = jobs(files, &done);
     // Not an input, but it must not be replaced either.
-    let taken = Inputs::of(inputs.into_iter().chain(summary_file));
+    let taken = Inputs::of(inputs.into_iter().chain(summary_file).chain(sweep.parquet.as_deref()));
     jobs.iter().try_for_each(|job| file::check(job, sweep, &taken))?;
     check_folder(folder)?;
     if summary_lock.is_none() {
         summary_lock = summary_file.map_or(Ok(None), lock::lock_or_create)?;
     }
+    let parquet = sweep.parquet.as_ref().map(|path| Output::create(path, true)).transpose()?;
     let mut summary = Summary::create(&sweep.summary, &done)?;
     // The new summary has a lock of its own.
     drop(summary_lock);
@@ -142,6 +146,9 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
             }
         }
     })?;
+    if let Some(output) = parquet {
+        summary::write_parquet(&sweep.summary, output)?;
+    }
     Ok(outcome)
 }
 

@@ -3,9 +3,11 @@
 use std::path::Path;
 
 use serde_json::{Map, Value};
+use spmesh_core::error::Result;
+use spmesh_io::sink::{Column, ColumnKind, TableSink};
 
 /// The columns. Readers take them by name; new ones come last.
-pub(super) const COLUMNS: [&str; 17] = [
+pub(super) const COLUMNS: [&str; 18] = [
     "file",
     "model",
     "atoms",
@@ -23,11 +25,23 @@ pub(super) const COLUMNS: [&str; 17] = [
     "input_bytes",
     "input_modified",
     "input_sha256",
+    "violations",
 ];
 
-/// Columns that hold numbers: from `model` to `peak_memory_bytes`, and those of bytes.
+/// Columns that hold numbers: from `model` to `peak_memory_bytes`, and other counts.
 fn is_number(column: usize) -> bool {
-    (1..8).contains(&column) || matches!(COLUMNS[column], "output_bytes" | "input_bytes")
+    (1..8).contains(&column) || matches!(COLUMNS[column], "output_bytes" | "input_bytes" | "violations")
+}
+
+/// The columns with their types.
+pub(super) fn columns() -> Vec<Column> {
+    let kind = |column: usize| match COLUMNS[column] {
+        "seconds" => ColumnKind::Number,
+        _ if is_number(column) => ColumnKind::Integer,
+        _ => ColumnKind::Text,
+    };
+    let named = |(place, name): (usize, &&str)| Column { name: name.to_string(), kind: kind(place) };
+    COLUMNS.iter().enumerate().map(named).collect()
 }
 
 /// A row: a field for each column, empty if it does not apply.
@@ -41,6 +55,21 @@ impl Row {
 
     pub(super) fn set(&mut self, column: &str, value: impl Into<String>) {
         self.0[place(column)] = value.into();
+    }
+}
+
+impl Row {
+    /// Writes it to a table of these columns.
+    pub(super) fn write(&self, table: &mut TableSink) -> Result<()> {
+        for (Column { kind, .. }, field) in columns().iter().zip(&self.0) {
+            match (kind, field.parse::<i64>(), field.parse::<f64>()) {
+                (ColumnKind::Text, ..) if !field.is_empty() => table.field(field),
+                (ColumnKind::Integer, Ok(value), _) => table.integer(value)?,
+                (ColumnKind::Number, _, Ok(value)) => table.number(value)?,
+                _ => table.nothing(),
+            }
+        }
+        table.end()
     }
 }
 

@@ -2,17 +2,35 @@
 //! that are done.
 
 use std::fs;
-use std::io::Write;
+use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::time::Duration;
 
 use super::done::Done;
 use super::input::Input;
 use super::lock::{Lock, lock};
-use super::row::{Format, Row};
+use super::row::{Format, Row, columns};
 use crate::Report;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
+use spmesh_io::sink::{TableFormat, TableSink};
+
+/// Writes a summary, which is a file, once more as Parquet.
+///
+/// # Errors
+/// If it cannot be read, or the other one cannot be written.
+pub(super) fn write_parquet(summary: &Path, output: Output) -> Result<()> {
+    let failed = |e| Error::io("reading the summary", e).of_input(summary.display().to_string());
+    let lines = BufReader::new(fs::File::open(summary).map_err(failed)?).lines();
+    let format = Format::of(summary);
+    let mut table = TableSink::create(TableFormat::Parquet, columns(), output)?;
+    for line in lines.skip(format.head().lines().count()) {
+        if let Some(row) = format.row(&line.map_err(failed)?) {
+            row.write(&mut table)?;
+        }
+    }
+    table.commit()
+}
 
 /// The data of a row.
 #[derive(Debug)]
@@ -61,6 +79,10 @@ impl Line<'_> {
                     row.set("tetrahedra", tetrahedra.to_string());
                     row.set("hull_facets", hull_facets.to_string());
                 }
+                row.set(
+                    "violations",
+                    report.rounding.violations.map_or(String::new(), |count| count.to_string()),
+                );
                 row.set("output", output.to_string_lossy());
                 row.set("output_bytes", bytes.to_string());
                 row.set("warnings", warnings.join("; "));

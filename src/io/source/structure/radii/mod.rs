@@ -1,8 +1,10 @@
 //! Van der Waals radii of atoms, from tables of the literature and from files.
 //!
 //! Radii are exact multiples of 0.001 Å. Those of the tables "protor" and "united" belong to heavy atoms with
-//! their hydrogens, so hydrogens are usually left out with them; those of "bondi" belong to single atoms.
+//! their hydrogens, so hydrogens are usually left out with them; those of "bondi" and "charmm" belong to
+//! single atoms.
 
+mod charmm;
 mod elements;
 mod file;
 mod finder;
@@ -15,6 +17,7 @@ use std::path::Path;
 
 pub use finder::RadiusFinder;
 
+use self::charmm::CHARMM;
 use self::elements::Element;
 use self::guess::Labels;
 use self::residues::{Group, PROTOR, UNITED, UNITED_ELEMENTS};
@@ -52,7 +55,7 @@ enum Fallback {
 
 impl Radii {
     /// Names of the tables.
-    pub const NAMES: [&str; 3] = ["protor", "bondi", "united"];
+    pub const NAMES: [&str; 4] = ["protor", "bondi", "united", "charmm"];
 
     /// The table of a name:
     ///
@@ -62,6 +65,8 @@ impl Radii {
     ///   has from Hu, Zhou and Robertson 2009).
     /// * `united`: by residue and atom for amino acids, by element for other heavy atoms (Chothia 1976, as in
     ///   the program NACCESS); other elements, and hydrogens, as in `bondi`.
+    /// * `charmm`: by residue and atom, hydrogens too, for amino acids, nucleotides, water and ions (the
+    ///   force field CHARMM36m); other atoms as in `bondi`.
     ///
     /// The radii of `protor` and `united` include those of hydrogens, which are usually left out with them
     /// ([`Atoms::Heavy`](super::Atoms::Heavy)).
@@ -71,6 +76,7 @@ impl Radii {
             "protor" => Radii::of_tables(PROTOR, &[]),
             "bondi" => Radii::of_tables(&[], &[]),
             "united" => Radii::of_tables(UNITED, UNITED_ELEMENTS),
+            "charmm" => Radii::of_tables(CHARMM, &[]),
             _ => return None,
         })
     }

@@ -28,21 +28,21 @@ pub(super) fn is_known(residue: &str) -> bool {
 
 // Residues by their names in the Protein Data Bank, followed by names that AMBER, CHARMM and GROMACS give to
 // residues with other hydrogens or at the ends of chains.
-const PEPTIDE: &str = "ALA ARG ASN ASP CYS GLN GLU GLY HIS ILE LEU LYS MET PHE PRO SER THR TRP TYR VAL \
+pub(super) const PEPTIDE: &str = "ALA ARG ASN ASP CYS GLN GLU GLY HIS ILE LEU LYS MET PHE PRO SER THR TRP TYR VAL \
     ASX GLX PYL SEC MSE ARN ASH CYX CYM GLH HID HIE HIP HSD HSE HSP LYN";
-const ARGININE: &str = "ARG ARN";
-const ASPARTATE: &str = "ASP ASH";
-const CYSTEINE: &str = "CYS CYX CYM";
-const GLUTAMATE: &str = "GLU GLH";
-const HISTIDINE: &str = "HIS HID HIE HIP HSD HSE HSP";
-const LYSINE: &str = "LYS LYN";
-const ADENINE: &str = "A DA RA ADE A3 A5 DA3 DA5 RA3 RA5";
-const CYTOSINE: &str = "C DC RC CYT C3 C5 DC3 DC5 RC3 RC5";
-const GUANINE: &str = "G DG RG GUA G3 G5 DG3 DG5 RG3 RG5";
+pub(super) const ARGININE: &str = "ARG ARN";
+pub(super) const ASPARTATE: &str = "ASP ASH";
+pub(super) const CYSTEINE: &str = "CYS CYX CYM";
+pub(super) const GLUTAMATE: &str = "GLU GLH";
+pub(super) const HISTIDINE: &str = "HIS HID HIE HIP HSD HSE HSP";
+pub(super) const LYSINE: &str = "LYS LYN";
+pub(super) const ADENINE: &str = "A DA RA ADE A3 A5 DA3 DA5 RA3 RA5";
+pub(super) const CYTOSINE: &str = "C DC RC CYT C3 C5 DC3 DC5 RC3 RC5";
+pub(super) const GUANINE: &str = "G DG RG GUA G3 G5 DG3 DG5 RG3 RG5";
 const INOSINE: &str = "I DI";
-const THYMINE: &str = "T DT THY DT3 DT5";
-const URACIL: &str = "U DU RU URA U3 U5 RU3 RU5";
-const WATER: &str = "HOH DOD WAT H2O SOL SPC TIP TIP3 TIP4 TIP5 TP3 TP4 TP5";
+pub(super) const THYMINE: &str = "T DT THY DT3 DT5";
+pub(super) const URACIL: &str = "U DU RU URA U3 U5 RU3 RU5";
+pub(super) const WATER: &str = "HOH DOD WAT H2O SOL SPC TIP TIP3 TIP4 TIP5 TP3 TP4 TP5";
 
 // Types of the table ProtOr: the element, its bonds, and its hydrogens (H) if they matter.
 const C3H0: u32 = 1610;

@@ -1,0 +1,76 @@
+//! Rows as text: tab-separated values, and JSON Lines.
+
+use std::fmt::Display;
+use std::io::{self, Write};
+
+use super::Column;
+use super::number::write_number;
+
+/// Rows as text.
+pub(super) struct TextRows {
+    /// For each column what comes before its fields.
+    before: Vec<String>,
+    is_json: bool,
+    /// What was not written yet.
+    pub(super) bytes: Vec<u8>,
+}
+
+impl TextRows {
+    /// A line with the names of the columns comes first.
+    pub(super) fn tsv(columns: &[Column]) -> TextRows {
+        let names: Vec<&str> = columns.iter().map(|column| &column.name[..]).collect();
+        let separators = columns.iter().enumerate().map(|(place, _)| if place == 0 { "" } else { "\t" });
+        TextRows {
+            before: separators.map(str::to_string).collect(),
+            is_json: false,
+            bytes: (names.join("\t") + "\n").into_bytes(),
+        }
+    }
+
+    pub(super) fn json_lines(columns: &[Column]) -> TextRows {
+        let before = columns.iter().enumerate().map(|(place, column)| {
+            let name = serde_json::Value::from(&column.name[..]);
+            format!("{}{name}:", if place == 0 { '{' } else { ',' })
+        });
+        TextRows { before: before.collect(), is_json: true, bytes: Vec::new() }
+    }
+
+    pub(super) fn text(&mut self, column: usize, text: &str) {
+        self.start(column);
+        if self.is_json {
+            serde_json::to_writer(&mut self.bytes, text).expect("a vector takes all");
+        } else {
+            self.bytes.extend_from_slice(text.as_bytes());
+        }
+    }
+
+    pub(super) fn integer(&mut self, column: usize, value: impl Display) {
+        self.start(column);
+        write!(self.bytes, "{value}").expect("a vector takes all");
+    }
+
+    pub(super) fn number(&mut self, column: usize, value: f64) -> io::Result<()> {
+        // JSON has no infinity.
+        if self.is_json && !value.is_finite() {
+            self.nothing(column);
+            return Ok(());
+        }
+        self.start(column);
+        write_number(&mut self.bytes, value)
+    }
+
+    pub(super) fn nothing(&mut self, column: usize) {
+        self.start(column);
+        self.bytes.extend_from_slice(if self.is_json { b"null" } else { b"" });
+    }
+
+    /// Ends a row; returns the number of bytes that were not written yet.
+    pub(super) fn end(&mut self) -> usize {
+        self.bytes.extend_from_slice(if self.is_json { b"}\n" } else { b"\n" });
+        self.bytes.len()
+    }
+
+    fn start(&mut self, column: usize) {
+        self.bytes.extend_from_slice(self.before[column].as_bytes());
+    }
+}
