@@ -21,7 +21,7 @@ mod contacts;
 mod face;
 mod pockets;
 mod shares;
-mod surface;
+mod molecular;
 #[cfg(test)]
 mod tests;
 mod tile;
@@ -29,7 +29,7 @@ mod tiles;
 
 pub use contacts::Contacts;
 pub use pockets::{Pocket, pockets};
-pub use surface::molecular_surface;
+pub use molecular::molecular_surface;
 
 use crate::predicates::Point3;
 use spmesh_core::error::{Error, Result};
