@@ -16,3 +16,4 @@ mod order;
 mod pockets;
 mod queries;
 mod sphere;
+mod surfaces;

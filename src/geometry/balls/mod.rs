@@ -18,9 +18,12 @@
 
 mod centre;
 mod contacts;
+mod dual;
 mod face;
+mod groups;
 mod pockets;
 mod shares;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod tile;
@@ -28,6 +31,7 @@ mod tiles;
 
 pub use contacts::Contacts;
 pub use pockets::{Pocket, pockets};
+pub use surface::{Faces, Surface, faces, surface};
 
 use crate::predicates::Point3;
 use spmesh_core::error::{Error, Result};

@@ -14,13 +14,15 @@
 //! macromolecules", 1998, as in the server CASTp.
 
 use super::Balls;
+use super::dual::Dual;
+use super::groups::root;
 use super::shares::{
-    Foot, Measure, angle, ball, dihedral, length, lens, lens_of_disks, solid_angle, triple, volume,
+    Measure, angle, ball, dihedral, length, lens, lens_of_disks, solid_angle, triple, volume,
 };
 use super::tile::Tile;
 use super::tiles::Members;
-use crate::delaunay3::EDGES;
-use crate::vector::{cross, difference, dot};
+use crate::delaunay3::{EDGES, Tetrahedron};
+use crate::vector::{cross, difference};
 use spmesh_core::error::Result;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 use std::collections::{BTreeMap, BTreeSet};
@@ -57,7 +59,7 @@ pub fn pockets(balls: Balls<'_>) -> Result<Vec<Pocket>> {
     if balls.centres.is_empty() {
         return Ok(Vec::new());
     }
-    let all = Members { core: (0..balls.centres.len() as u32).collect(), around: Vec::new() };
+    let all = Members::all(balls);
     let tile = Tile::new(balls, &all)?;
     let mut pockets = Search::new(&tile).pockets();
     pockets.sort_by(|p, q| q.volume.total_cmp(&p.volume).then_with(|| p.balls.cmp(&q.balls)));
@@ -77,27 +79,23 @@ enum State {
 
 struct Search<'t> {
     tile: &'t Tile<'t>,
-    /// Power of each orthocentre.
-    powers: Vec<f64>,
+    dual: Dual<'t>,
     states: Vec<State>,
 }
 
 impl<'t> Search<'t> {
     fn new(tile: &'t Tile<'t>) -> Self {
-        let count = tile.tetrahedra().len();
-        let mut search = Search { tile, powers: Vec::with_capacity(count), states: Vec::new() };
-        for t in 0..count {
-            let apex = tile.tetrahedra()[t].vertices[0];
-            let to_centre = difference(tile.centre(t), tile.point(apex));
-            search.powers.push(dot(to_centre, to_centre) - tile.radius(apex).powi(2));
-            let vertices = tile.tetrahedra()[t].vertices;
-            let is_outer = vertices.iter().any(|&v| tile.ball(v).is_none());
-            search.states.push(match (is_outer, search.powers[t] > 0.0) {
+        let dual = Dual::new(tile);
+        let state = |(t, tetrahedron): (usize, &Tetrahedron)| {
+            let is_outer = tetrahedron.vertices.iter().any(|&v| tile.ball(v).is_none());
+            match (is_outer, dual.is_empty(t)) {
                 (true, _) => State::Outside,
                 (_, true) => State::Empty,
                 _ => State::Covered,
-            });
-        }
+            }
+        };
+        let states = tile.tetrahedra().iter().enumerate().map(state).collect();
+        let mut search = Search { tile, dual, states };
         search.drain();
         search
     }
@@ -110,44 +108,12 @@ impl<'t> Search<'t> {
             for side in 0..4 {
                 let Some(other) = self.tile.tetrahedra()[t].neighbour(side) else { continue };
                 let (other, across) = (other.tetrahedron as usize, other.corner as usize);
-                if self.states[other] == State::Empty && self.flows(other, across) {
+                if self.states[other] == State::Empty && self.dual.flows(other, across) {
                     self.states[other] = State::Outside;
                     open.push(other);
                 }
             }
         }
-    }
-
-    /// Whether the facet opposite to a corner separates a tetrahedron from its orthocentre.
-    fn flows(&self, t: usize, corner: usize) -> bool {
-        self.height(t, corner) < 0.0
-    }
-
-    /// Distance of the orthocentre from the plane of a facet, up to a positive factor: positive on the side
-    /// of the tetrahedron.
-    fn height(&self, t: usize, corner: usize) -> f64 {
-        let vertices = self.tile.tetrahedra()[t].vertices;
-        let [a, b, c] = TETRAHEDRON_FACETS[corner].map(|i| self.tile.point(vertices[i]));
-        let normal = cross(difference(b, a), difference(c, a));
-        let apex = dot(normal, difference(self.tile.point(vertices[corner]), a));
-        let centre = dot(normal, difference(self.tile.centre(t), a));
-        if apex < 0.0 { -centre } else { centre }
-    }
-
-    /// Whether the balls cover the facet's place in the dual: some point of the line of equal power between
-    /// the two orthocentres.
-    fn is_closed(&self, t: usize, corner: usize) -> bool {
-        let tetrahedron = &self.tile.tetrahedra()[t];
-        let Some(other) = tetrahedron.neighbour(corner) else { return false };
-        let (other, across) = (other.tetrahedron as usize, other.corner as usize);
-        let least = self.powers[t].min(self.powers[other]);
-        if least <= 0.0 || self.flows(t, corner) || self.flows(other, across) {
-            return least <= 0.0;
-        }
-        // The orthocentre of the facet lies between.
-        let points = TETRAHEDRON_FACETS[corner].map(|i| tetrahedron.vertices[i]);
-        let foot = Foot::of(points.map(|v| self.tile.point(v)), points.map(|v| self.tile.radius(v)));
-        foot.is_some_and(|foot| foot.power <= 0.0)
     }
 
     fn pockets(&self) -> Vec<Pocket> {
@@ -174,7 +140,7 @@ impl<'t> Search<'t> {
             for corner in 0..4 {
                 let Some(other) = self.tile.tetrahedra()[t].neighbour(corner) else { continue };
                 let other = other.tetrahedron as usize;
-                if self.states[other] == State::Empty && !is_seen[other] && !self.is_closed(t, corner) {
+                if self.states[other] == State::Empty && !is_seen[other] && !self.dual.is_closed(t, corner) {
                     is_seen[other] = true;
                     members.push(other);
                 }
@@ -213,7 +179,7 @@ impl<'t> Search<'t> {
                 let other =
                     self.tile.tetrahedra()[t].neighbour(corner).map(|other| other.tetrahedron as usize);
                 let is_outside = other.is_none_or(|other| self.states[other] == State::Outside);
-                if is_outside && !self.is_closed(t, corner) {
+                if is_outside && !self.dual.is_closed(t, corner) {
                     mouths.push(facet.map(|i| vertices[i]));
                 }
             }
@@ -239,7 +205,7 @@ impl<'t> Search<'t> {
         for (corner, others) in TETRAHEDRON_FACETS.into_iter().enumerate() {
             let share = solid_angle(points[corner], others.map(|i| points[i])) / (4.0 * PI);
             rest.add(-share, ball(radii[corner]));
-            if self.is_closed(t, corner) {
+            if self.dual.is_closed(t, corner) {
                 rest.add(-0.5, triple(others.map(|i| points[i]), others.map(|i| radii[i])));
             }
         }
@@ -304,15 +270,6 @@ fn count_mouths(facets: &[[u32; 3]], closed: &BTreeSet<[u32; 2]>) -> u32 {
         }
     }
     groups
-}
-
-/// The root of a tree of groups; halves the way.
-fn root(group: &mut [usize], mut at: usize) -> usize {
-    while group[at] != at {
-        group[at] = group[group[at]];
-        at = group[at];
-    }
-    at
 }
 
 fn sorted([p, q]: [u32; 2]) -> [u32; 2] {
