@@ -135,7 +135,7 @@ fn random_balls_have_closed_surfaces() {
         let components = volumes(&mesh);
         assert!(euler(&mesh) % 2 == 0 && euler(&mesh) <= 2 * components.len() as i64, "{seed}");
         let found = pockets(Balls { centres: &centres, radii: &radii }).unwrap();
-        let closed = found.iter().filter(|pocket| pocket.mouths == 0).count();
+        let closed = found.iter().filter(|pocket| pocket.mouths.is_empty()).count();
         assert_eq!(components.iter().filter(|&&volume| volume < 0.0).count(), closed, "{seed}");
         voids += closed;
     }

@@ -160,11 +160,28 @@ impl BallFlags {
                 }),
             },
             threads,
+            picture: None,
             has_united_radii: matches!(&text[..], "protor" | "united"),
             text: String::new(),
         };
         options.text = self.text(&options, &text);
         Ok(Some(options))
+    }
+
+    /// Refuses flags of tables for a mesh.
+    ///
+    /// # Errors
+    /// Usage, if there is one.
+    pub(super) fn check_for_mesh(&self) -> Result<()> {
+        match (self.per, self.volumes) {
+            (Some(_), _) => {
+                Err(Error::usage("--per is for tables: a mesh has the atoms of its parts as numbers"))
+            }
+            (_, true) => {
+                Err(Error::usage("--volumes is a table: give a name that ends in .tsv, or --sasa alone"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Refuses flags that choose contacts where there are none. (To the parser, a flag that conflicts with
@@ -226,7 +243,7 @@ fn parse_probe(text: &str) -> std::result::Result<u32, String> {
     }
 }
 
-fn parse_positive(text: &str) -> std::result::Result<f64, String> {
+pub(super) fn parse_positive(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
         _ => Err(format!("{text:?} is not a number of 0 or more")),

@@ -21,6 +21,7 @@ mod contacts;
 mod dual;
 mod face;
 mod groups;
+mod nearest;
 mod pockets;
 mod shares;
 mod surface;
@@ -30,8 +31,8 @@ mod tile;
 mod tiles;
 
 pub use contacts::Contacts;
-pub use pockets::{Pocket, pockets};
-pub use surface::{Faces, Surface, faces, surface};
+pub use pockets::{Mouth, Pocket, pockets};
+pub use surface::{Faces, Surface, faces, linings, surface};
 
 use crate::predicates::Point3;
 use spmesh_core::error::{Error, Result};

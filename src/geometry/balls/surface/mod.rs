@@ -4,11 +4,13 @@
 //! a circle are on the surface follows from the [`outline`] of the face there.
 
 mod faces;
+mod linings;
 mod nodes;
 mod outline;
 mod patch;
 
 pub use faces::{Faces, faces};
+pub use linings::linings;
 
 use super::Balls;
 use super::dual::Dual;
@@ -87,12 +89,15 @@ pub fn surface(balls: Balls<'_>, step: f64, threads: NonZeroUsize) -> Result<Sur
         return Ok(Surface::default());
     }
     let all = Members::all(balls);
-    let tile = Tile::new(balls, &all)?;
-    let dual = Dual::new(&tile);
-    let borders = Borders::new(&dual, step);
+    of_tile(&Tile::new(balls, &all)?, balls, step, threads)
+}
+
+/// The surface of the balls of a tile, which are all.
+fn of_tile(tile: &Tile<'_>, balls: Balls<'_>, step: f64, threads: NonZeroUsize) -> Result<Surface> {
+    let borders = Borders::new(&Dual::new(tile), step);
     let exposed = borders.exposed();
     let pieces: Vec<&[u32]> = exposed.chunks(PIECE).collect();
-    let patches = parallel::map(threads, pieces.into_iter(), |piece| {
+    let patches = parallel::map(threads, pieces, |piece| {
         let mut kernel = Kernel::new();
         piece.iter().map(|&v| borders.patch(v, step, &mut kernel)).collect::<Result<Vec<_>>>()
     })?;
@@ -258,6 +263,21 @@ fn merge(chords: &mut Vec<[u32; 2]>, same: &[u32]) {
 }
 
 impl Surface {
+    /// Keeps only the triangles whose numbers `is_wanted` accepts, and their vertices.
+    pub fn retain(&mut self, is_wanted: impl Fn(usize) -> bool) {
+        let kept: Vec<usize> = (0..self.triangles.len()).filter(|&number| is_wanted(number)).collect();
+        self.triangles = kept.iter().map(|&number| self.triangles[number]).collect();
+        self.balls = kept.iter().map(|&number| self.balls[number]).collect();
+        let mut numbers = vec![u32::MAX; self.points.len()];
+        self.triangles.iter().flatten().for_each(|&corner| numbers[corner as usize] = 0);
+        let used: Vec<usize> = (0..numbers.len()).filter(|&place| numbers[place] == 0).collect();
+        (0..).zip(&used).for_each(|(number, &place)| numbers[place] = number);
+        self.points = used.iter().map(|&place| self.points[place]).collect();
+        self.normals = used.iter().map(|&place| self.normals[place]).collect();
+        self.owners = used.iter().map(|&place| self.owners[place]).collect();
+        self.triangles.iter_mut().for_each(|corners| *corners = corners.map(|c| numbers[c as usize]));
+    }
+
     fn add(&mut self, ball: u32, patch: Patch) -> Result<()> {
         let Some(triangles) = patch.triangles else {
             self.left_out += 1;
@@ -280,28 +300,17 @@ impl Surface {
 
     /// Drops vertices without triangles, and finds normals and owners.
     fn finish(&mut self, balls: Balls<'_>) {
-        let mut owners = vec![u32::MAX; self.points.len()];
-        let mut normals = vec![[0.0; 3]; self.points.len()];
+        self.owners = vec![u32::MAX; self.points.len()];
+        self.normals = vec![[0.0; 3]; self.points.len()];
         for (triangle, &ball) in self.triangles.iter().zip(&self.balls) {
             for node in triangle.map(|node| node as usize) {
-                owners[node] = owners[node].min(ball);
+                self.owners[node] = self.owners[node].min(ball);
                 let outwards = difference(self.points[node], balls.centres[ball as usize]);
-                (0..3).for_each(|axis| normals[node][axis] += outwards[axis] / balls.radii[ball as usize]);
+                (0..3)
+                    .for_each(|axis| self.normals[node][axis] += outwards[axis] / balls.radii[ball as usize]);
             }
         }
-        let mut number = 0;
-        let numbers: Vec<u32> = owners
-            .iter()
-            .map(|&owner| {
-                number += u32::from(owner != u32::MAX);
-                number.wrapping_sub(1)
-            })
-            .collect();
-        let is_used = |place: usize| owners[place] != u32::MAX;
-        let kept = || (0..owners.len()).filter(|&place| is_used(place));
-        self.points = kept().map(|place| self.points[place]).collect();
-        self.normals = kept().map(|place| normals[place].map(|c| c / length(normals[place]))).collect();
-        self.owners = kept().map(|place| owners[place]).collect();
-        self.triangles.iter_mut().for_each(|corners| *corners = corners.map(|c| numbers[c as usize]));
+        self.normals.iter_mut().for_each(|normal| *normal = normal.map(|c| c / length(*normal)));
+        self.retain(|_| true);
     }
 }

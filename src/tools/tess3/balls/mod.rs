@@ -1,16 +1,20 @@
 //! Atoms as balls: exposed areas, volumes and contacts of their cells, as tables.
 
+mod colours;
 mod groups;
+mod pictures;
 mod pockets;
 mod radii;
 mod tables;
 
+pub use pictures::{ColourBy, PictureForm, PictureOptions};
 pub use radii::NamedRadii;
 
 use std::io::Write;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
+use self::pictures::Picture;
 use self::pockets::PocketTable;
 use super::{Product, Report};
 use groups::Groups;
@@ -37,6 +41,8 @@ pub struct BallOptions {
     pub volumes: bool,
     /// Which contacts have rows.
     pub contacts: ContactFilter,
+    /// A mesh takes the place of the table.
+    pub picture: Option<PictureOptions>,
     /// Radii of heavy atoms include their hydrogens.
     pub has_united_radii: bool,
     /// Threads that measure a structure.
@@ -136,6 +142,11 @@ impl Molecule<'_> {
         let balls = Balls { centres: self.selected.points(), radii: &radii };
         report.is_of_cells = true;
         report.vertices = report.atoms;
+        if let Some(picture) = options.picture {
+            let picture = Picture { molecule: self, options, picture, balls };
+            report.left_out = picture.write(product, open()?)?;
+            return Ok(());
+        }
         if product == Product::Pockets {
             let found = pockets(balls)?;
             let groups = Groups::new(self.selected, options.level);
@@ -158,6 +169,7 @@ impl BallOptions {
     /// The line with the names of the columns of a table.
     pub(super) fn columns(&self, product: Product) -> String {
         match product {
+            _ if self.picture.is_some() => String::new(),
             Product::Pockets => self::pockets::columns(self),
             Product::ContactAreas => tables::contact_columns(self),
             _ => tables::cell_columns(self),

@@ -44,7 +44,7 @@ impl PocketTable<'_> {
     fn start_row<W: Write>(&self, number: u32, pocket: &Pocket, rows: &mut Rows<'_, W>) -> Result<()> {
         rows.start(self.molecule.number)?;
         rows.integer(number)?;
-        rows.field(if pocket.mouths == 0 { "void" } else { "pocket" });
+        rows.field(if pocket.mouths.is_empty() { "void" } else { "pocket" });
         Ok(())
     }
 
@@ -52,11 +52,11 @@ impl PocketTable<'_> {
         let scale = self.molecule.scale;
         rows.number(pocket.volume * scale.powi(3))?;
         rows.number(pocket.area * scale.powi(2))?;
-        rows.integer(pocket.mouths)?;
-        rows.number(pocket.mouth_area * scale.powi(2))?;
+        rows.integer(pocket.mouths.len())?;
+        rows.number(pocket.mouth_area() * scale.powi(2))?;
         rows.number(pocket.depth * scale)?;
         rows.integer(pocket.balls.len())?;
-        rows.integer(pocket.tetrahedra)?;
+        rows.integer(pocket.tetrahedra.len())?;
         rows.end()
     }
 
