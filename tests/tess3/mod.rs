@@ -10,6 +10,7 @@ mod failures;
 mod filtration;
 mod meshes;
 mod molecules;
+mod pictures;
 mod pipes;
 mod selections;
 mod sweeps;

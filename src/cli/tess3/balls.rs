@@ -40,6 +40,10 @@ pub(super) struct BallFlags {
     #[arg(conflicts_with = "contact_areas")]
     pockets: bool,
 
+    /// Rows of --pockets are the mouths, the largest of each pocket first, or with --per what is at each
+    #[arg(long)]
+    mouths: bool,
+
     /// Radii of atoms, also for a filtration with weights: protor (united atoms, Tsai et al. 1999), bondi (by
     /// element), united (Chothia 1976), or a file with lines RESIDUE ATOM RADIUS or ELEMENT RADIUS [default:
     /// protor]
@@ -116,6 +120,9 @@ impl BallFlags {
     pub(super) fn options(&self, is_filtration: bool, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
         let has_weights = is_filtration && self.radii.is_some();
         self.check_contacts_only()?;
+        if self.mouths && !self.pockets {
+            return Err(Error::usage("--mouths goes with --pockets"));
+        }
         if is_filtration && self.per.is_some() {
             return Err(Error::usage("--per does not go with --filtration"));
         }
@@ -160,6 +167,7 @@ impl BallFlags {
                 }),
             },
             threads,
+            mouths: self.mouths,
             picture: None,
             has_united_radii: matches!(&text[..], "protor" | "united"),
             text: String::new(),
@@ -174,6 +182,7 @@ impl BallFlags {
     /// Usage, if there is one.
     pub(super) fn check_for_mesh(&self) -> Result<()> {
         match (self.per, self.volumes) {
+            _ if self.mouths => Err(Error::usage("--mouths is a table: give a name that ends in .tsv")),
             (Some(_), _) => {
                 Err(Error::usage("--per is for tables: a mesh has the atoms of its parts as numbers"))
             }
@@ -215,6 +224,7 @@ impl BallFlags {
             ("volumes", self.volumes),
             ("contact-areas", self.contact_areas),
             ("pockets", self.pockets),
+            ("mouths", self.mouths),
         ];
         for (name, is_given) in products {
             text += &if is_given { format!(" --{name}") } else { String::new() };

@@ -32,7 +32,7 @@ mod tiles;
 
 pub use contacts::Contacts;
 pub use pockets::{Mouth, Pocket, pockets};
-pub use surface::{Faces, Surface, faces, linings, surface};
+pub use surface::{FINEST, Faces, Surface, faces, linings, surface};
 
 use crate::predicates::Point3;
 use spmesh_core::error::{Error, Result};

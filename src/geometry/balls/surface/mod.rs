@@ -28,7 +28,7 @@ use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 
 /// Greatest quotient of a radius and the resolution: it bounds the vertices on a sphere.
-const FINEST: f64 = 200.0;
+pub const FINEST: f64 = 200.0;
 
 /// Greatest number of vertices of a mesh: formats number them by 32-bit integers with a sign.
 const VERTICES_MAX: usize = i32::MAX as usize;

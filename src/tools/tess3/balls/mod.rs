@@ -41,6 +41,8 @@ pub struct BallOptions {
     pub volumes: bool,
     /// Which contacts have rows.
     pub contacts: ContactFilter,
+    /// Rows of pockets are about their mouths.
+    pub mouths: bool,
     /// A mesh takes the place of the table.
     pub picture: Option<PictureOptions>,
     /// Radii of heavy atoms include their hydrogens.
@@ -150,8 +152,13 @@ impl Molecule<'_> {
         if product == Product::Pockets {
             let found = pockets(balls)?;
             let groups = Groups::new(self.selected, options.level);
-            return PocketTable { molecule: self, level: options.level, groups: &groups }
-                .write(&found, open()?);
+            return PocketTable {
+                molecule: self,
+                level: options.level,
+                mouths: options.mouths,
+                groups: &groups,
+            }
+            .write(&found, open()?);
         }
         let is_contacts = product == Product::ContactAreas;
         let Cells { cells, contacts } = measure(balls, is_contacts.then_some(0.0), options.threads)?;

@@ -8,7 +8,7 @@ use super::tables::is_wanted;
 use super::{BallOptions, Molecule};
 use crate::Product;
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::balls::{Balls, faces, linings, measure, pockets, surface};
+use spmesh_geometry::balls::{Balls, FINEST, faces, linings, measure, pockets, surface};
 use spmesh_geometry::predicates::Point3;
 use spmesh_io::sink::{Mesh, Shape, Table};
 use spmesh_io::source::structure::{AtomView, Name};
@@ -63,6 +63,7 @@ impl Picture<'_> {
     /// # Errors
     /// Those of measuring and of writing; usage, if the format cannot hold the mesh.
     pub(super) fn write(&self, product: Product, output: &mut impl Write) -> Result<u64> {
+        self.check()?;
         match (product, self.picture.form) {
             (Product::ContactAreas, _) => self.contacts(output).map(|()| 0),
             (Product::Pockets, PictureForm::Vtu) => self.bodies(output).map(|()| 0),
@@ -201,6 +202,18 @@ impl Picture<'_> {
             PictureForm::Vtu => mesh.write_vtu(output),
             PictureForm::Ply => mesh.write_ply(output),
         }
+    }
+
+    /// # Errors
+    /// Usage, if the resolution is too fine for the geometry.
+    fn check(&self) -> Result<()> {
+        let greatest = self.balls.radii.iter().copied().fold(0.0, f64::max);
+        let least = greatest / FINEST * self.molecule.scale;
+        let resolution = self.picture.resolution;
+        if resolution > 0.0 && resolution >= least {
+            return Ok(());
+        }
+        Err(Error::usage(format!("--resolution {resolution} is too fine: here the least is {least} Å")))
     }
 
     /// The resolution in stored units.

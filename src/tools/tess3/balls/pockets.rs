@@ -10,6 +10,13 @@ use spmesh_core::error::Result;
 use spmesh_geometry::balls::Pocket;
 
 pub(super) fn columns(options: &BallOptions) -> String {
+    if options.mouths {
+        return match options.level {
+            Level::Molecule => "model\tpocket\tmouth\tarea\tatoms\n".to_string(),
+            Level::Atom => "model\tpocket\tmouth\tatom\tserial\n".to_string(),
+            level => format!("model\tpocket\tmouth\t{}\n", level.name()),
+        };
+    }
     match options.level {
         Level::Molecule => {
             "model\tpocket\tkind\tvolume\tarea\tmouths\tmouth_area\tdepth\tatoms\ttetrahedra\n".to_string()
@@ -23,6 +30,8 @@ pub(super) fn columns(options: &BallOptions) -> String {
 pub(super) struct PocketTable<'t> {
     pub(super) molecule: &'t Molecule<'t>,
     pub(super) level: Level,
+    /// Rows are about mouths.
+    pub(super) mouths: bool,
     pub(super) groups: &'t Groups,
 }
 
@@ -31,7 +40,9 @@ impl PocketTable<'_> {
     pub(super) fn write(&self, pockets: &[Pocket], output: &mut impl Write) -> Result<()> {
         let mut rows = Rows::new(output);
         for (number, pocket) in (1..).zip(pockets) {
-            if self.level == Level::Molecule {
+            if self.mouths {
+                self.write_mouths(number, pocket, &mut rows)?;
+            } else if self.level == Level::Molecule {
                 self.start_row(number, pocket, &mut rows)?;
                 self.end_pocket(pocket, &mut rows)?;
             } else {
@@ -62,15 +73,45 @@ impl PocketTable<'_> {
 
     /// A row for each atom, residue or chain around a pocket.
     fn write_around<W: Write>(&self, number: u32, pocket: &Pocket, rows: &mut Rows<'_, W>) -> Result<()> {
-        let groups: BTreeSet<u32> = pocket.balls.iter().map(|&ball| self.groups.of(ball)).collect();
-        for group in groups {
+        for group in self.groups_of(&pocket.balls) {
             self.start_row(number, pocket, rows)?;
-            rows.field(self.groups.name(group));
-            if self.level == Level::Atom {
-                rows.integer(self.molecule.selected.label(group as usize))?;
-            }
-            rows.end()?;
+            self.end_group(group, rows)?;
         }
         Ok(())
+    }
+
+    /// A row for each mouth of a pocket, or for each atom, residue or chain at it.
+    fn write_mouths<W: Write>(&self, number: u32, pocket: &Pocket, rows: &mut Rows<'_, W>) -> Result<()> {
+        for (place, mouth) in (1u32..).zip(&pocket.mouths) {
+            let start = |rows: &mut Rows<'_, W>| {
+                rows.start(self.molecule.number)?;
+                rows.integer(number)?;
+                rows.integer(place)
+            };
+            if self.level == Level::Molecule {
+                start(rows)?;
+                rows.number(mouth.area * self.molecule.scale.powi(2))?;
+                rows.integer(mouth.balls.len())?;
+                rows.end()?;
+                continue;
+            }
+            for group in self.groups_of(&mouth.balls) {
+                start(rows)?;
+                self.end_group(group, rows)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn groups_of(&self, balls: &[u32]) -> BTreeSet<u32> {
+        balls.iter().map(|&ball| self.groups.of(ball)).collect()
+    }
+
+    fn end_group<W: Write>(&self, group: u32, rows: &mut Rows<'_, W>) -> Result<()> {
+        rows.field(self.groups.name(group));
+        if self.level == Level::Atom {
+            rows.integer(self.molecule.selected.label(group as usize))?;
+        }
+        rows.end()
     }
 }
