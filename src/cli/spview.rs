@@ -5,7 +5,7 @@ mod outputs;
 mod solid;
 mod tee;
 
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use clap::{Parser, ValueEnum};
@@ -236,9 +236,11 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let is_numbered = flags.snapshot.is_some();
     check_apart(flags.outline.mask_path(), &[("--output", &flags.output)])?;
     let mut outputs = Outputs::new(&flags.output, flags.format, is_numbered, flags.tee, &flags.input)?;
-    let (input, name) = open_input(&flags.input)?;
-    let mut input = BufReader::with_capacity(BUFFER_LEN, input);
-    if solid::is_surface(&mut input).map_err(|e| Error::io("reading", e).of_input(&name))? {
+    let (mut input, name) = open_input(&flags.input)?;
+    let head = solid::head(&mut input).map_err(|e| Error::io("reading", e).of_input(&name))?;
+    let is_surface = solid::is_surface(&head);
+    let input = Cursor::new(head).chain(input);
+    if is_surface {
         outputs.put(&solid::draw(&flags, input, &name)?)?;
         outputs.finish()?;
         return Ok(());

@@ -1,6 +1,6 @@
 //! Surfaces in PLY.
 
-use std::io::{BufRead, Read};
+use std::io::Read;
 use std::path::Path;
 
 use super::{Flags, WhenFlag};
@@ -8,12 +8,22 @@ use spmesh_core::error::{Error, Result};
 use spmesh_io::source::read_ply_surface;
 use spmesh_view::{Picture, SolidOptions, draw_solid};
 
+/// The first bytes of PLY.
+const MAGIC: &[u8] = b"ply";
+
 /// The eye by default.
 const EYE: [f64; 2] = [30.0, 20.0];
 
-/// Whether an input is PLY, and no stream.
-pub(super) fn is_surface(input: &mut impl BufRead) -> std::io::Result<bool> {
-    Ok(input.fill_buf()?.starts_with(b"ply"))
+/// The first bytes of an input. Few, as a pipe may have no more yet.
+pub(super) fn head(input: &mut impl Read) -> std::io::Result<Vec<u8>> {
+    let mut head = Vec::new();
+    input.take(MAGIC.len() as u64).read_to_end(&mut head)?;
+    Ok(head)
+}
+
+/// Whether an input that starts with these bytes is PLY, and no stream.
+pub(super) fn is_surface(head: &[u8]) -> bool {
+    head == MAGIC
 }
 
 /// The picture of a surface.

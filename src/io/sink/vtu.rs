@@ -190,18 +190,15 @@ pub(super) fn arrays(cells: &Cells, of_points: &[Data], of_cells: &[Data]) -> Ve
     let code = "type=\"UInt8\" Name=\"types\"";
     let &Cells { vertices, cells, corners, .. } = cells;
     let mut arrays = Vec::new();
-    let blocks: [(_, _, fn(usize) -> Content, _); 2] =
-        [("PointData", of_points, Content::Data, vertices), ("CellData", of_cells, Content::CellData, cells)];
-    for (block, data, content, rows) in blocks {
+    for (block, data, rows) in [("Point", of_points, vertices), ("Cell", of_cells, cells)] {
+        let is_of_points = block == "Point";
         for (number, one) in data.iter().enumerate() {
-            let start = format!("<{block} Scalars=\"{}\">\n", one.name);
+            let content = if is_of_points { Content::Data(number) } else { Content::CellData(number) };
+            let start = format!("<{block}Data Scalars=\"{}\">\n", one.name);
             let open = if number == 0 { start.as_str() } else { "" };
-            let close = match (number + 1 == data.len(), block) {
-                (false, _) => "",
-                (_, "PointData") => "</PointData>\n",
-                _ => "</CellData>\n",
-            };
-            arrays.push(array(content(number), &one.attributes(), open, close, one.width * rows));
+            let close = if is_of_points { "</PointData>\n" } else { "</CellData>\n" };
+            let close = if number + 1 == data.len() { close } else { "" };
+            arrays.push(array(content, &one.attributes(), open, close, one.width * rows));
         }
     }
     arrays.extend([
