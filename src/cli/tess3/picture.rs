@@ -48,9 +48,9 @@ impl PictureFlags {
             Some("ply") => PictureForm::Ply,
             Some("vtu") => PictureForm::Vtu,
             _ => {
-                return self
-                    .refuse("a table is written: give -o FILE.ply or FILE.vtu, with --sasa, --contact-areas or --pockets")
-                    .map(|()| None);
+                let reason = "a table is written: give -o FILE.ply or FILE.vtu, with --sasa, --contact-areas or \
+                              --pockets";
+                return self.refuse(reason).map(|()| None);
             }
         };
         balls.check_for_mesh()?;

@@ -105,8 +105,8 @@ impl Mesh<'_> {
     /// Writes the mesh as binary PLY, with the attributes of cells as properties of faces, and flushes.
     ///
     /// # Errors
-    /// Usage, if the cells are tetrahedra, there are more vertices than PLY can number, or there is not one row
-    /// for each vertex and cell; I/O.
+    /// Usage, if the cells are tetrahedra, there are more vertices than PLY can number, or there is not one
+    /// row for each vertex and cell; I/O.
     pub fn write_ply(&self, output: &mut impl Write) -> Result<()> {
         self.check()?;
         if self.shape == Shape::Tetrahedra {

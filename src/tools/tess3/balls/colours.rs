@@ -6,8 +6,7 @@ pub(super) type Colour = [u8; 3];
 /// What has no colour of its own.
 pub(super) const GREY: Colour = [200, 200, 205];
 
-/// Colours that differ clearly, also for most people who are colour-blind: those of Okabe and Ito without black
-/// and yellow, and lighter ones.
+/// Colours that differ clearly, next to each other in pairs of chains and of pockets.
 const DISTINCT: [Colour; 10] = [
     [86, 156, 214],
     [230, 140, 40],
