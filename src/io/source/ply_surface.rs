@@ -36,7 +36,9 @@ pub fn read_ply_surface<R: Read>(input: R, name: impl Into<String>) -> Result<Su
     let [vertex, face] = [attributes(Sort::Vertex)?, attributes(Sort::Face)?].map(|of| Drawn::of(&of));
     let mut surface = Surface::default();
     let mut of_vertices: Vec<Option<[u8; 3]>> = Vec::new();
-    while let Some(row) = rows.next()? {
+    loop {
+        let next = rows.next();
+        let Some(row) = next.map_err(|e| rows.locate(e))? else { break };
         match row {
             Row::Vertex(point) => {
                 surface.points.push(point);

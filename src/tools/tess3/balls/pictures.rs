@@ -213,7 +213,8 @@ impl Picture<'_> {
         if resolution > 0.0 && resolution >= least {
             return Ok(());
         }
-        Err(Error::usage(format!("--resolution {resolution} is too fine: here the least is {least} Å")))
+        let least = (1e4 * least).ceil() / 1e4;
+        Err(Error::usage(format!("--resolution {resolution} is too fine: here the least is {least:.4} Å")))
     }
 
     /// The resolution in stored units.
