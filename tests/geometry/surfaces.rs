@@ -171,7 +171,8 @@ fn lattices_have_closed_surfaces() {
         let centres: Vec<Point> = lattice(3).collect();
         let mesh =
             surface(Balls { centres: &centres, radii: &[radius; 27] }, 0.2, NonZeroUsize::MIN).unwrap();
-        println!("{radius}: {} left out, {} triangles", mesh.left_out, mesh.triangles.len());
+        // Where eight spheres meet in a point, rounding leaves the borders in doubt, and the mesh says so.
+        assert!(mesh.left_out == 0 || radius == 0.75f64.sqrt(), "{radius}: {} left out", mesh.left_out);
         check_on_spheres(&mesh, &centres, &[radius; 27]);
         check_closed(&mesh.triangles);
     }
