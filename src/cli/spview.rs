@@ -2,9 +2,10 @@
 
 mod moment;
 mod outputs;
+mod solid;
 mod tee;
 
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use clap::{Parser, ValueEnum};
@@ -48,6 +49,8 @@ Examples:
   The centroid triangulation of configurations, and the link of a pair of knots:
     spview --order 2 knots.spm -o order2.svg
     spview --set 3,7 knots.spm -o link.svg
+  The surface of a molecule, from the y axis and a little above:
+    tess3 1abc.cif --sasa --probe 0 -o 1abc.ply && spview --eye 90,20 1abc.ply -o 1abc.png
   Knots that were pulled apart, as two each, in their triangulation:
     configgen --pull-apart all knots.txt | spview --apart --order 1 -o pulled.svg
 ";
@@ -78,11 +81,12 @@ const BUFFER_LEN: usize = 1 << 18;
 ///
 /// Reads a stream and writes SVG, PNG, or an HTML page that pans and zooms. By default it draws the relief of
 /// a terrain, the edges of other triangle meshes, the cells of finalized points, and the knots and centroid
-/// triangulation of configurations. With --tee, it draws a stream that passes through a pipe.
+/// triangulation of configurations. With --tee, it draws a stream that passes through a pipe. A surface in a
+/// PLY file, such as tess3 makes of a molecule, is drawn in space.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {
-    /// Stream of points, of a triangle mesh, or of configurations; - is stdin
+    /// Stream of points, of a triangle mesh, or of configurations, or a surface in PLY; - is stdin
     #[arg(value_name = "STREAM", default_value = "-")]
     input: PathBuf,
 
@@ -181,6 +185,11 @@ pub struct Flags {
     #[arg(long)]
     apart: bool,
 
+    /// For surfaces in PLY: where the eye is, in degrees counterclockwise from the x axis, and above the plane of
+    /// x and y [default: 30,20]
+    #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
+    eye: Option<[f64; 2]>,
+
     #[command(flatten)]
     common: Common,
 }
@@ -227,7 +236,18 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let is_numbered = flags.snapshot.is_some();
     check_apart(flags.outline.mask_path(), &[("--output", &flags.output)])?;
     let mut outputs = Outputs::new(&flags.output, flags.format, is_numbered, flags.tee, &flags.input)?;
-    let (input, name) = open_input(&flags.input)?;
+    let (mut input, name) = open_input(&flags.input)?;
+    let head = solid::head(&mut input).map_err(|e| Error::io("reading", e).of_input(&name))?;
+    let is_surface = solid::is_surface(&head);
+    let input = Cursor::new(head).chain(input);
+    if is_surface {
+        outputs.put(&solid::draw(&flags, input, &name)?)?;
+        outputs.finish()?;
+        return Ok(());
+    }
+    if flags.eye.is_some() {
+        return Err(Error::usage("--eye is for surfaces in PLY, this is none").of_input(name).into());
+    }
     let input: Box<dyn Read> = if flags.tee { Box::new(Tee::new(input)?) } else { Box::new(input) };
     let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, input), name)?;
     let extent = flags.extent(&reader)?;

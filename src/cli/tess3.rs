@@ -2,6 +2,7 @@
 
 mod balls;
 mod method;
+mod picture;
 mod report;
 mod selection;
 mod tables;
@@ -19,6 +20,7 @@ use super::{Common, StatsFormat, notice, progress::Progress, read_list, refuse_t
 use crate::endings;
 use balls::BallFlags;
 use method::MethodFlags;
+use picture::PictureFlags;
 use selection::SelectionFlags;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
@@ -159,6 +161,9 @@ pub struct Flags {
     #[command(flatten)]
     balls: BallFlags,
 
+    #[command(flatten)]
+    picture: PictureFlags,
+
     // The last, as its heading holds for all flags after it.
     #[command(flatten)]
     method: MethodFlags,
@@ -229,8 +234,13 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     if input == Path::new("-") {
         refuse_terminal()?;
     }
-    let options = flags.options()?;
-    let is_binary = options.product == Product::Mesh || options.format == TableFormat::Parquet;
+    let mut options = flags.options()?;
+    let picture = flags.picture.of_output(&flags.output, options.product, &flags.balls)?;
+    if let Some(balls) = &mut options.balls {
+        balls.picture = picture;
+    }
+    let is_table_of_bytes = options.format == TableFormat::Parquet;
+    let is_binary = options.product == Product::Mesh || is_table_of_bytes || picture.is_some();
     let inputs = std::iter::once(input.as_path()).chain(flags.balls.file());
     check_apart(inputs, &[("--output", &flags.output)])?;
     let ending = match options.product {
@@ -238,7 +248,9 @@ fn run_one(flags: &Flags) -> Result<Finished> {
         Product::Filtration => endings::NUMBERS,
         _ => tables::ENDINGS,
     };
-    endings::check(&flags.output, &[ending])?;
+    if picture.is_none() {
+        endings::check(&flags.output, &[ending])?;
+    }
     // Fail before the work if the output cannot be created.
     let mut output = Some(Output::create(&flags.output, is_binary)?);
     let started = Instant::now();
@@ -263,7 +275,7 @@ fn run_one(flags: &Flags) -> Result<Finished> {
 /// Refuses runs that need several outputs.
 fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Result<()> {
     let models = structure.models.len();
-    if options.product.is_per_model() && flags.selection.wants_all_models() && models > 1 {
+    if options.is_per_model() && flags.selection.wants_all_models() && models > 1 {
         let message = format!("{models} models need a folder for their meshes: --out-dir FOLDER");
         return Err(Error::usage(message).of_input(&structure.name));
     }
@@ -284,6 +296,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
         ));
     }
     let options = flags.options()?;
+    flags.picture.refuse("a sweep writes tables: leave out --out-dir, and give -o FILE.ply or FILE.vtu")?;
     let wanted = Sweep {
         files: flags.files()?,
         list: flags.lof.clone(),

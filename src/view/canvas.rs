@@ -20,8 +20,8 @@ const DEPTH_TOLERANCE: f32 = 1.0;
 pub(super) struct Paint {
     /// Values at the corners, to be shown as colours.
     pub(super) values: [f64; 3],
-    /// The brightness, from 0 to 1.
-    pub(super) shade: f32,
+    /// The brightness at the corners, from 0 to 1.
+    pub(super) shades: [f64; 3],
 }
 
 /// A picture as PNG.
@@ -76,6 +76,7 @@ impl Canvas {
         let corners = corners.map(|corner| self.to_samples(corner));
         let [low, high] = range_of(corners.map(|corner| corner[1]));
         let value = Plane::of(corners, paint.values);
+        let shade = Plane::of(corners, paint.shades);
         let depth = Plane::of(corners, corners.map(|corner| corner[2]));
         for row in among(low, high, self.rows) {
             let y = row as f64 + 0.5;
@@ -85,7 +86,8 @@ impl Canvas {
                 if self.is_hidden(at, || depth.at([x, y])) {
                     continue;
                 }
-                (self.values[at], self.shades[at], self.inked[at]) = (value.at([x, y]), paint.shade, false);
+                let shade = shade.at([x, y]) as f32;
+                (self.values[at], self.shades[at], self.inked[at]) = (value.at([x, y]), shade, false);
             }
         }
     }
@@ -108,6 +110,26 @@ impl Canvas {
                 let at = y as usize * self.columns + x as usize;
                 // Rounding may put an edge behind its own triangles.
                 self.inked[at] |= self.depths.is_empty() || depth as f32 <= self.depths[at] + DEPTH_TOLERANCE;
+            }
+        }
+    }
+
+    /// Draws the outlines of what is in front: samples next to others that are farther away by more than
+    /// `least`, or blank.
+    pub(super) fn outline(&mut self, least: f32) {
+        let far = |canvas: &Canvas, at: usize| canvas.depths.get(at).copied().unwrap_or(f32::INFINITY);
+        for row in 0..self.rows {
+            for column in 0..self.columns {
+                let at = row * self.columns + column;
+                let depth = far(self, at);
+                if depth.is_infinite() {
+                    continue;
+                }
+                let below = if row + 1 < self.rows { far(self, at + self.columns) } else { f32::INFINITY };
+                let above = if row > 0 { far(self, at - self.columns) } else { f32::INFINITY };
+                let right = if column + 1 < self.columns { far(self, at + 1) } else { f32::INFINITY };
+                let left = if column > 0 { far(self, at - 1) } else { f32::INFINITY };
+                self.inked[at] |= [below, above, right, left].iter().any(|other| other - depth > least);
             }
         }
     }
@@ -270,7 +292,7 @@ mod tests {
         let mut counts = vec![0; 4 * SIZE * SIZE];
         for &corners in triangles {
             let mut canvas = Canvas::new([0.0; 2], [SIZE; 2], false);
-            canvas.triangle(corners, Paint { values: [1.0; 3], shade: 0.0 });
+            canvas.triangle(corners, Paint { values: [1.0; 3], shades: [0.0; 3] });
             let hits = canvas.values.iter().map(|value| u32::from(!value.is_nan()));
             counts.iter_mut().zip(hits).for_each(|(count, hit)| *count += hit);
         }
@@ -296,11 +318,11 @@ mod tests {
     fn numbers_are_interpolated_and_nearer_triangles_hide_others() {
         let corners = |depth: f64| [[0.0, 0.0, depth], [16.0, 0.0, depth], [0.0, 16.0, depth]];
         let mut canvas = Canvas::new([0.0; 2], [SIZE; 2], true);
-        canvas.triangle(corners(2.0), Paint { values: [0.0, 16.0, 0.0], shade: 0.5 });
+        canvas.triangle(corners(2.0), Paint { values: [0.0, 16.0, 0.0], shades: [0.5; 3] });
         assert!((canvas.values[2 * SIZE * 2 + 6] - 3.25).abs() < 1e-12);
-        canvas.triangle(corners(3.0), Paint { values: [9.0; 3], shade: 0.5 });
+        canvas.triangle(corners(3.0), Paint { values: [9.0; 3], shades: [0.5; 3] });
         assert!((canvas.values[2 * SIZE * 2 + 6] - 3.25).abs() < 1e-12);
-        canvas.triangle(corners(1.0), Paint { values: [9.0; 3], shade: 0.5 });
+        canvas.triangle(corners(1.0), Paint { values: [9.0; 3], shades: [0.5; 3] });
         assert_eq!(range(&canvas), [9.0, 9.0]);
     }
 
@@ -308,7 +330,7 @@ mod tests {
     fn what_is_far_away_takes_no_time() {
         let mut canvas = Canvas::new([0.0; 2], [SIZE; 2], false);
         let far = [[-1e300, -1e300, 0.0], [1e300, -1e300, 0.0], [0.0, 1e300, 0.0]];
-        canvas.triangle(far, Paint { values: [1.0; 3], shade: 0.0 });
+        canvas.triangle(far, Paint { values: [1.0; 3], shades: [0.0; 3] });
         canvas.edge([[-1e12, 4.0, 0.0], [1e12, 4.0, 0.0]]);
         assert_eq!(canvas.inked.iter().filter(|&&is_inked| is_inked).count(), 2 * SIZE);
         canvas.edge([[-1e300, -1e300, 0.0], [1e300, -1e300, 0.0]]);

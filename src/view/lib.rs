@@ -11,6 +11,8 @@
 //! triangulations. A [`Picture`] is SVG; it can be rendered as PNG, and `page` wraps it in an HTML page that
 //! pans and zooms.
 //!
+//! `solid` draws surfaces of files in space from any side.
+//!
 //! Memory: triangles or points, as long as they are drawn one by one; for more of them, the pixels of the
 //! picture and the live vertices. Residual points, configurations and the edges on lines of a constrained
 //! mesh are held whole.
@@ -34,6 +36,7 @@ mod request;
 mod scene;
 mod sheet;
 mod shown;
+mod solid;
 mod stretch;
 mod style;
 mod svg;
@@ -45,3 +48,4 @@ pub use drawing::{Take, draw};
 pub use extent::Extent;
 pub use options::{Fill, Form, Moments, Options, When};
 pub use picture::Picture;
+pub use solid::{SolidOptions, draw_solid};

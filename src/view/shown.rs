@@ -70,7 +70,7 @@ impl Shown {
 }
 
 /// A colour as one number.
-fn pack(levels: [f64; 3]) -> f64 {
+pub(super) fn pack(levels: [f64; 3]) -> f64 {
     let level = |level: f64| level.floor().clamp(0.0, LEVELS - 1.0);
     levels.into_iter().fold(0.0, |packed, part| packed * LEVELS + level(part))
 }

@@ -96,7 +96,7 @@ impl Style {
         } else {
             1.0
         };
-        Paint { values, shade: shade as f32 }
+        Paint { values, shades: [shade; 3] }
     }
 
     /// The value of a point; `number` is the number of points before it.

@@ -71,7 +71,7 @@ pub(super) fn vectors(triangles: &[Triangle], scene: &Scene, style: &Style, colo
         for triangle in order.into_iter().map(|number| &triangles[number]) {
             let paint = style.paint(fill, &triangle.corners, triangle.number);
             let value = paint.values.iter().map(|value| value / 3.0).sum();
-            let colour = hex(colours.of(value, f64::from(paint.shade)));
+            let colour = hex(colours.of(value, paint.shades[0]));
             text += &format!(
                 "<path color=\"{colour}\" vector-effect=\"non-scaling-stroke\" d=\"{}\"/>\n",
                 ring(triangle, scene)

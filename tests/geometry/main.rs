@@ -17,3 +17,4 @@ mod pockets;
 mod queries;
 mod sphere;
 mod surface;
+mod surfaces;

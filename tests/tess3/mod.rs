@@ -11,6 +11,7 @@ mod filtration;
 mod formats;
 mod meshes;
 mod molecules;
+mod pictures;
 mod pipes;
 mod selections;
 mod sweeps;

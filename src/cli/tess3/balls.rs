@@ -45,6 +45,10 @@ pub(super) struct BallFlags {
     #[arg(conflicts_with_all = ["ses", "contact_areas"])]
     pockets: bool,
 
+    /// Rows of --pockets are the mouths, the largest of each pocket first, or with --per what is at each
+    #[arg(long)]
+    mouths: bool,
+
     /// Radii of atoms, also for a mesh or a filtration with weights: protor (united atoms, Tsai et al. 1999),
     /// bondi (by element), united (Chothia 1976), charmm (CHARMM36m, hydrogens too), or a file with lines
     /// RESIDUE ATOM RADIUS or ELEMENT RADIUS [default: protor]
@@ -124,6 +128,9 @@ impl BallFlags {
         let is_filtration = product == Product::Filtration;
         let has_weights = (is_filtration || product == Product::Mesh) && self.radii.is_some();
         self.check_contacts_only()?;
+        if self.mouths && !self.pockets {
+            return Err(Error::usage("--mouths goes with --pockets"));
+        }
         if is_filtration && self.per.is_some() {
             return Err(Error::usage("--per does not go with --filtration"));
         }
@@ -173,11 +180,30 @@ impl BallFlags {
                 }),
             },
             threads,
+            mouths: self.mouths,
+            picture: None,
             has_united_radii: matches!(&text[..], "protor" | "united"),
             text: String::new(),
         };
         options.text = self.text(&options, &text);
         Ok(Some(options))
+    }
+
+    /// Refuses flags of tables for a mesh.
+    ///
+    /// # Errors
+    /// Usage, if there is one.
+    pub(super) fn check_for_mesh(&self) -> Result<()> {
+        match (self.per, self.volumes) {
+            _ if self.mouths => Err(Error::usage("--mouths is a table: give a name that ends in .tsv")),
+            (Some(_), _) => {
+                Err(Error::usage("--per is for tables: a mesh has the atoms of its parts as numbers"))
+            }
+            (_, true) => {
+                Err(Error::usage("--volumes is a table: give a name that ends in .tsv, or --sasa alone"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Refuses flags that choose contacts where there are none. (To the parser, a flag that conflicts with
@@ -212,6 +238,7 @@ impl BallFlags {
             ("ses", self.ses),
             ("contact-areas", self.contact_areas),
             ("pockets", self.pockets),
+            ("mouths", self.mouths),
         ];
         for (name, is_given) in products {
             text += &if is_given { format!(" --{name}") } else { String::new() };
@@ -240,7 +267,7 @@ fn parse_probe(text: &str) -> std::result::Result<u32, String> {
     }
 }
 
-fn parse_positive(text: &str) -> std::result::Result<f64, String> {
+pub(super) fn parse_positive(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
         _ => Err(format!("{text:?} is not a number of 0 or more")),

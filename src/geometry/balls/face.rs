@@ -58,6 +58,16 @@ impl Pair {
         self.square
     }
 
+    /// The normal of the plane, from the first centre to the second, and the radius of the disk.
+    pub(super) fn circle(&self) -> (Point3, f64) {
+        (self.normal, self.radius)
+    }
+
+    /// Whether the middle of the disk is on the inner side of a side of the polygon.
+    pub(super) fn is_inner(side: Side) -> bool {
+        side.offset > 0.0
+    }
+
     /// Whether a side of the polygon has a point in the disk: also where the polygon is nothing but that
     /// side.
     #[inline(always)]

@@ -18,18 +18,23 @@
 
 mod centre;
 mod contacts;
+mod dual;
 mod face;
+mod groups;
+mod molecular;
+mod nearest;
 mod pockets;
 mod shares;
-mod molecular;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod tile;
 mod tiles;
 
 pub use contacts::Contacts;
-pub use pockets::{Pocket, pockets};
 pub use molecular::molecular_surface;
+pub use pockets::{Mouth, Pocket, pockets};
+pub use surface::{FINEST, Faces, Surface, faces, linings, surface};
 
 use crate::predicates::Point3;
 use spmesh_core::error::{Error, Result};

@@ -14,13 +14,16 @@
 //! macromolecules", 1998, as in the server CASTp.
 
 use super::Balls;
+use super::dual::Dual;
+use super::groups::root;
+use super::nearest::Nearest;
 use super::shares::{
-    Foot, Measure, angle, ball, dihedral, length, lens, lens_of_disks, solid_angle, triple, volume,
+    Measure, angle, ball, dihedral, length, lens, lens_of_disks, solid_angle, triple, volume,
 };
 use super::tile::Tile;
 use super::tiles::Members;
-use crate::delaunay3::EDGES;
-use crate::vector::{cross, difference, dot};
+use crate::delaunay3::{EDGES, Tetrahedron};
+use crate::vector::{cross, difference};
 use spmesh_core::error::Result;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 use std::collections::{BTreeMap, BTreeSet};
@@ -33,17 +36,32 @@ pub struct Pocket {
     pub volume: f64,
     /// Area of the spheres around it.
     pub area: f64,
-    /// Number of mouths.
-    pub mouths: u32,
-    /// Area of the mouths that no ball covers.
-    pub mouth_area: f64,
+    /// The mouths, the largest first.
+    pub mouths: Vec<Mouth>,
     /// Greatest distance of the centre of a ball around the pocket from the nearest centre at a mouth; 0 if
     /// there is no mouth.
     pub depth: f64,
-    /// Number of tetrahedra.
-    pub tetrahedra: u32,
+    /// Its tetrahedra, by the balls at their corners, positively oriented.
+    pub tetrahedra: Vec<[u32; 4]>,
     /// The balls around it, in increasing order.
     pub balls: Vec<u32>,
+}
+
+/// An opening of a pocket to the outside.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mouth {
+    /// Area of its facets that no ball covers.
+    pub area: f64,
+    /// The balls at its facets, in increasing order.
+    pub balls: Vec<u32>,
+}
+
+impl Pocket {
+    /// Area of all mouths that no ball covers.
+    #[must_use]
+    pub fn mouth_area(&self) -> f64 {
+        self.mouths.iter().map(|mouth| mouth.area).sum()
+    }
 }
 
 /// The pockets and voids of a union of balls, the largest volume first.
@@ -57,11 +75,16 @@ pub fn pockets(balls: Balls<'_>) -> Result<Vec<Pocket>> {
     if balls.centres.is_empty() {
         return Ok(Vec::new());
     }
-    let all = Members { core: (0..balls.centres.len() as u32).collect(), around: Vec::new() };
+    let all = Members::all(balls);
     let tile = Tile::new(balls, &all)?;
-    let mut pockets = Search::new(&tile).pockets();
-    pockets.sort_by(|p, q| q.volume.total_cmp(&p.volume).then_with(|| p.balls.cmp(&q.balls)));
-    Ok(pockets)
+    Ok(with_members(&tile).into_iter().map(|(pocket, _)| pocket).collect())
+}
+
+/// The pockets, the largest volume first, each with the numbers of its tetrahedra.
+pub(super) fn with_members(tile: &Tile<'_>) -> Vec<(Pocket, Vec<usize>)> {
+    let mut pockets = Search::new(tile).pockets();
+    pockets.sort_by(|(p, _), (q, _)| q.volume.total_cmp(&p.volume).then_with(|| p.balls.cmp(&q.balls)));
+    pockets
 }
 
 /// What is known of a tetrahedron.
@@ -77,25 +100,23 @@ enum State {
 
 struct Search<'t> {
     tile: &'t Tile<'t>,
-    /// Power of each orthocentre.
-    powers: Vec<f64>,
+    dual: Dual<'t>,
     states: Vec<State>,
 }
 
 impl<'t> Search<'t> {
     fn new(tile: &'t Tile<'t>) -> Self {
-        let count = tile.tetrahedra().len();
-        let mut search = Search { tile, powers: Vec::with_capacity(count), states: Vec::new() };
-        for t in 0..count {
-            search.powers.push(tile.power(t));
-            let vertices = tile.tetrahedra()[t].vertices;
-            let is_outer = vertices.iter().any(|&v| tile.ball(v).is_none());
-            search.states.push(match (is_outer, search.powers[t] > 0.0) {
+        let dual = Dual::new(tile);
+        let state = |(t, tetrahedron): (usize, &Tetrahedron)| {
+            let is_outer = tetrahedron.vertices.iter().any(|&v| tile.ball(v).is_none());
+            match (is_outer, dual.is_empty(t)) {
                 (true, _) => State::Outside,
                 (_, true) => State::Empty,
                 _ => State::Covered,
-            });
-        }
+            }
+        };
+        let states = tile.tetrahedra().iter().enumerate().map(state).collect();
+        let mut search = Search { tile, dual, states };
         search.drain();
         search
     }
@@ -108,7 +129,7 @@ impl<'t> Search<'t> {
             for side in 0..4 {
                 let Some(other) = self.tile.tetrahedra()[t].neighbour(side) else { continue };
                 let (other, across) = (other.tetrahedron as usize, other.corner as usize);
-                if self.states[other] == State::Empty && self.flows(other, across) {
+                if self.states[other] == State::Empty && self.dual.flows(other, across) {
                     self.states[other] = State::Outside;
                     open.push(other);
                 }
@@ -116,46 +137,14 @@ impl<'t> Search<'t> {
         }
     }
 
-    /// Whether the facet opposite to a corner separates a tetrahedron from its orthocentre.
-    fn flows(&self, t: usize, corner: usize) -> bool {
-        self.height(t, corner) < 0.0
-    }
-
-    /// Distance of the orthocentre from the plane of a facet, up to a positive factor: positive on the side
-    /// of the tetrahedron.
-    fn height(&self, t: usize, corner: usize) -> f64 {
-        let vertices = self.tile.tetrahedra()[t].vertices;
-        let [a, b, c] = TETRAHEDRON_FACETS[corner].map(|i| self.tile.point(vertices[i]));
-        let normal = cross(difference(b, a), difference(c, a));
-        let apex = dot(normal, difference(self.tile.point(vertices[corner]), a));
-        let centre = dot(normal, difference(self.tile.centre(t), a));
-        if apex < 0.0 { -centre } else { centre }
-    }
-
-    /// Whether the balls cover the facet's place in the dual: some point of the line of equal power between
-    /// the two orthocentres.
-    fn is_closed(&self, t: usize, corner: usize) -> bool {
-        let tetrahedron = &self.tile.tetrahedra()[t];
-        let Some(other) = tetrahedron.neighbour(corner) else { return false };
-        let (other, across) = (other.tetrahedron as usize, other.corner as usize);
-        let least = self.powers[t].min(self.powers[other]);
-        if least <= 0.0 || self.flows(t, corner) || self.flows(other, across) {
-            return least <= 0.0;
-        }
-        // The orthocentre of the facet lies between.
-        let points = TETRAHEDRON_FACETS[corner].map(|i| tetrahedron.vertices[i]);
-        let foot = Foot::of(points.map(|v| self.tile.point(v)), points.map(|v| self.tile.radius(v)));
-        foot.is_some_and(|foot| foot.power <= 0.0)
-    }
-
-    fn pockets(&self) -> Vec<Pocket> {
+    fn pockets(&self) -> Vec<(Pocket, Vec<usize>)> {
         let edges = self.closed_edges();
         let mut is_seen = vec![false; self.states.len()];
         let mut pockets = Vec::new();
         for start in 0..self.states.len() {
             if self.states[start] == State::Empty && !is_seen[start] {
                 let members = self.component(start, &mut is_seen);
-                pockets.push(self.pocket(&members, &edges));
+                pockets.push((self.pocket(&members, &edges), members));
             }
         }
         pockets
@@ -172,7 +161,7 @@ impl<'t> Search<'t> {
             for corner in 0..4 {
                 let Some(other) = self.tile.tetrahedra()[t].neighbour(corner) else { continue };
                 let other = other.tetrahedron as usize;
-                if self.states[other] == State::Empty && !is_seen[other] && !self.is_closed(t, corner) {
+                if self.states[other] == State::Empty && !is_seen[other] && !self.dual.is_closed(t, corner) {
                     is_seen[other] = true;
                     members.push(other);
                 }
@@ -202,7 +191,7 @@ impl<'t> Search<'t> {
     fn pocket(&self, members: &[usize], edges: &BTreeSet<[u32; 2]>) -> Pocket {
         let mut free = Measure::default();
         let mut balls = BTreeSet::new();
-        let mut mouths: Vec<[u32; 3]> = Vec::new();
+        let mut facets: Vec<[u32; 3]> = Vec::new();
         for &t in members {
             let vertices = self.tile.tetrahedra()[t].vertices;
             balls.extend(vertices.iter().filter_map(|&v| self.tile.ball(v)));
@@ -211,20 +200,41 @@ impl<'t> Search<'t> {
                 let other =
                     self.tile.tetrahedra()[t].neighbour(corner).map(|other| other.tetrahedron as usize);
                 let is_outside = other.is_none_or(|other| self.states[other] == State::Outside);
-                if is_outside && !self.is_closed(t, corner) {
-                    mouths.push(facet.map(|i| vertices[i]));
+                if is_outside && !self.dual.is_closed(t, corner) {
+                    facets.push(facet.map(|i| vertices[i]));
                 }
             }
         }
         Pocket {
             volume: free.volume.max(0.0),
             area: free.area.max(0.0),
-            mouths: count_mouths(&mouths, edges),
-            mouth_area: mouths.iter().map(|&facet| self.open_area(facet, edges)).sum::<f64>().max(0.0),
-            depth: self.depth(members, &mouths),
-            tetrahedra: members.len() as u32,
+            depth: self.depth(members, &facets),
+            mouths: self.mouths(&facets, edges),
+            tetrahedra: members.iter().map(|&t| self.balls_of(self.tile.tetrahedra()[t].vertices)).collect(),
             balls: balls.into_iter().collect(),
         }
+    }
+
+    /// The balls of vertices of a pocket, none of which is an outpost.
+    fn balls_of<const N: usize>(&self, vertices: [u32; N]) -> [u32; N] {
+        vertices.map(|v| self.tile.ball(v).unwrap_or_default())
+    }
+
+    /// Groups of facets that are joined at edges that the balls leave open, the largest first.
+    fn mouths(&self, facets: &[[u32; 3]], edges: &BTreeSet<[u32; 2]>) -> Vec<Mouth> {
+        let mut groups: BTreeMap<usize, (f64, BTreeSet<u32>)> = BTreeMap::new();
+        for (&facet, group) in facets.iter().zip(joined(facets, edges)) {
+            let (area, balls) = groups.entry(group).or_default();
+            *area += self.open_area(facet, edges);
+            balls.extend(self.balls_of(facet));
+        }
+        let mouth = |(area, balls): (f64, BTreeSet<u32>)| Mouth {
+            area: area.max(0.0),
+            balls: balls.into_iter().collect(),
+        };
+        let mut mouths: Vec<Mouth> = groups.into_values().map(mouth).collect();
+        mouths.sort_by(|p, q| q.area.total_cmp(&p.area).then_with(|| p.balls.cmp(&q.balls)));
+        mouths
     }
 
     /// The part of a tetrahedron that no ball covers.
@@ -237,7 +247,7 @@ impl<'t> Search<'t> {
         for (corner, others) in TETRAHEDRON_FACETS.into_iter().enumerate() {
             let share = solid_angle(points[corner], others.map(|i| points[i])) / (4.0 * PI);
             rest.add(-share, ball(radii[corner]));
-            if self.is_closed(t, corner) {
+            if self.dual.is_closed(t, corner) {
                 rest.add(-0.5, triple(others.map(|i| points[i]), others.map(|i| radii[i])));
             }
         }
@@ -268,19 +278,15 @@ impl<'t> Search<'t> {
     }
 
     fn depth(&self, members: &[usize], mouths: &[[u32; 3]]) -> f64 {
-        let rim: BTreeSet<u32> = mouths.iter().flatten().copied().collect();
-        let lining = members.iter().flat_map(|&t| self.tile.tetrahedra()[t].vertices);
-        let lining: BTreeSet<u32> = lining.collect();
-        let nearest = |v: u32| {
-            let distance = |&r: &u32| length(difference(self.tile.point(r), self.tile.point(v)));
-            rim.iter().map(distance).min_by(f64::total_cmp)
-        };
-        lining.into_iter().filter_map(nearest).fold(0.0, f64::max)
+        let places = |vertices: BTreeSet<u32>| vertices.into_iter().map(|v| self.tile.point(v));
+        let rim = Nearest::new(places(mouths.iter().flatten().copied().collect()).collect());
+        let lining = members.iter().flat_map(|&t| self.tile.tetrahedra()[t].vertices).collect();
+        places(lining).filter_map(|at| rim.distance(at)).fold(0.0, f64::max)
     }
 }
 
-/// Number of groups of facets that are joined at edges that the balls leave open.
-fn count_mouths(facets: &[[u32; 3]], closed: &BTreeSet<[u32; 2]>) -> u32 {
+/// For each facet the group of those that are joined at edges that the balls leave open.
+fn joined(facets: &[[u32; 3]], closed: &BTreeSet<[u32; 2]>) -> Vec<usize> {
     let mut at_edges: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
     for (number, facet) in facets.iter().enumerate() {
         for i in 0..3 {
@@ -291,26 +297,13 @@ fn count_mouths(facets: &[[u32; 3]], closed: &BTreeSet<[u32; 2]>) -> u32 {
         }
     }
     let mut group: Vec<usize> = (0..facets.len()).collect();
-    let mut groups = facets.len() as u32;
     for joined in at_edges.values() {
         for pair in joined.windows(2) {
             let [p, q] = [root(&mut group, pair[0]), root(&mut group, pair[1])];
-            if p != q {
-                group[p] = q;
-                groups -= 1;
-            }
+            group[p] = q;
         }
     }
-    groups
-}
-
-/// The root of a tree of groups; halves the way.
-fn root(group: &mut [usize], mut at: usize) -> usize {
-    while group[at] != at {
-        group[at] = group[group[at]];
-        at = group[at];
-    }
-    at
+    (0..facets.len()).map(|facet| root(&mut group, facet)).collect()
 }
 
 fn sorted([p, q]: [u32; 2]) -> [u32; 2] {

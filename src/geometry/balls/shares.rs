@@ -65,9 +65,8 @@ pub(super) fn triple(centres: [Point3; 3], radii: [f64; 3]) -> Measure {
 
 /// A point of three spheres.
 fn meeting_point(centres: [Point3; 3], radii: [f64; 3]) -> Option<Point3> {
-    let Foot { at, normal, power } = Foot::of(centres, radii)?;
-    let height = (-power / dot(normal, normal)).sqrt();
-    (power < 0.0).then(|| [0, 1, 2].map(|axis| centres[0][axis] + at[axis] + height * normal[axis]))
+    let foot = Foot::of(centres, radii)?;
+    (foot.power < 0.0).then(|| foot.above(centres[0], 1.0))
 }
 
 /// The point of the plane of three centres that has the same power distance from all three balls.
@@ -94,6 +93,18 @@ impl Foot {
         let second = (over_c * dot(b, b) - over_b * dot(b, c)) / square;
         let at = [0, 1, 2].map(|axis| first * b[axis] + second * c[axis]);
         Some(Foot { at, normal, power: dot(at, at) - radii[0] * radii[0] })
+    }
+
+    /// The point of all three spheres on the side of the plane on which `other` is.
+    pub(super) fn meeting(&self, first: Point3, other: Point3) -> Point3 {
+        let is_above = dot(self.normal, difference(other, first)) >= 0.0;
+        self.above(first, if is_above { 1.0 } else { -1.0 })
+    }
+
+    /// The point of all three spheres on the side of the normal, or for -1 on the other side.
+    fn above(&self, first: Point3, side: f64) -> Point3 {
+        let height = side * (-self.power / dot(self.normal, self.normal)).max(0.0).sqrt();
+        [0, 1, 2].map(|axis| first[axis] + self.at[axis] + height * self.normal[axis])
     }
 }
 

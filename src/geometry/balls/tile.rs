@@ -50,6 +50,11 @@ pub(super) struct Tile<'t> {
 }
 
 impl<'t> Tile<'t> {
+    /// Number of vertices, of which outposts are no balls.
+    pub(super) fn vertices(&self) -> u32 {
+        self.places.len() as u32
+    }
+
     /// Triangulates the members.
     pub(super) fn new(balls: Balls<'t>, members: &'t Members) -> Result<Tile<'t>> {
         let all = || members.core.iter().chain(&members.around).map(|&ball| ball as usize);
@@ -163,6 +168,20 @@ impl<'t> Tile<'t> {
         });
     }
 
+    /// Calls `visit` with the surroundings of each edge between two balls.
+    pub(super) fn for_each_pair(&self, mut visit: impl FnMut(&Ring, &Pair)) {
+        let is_wanted = |ends: [u32; 2]| ends.iter().all(|&v| self.ball(v).is_some());
+        let Ok(()) = self.mesh.for_each_edge(is_wanted, |ring| -> std::result::Result<(), Infallible> {
+            visit(ring, &Pair::new(ring.ends.map(|v| self.point(v)), ring.ends.map(|v| self.radius(v))));
+            Ok(())
+        });
+    }
+
+    /// Whether rounding alone may have made the area of a face.
+    pub(super) fn is_noise(&self, contact: &Contact, pair: &Pair) -> bool {
+        contact.area <= NOISE * pair.disk()
+    }
+
     /// The place of a ball in the core; `None` for others.
     pub(super) fn place_in_core(&self, vertex: u32) -> Option<usize> {
         Some(self.places[vertex as usize] as usize).filter(|&place| place < self.members.core.len())
@@ -227,7 +246,7 @@ impl<'t> Tile<'t> {
 
     /// The face at an edge whose ends are balls; `see` gets each side of its polygon.
     #[inline(always)]
-    fn face(&self, ring: &Ring, pair: &Pair, mut see: impl FnMut(Side)) -> Face {
+    pub(super) fn face(&self, ring: &Ring, pair: &Pair, mut see: impl FnMut(Side)) -> Face {
         let [first, second] = ring.ends;
         let origin = self.point(first);
         let weight = self.radius(first).powi(2);

@@ -16,12 +16,18 @@ pub(super) struct Members {
     pub(super) around: Vec<u32>,
 }
 
+impl Members {
+    /// All balls as one tile.
+    pub(super) fn all(balls: Balls<'_>) -> Members {
+        Members { core: (0..balls.centres.len() as u32).collect(), around: Vec::new() }
+    }
+}
+
 /// Halves the balls at the median, along the longest side of their box, until tiles have at most `most`.
 /// Tiles depend on the balls only.
 pub(super) fn cut(balls: Balls<'_>, most: usize) -> Vec<Members> {
     let mut tiles = Vec::new();
-    let all = Members { core: (0..balls.centres.len() as u32).collect(), around: Vec::new() };
-    let mut open = vec![all];
+    let mut open = vec![Members::all(balls)];
     while let Some(members) = open.pop() {
         if members.core.is_empty() {
             continue;

@@ -20,6 +20,12 @@ const START: &str = "\
 
 pub(super) const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
 
+/// VTK's numbers of types of cells.
+const VERTEX: u8 = 1;
+pub(super) const TRIANGLE: u8 = 5;
+pub(super) const POLYGON: u8 = 7;
+pub(super) const TETRAHEDRON: u8 = 10;
+
 /// Writes points or a mesh as VTU: the vertices with their labels as the point data `label` and their
 /// attributes under their names, the simplices as cells, points as cells of one vertex. World coordinates as doubles; finalization is not written.
 ///
@@ -35,6 +41,8 @@ pub struct VtuSink<W> {
 pub(super) enum Content {
     /// Data of the vertices: labels, values or an attribute, by their number.
     Data(usize),
+    /// An attribute of the cells, by its number.
+    CellData(usize),
     Vertices,
     Connectivity,
     Offsets,
@@ -56,7 +64,7 @@ pub(super) struct Array {
 pub(super) struct Cells {
     pub(super) vertices: u64,
     pub(super) cells: u64,
-    /// Vertices of a cell.
+    /// Corners of all cells.
     pub(super) corners: u64,
     /// VTK's number of the cell type.
     pub(super) code: u8,
@@ -75,11 +83,7 @@ impl Data {
         Data { name: "label".into(), number: "UInt64", components: 1, width: 8 }
     }
 
-    pub(super) fn values() -> Self {
-        Data { name: "value".into(), number: "Float64", components: 1, width: 8 }
-    }
-
-    fn of(attribute: &Attribute) -> Self {
+    pub(super) fn of(attribute: &Attribute) -> Self {
         let number = match attribute.number {
             NumberType::U8 => "UInt8",
             NumberType::I8 => "Int8",
@@ -122,7 +126,7 @@ impl<W: Write> VtuSink<W> {
         let cells = Cells::of(self.mesh.header().kind, totals);
         let labels = (self.mesh.label_count > 0).then(Data::labels);
         let attributes = self.mesh.header().attributes.iter().map(Data::of);
-        let arrays = arrays(&cells, &attributes.chain(labels).collect::<Vec<_>>());
+        let arrays = arrays(&cells, &attributes.chain(labels).collect::<Vec<_>>(), &[]);
         self.put(head(&cells, &arrays).as_bytes())?;
         for array in &arrays {
             self.put(&array.len.to_le_bytes())?;
@@ -140,13 +144,16 @@ impl<W: Write> VtuSink<W> {
             }
             Content::Vertices => self.mesh.vertices.copy_to(&mut self.output),
             // The points of a points stream are in no simplex.
-            Content::Connectivity if cells.corners == 1 => {
+            Content::Connectivity if cells.code == VERTEX => {
                 (0..cells.cells).try_for_each(|id| self.put(&id.to_le_bytes()))
             }
             Content::Connectivity => self.mesh.corners.copy_to(&mut self.output),
             Content::Offsets => {
-                (1..=cells.cells).try_for_each(|cell| self.put(&(cell * cells.corners).to_le_bytes()))
+                let corners = cells.corners / cells.cells.max(1);
+                (1..=cells.cells).try_for_each(|cell| self.put(&(cell * corners).to_le_bytes()))
             }
+            // A stream has no data of cells.
+            Content::CellData(_) => Ok(()),
             Content::Types => (0..cells.cells).try_for_each(|_| self.put(&[cells.code])),
         }
     }
@@ -169,7 +176,7 @@ pub(super) fn head(cells: &Cells, arrays: &[Array]) -> String {
 }
 
 /// The arrays in the order of the appended data.
-pub(super) fn arrays(cells: &Cells, data: &[Data]) -> Vec<Array> {
+pub(super) fn arrays(cells: &Cells, of_points: &[Data], of_cells: &[Data]) -> Vec<Array> {
     let array = |content, attributes: &str, open: &str, close, len| Array {
         content,
         attributes: attributes.to_string(),
@@ -183,16 +190,20 @@ pub(super) fn arrays(cells: &Cells, data: &[Data]) -> Vec<Array> {
     let code = "type=\"UInt8\" Name=\"types\"";
     let &Cells { vertices, cells, corners, .. } = cells;
     let mut arrays = Vec::new();
-    for (number, array_data) in data.iter().enumerate() {
-        let start = format!("<PointData Scalars=\"{}\">\n", array_data.name);
-        let open = if number == 0 { start.as_str() } else { "" };
-        let close = if number + 1 == data.len() { "</PointData>\n" } else { "" };
-        let len = array_data.width * vertices;
-        arrays.push(array(Content::Data(number), &array_data.attributes(), open, close, len));
+    for (block, data, rows) in [("Point", of_points, vertices), ("Cell", of_cells, cells)] {
+        let is_of_points = block == "Point";
+        for (number, one) in data.iter().enumerate() {
+            let content = if is_of_points { Content::Data(number) } else { Content::CellData(number) };
+            let start = format!("<{block}Data Scalars=\"{}\">\n", one.name);
+            let open = if number == 0 { start.as_str() } else { "" };
+            let close = if is_of_points { "</PointData>\n" } else { "</CellData>\n" };
+            let close = if number + 1 == data.len() { close } else { "" };
+            arrays.push(array(content, &one.attributes(), open, close, one.width * rows));
+        }
     }
     arrays.extend([
         array(Content::Vertices, point, "<Points>\n", "</Points>\n", 24 * vertices),
-        array(Content::Connectivity, corner, "<Cells>\n", "", 8 * cells * corners),
+        array(Content::Connectivity, corner, "<Cells>\n", "", 8 * corners),
         array(Content::Offsets, offset, "", "", 8 * cells),
         array(Content::Types, code, "", "</Cells>\n", cells),
     ]);
@@ -203,9 +214,11 @@ impl Cells {
     fn of(kind: Kind, totals: &Totals) -> Self {
         let &Totals { points, vertices, simplices, .. } = totals;
         match kind {
-            Kind::Points => Cells { vertices: points, cells: points, corners: 1, code: 1 },
-            Kind::TetrahedralMesh => Cells { vertices, cells: simplices, corners: 4, code: 10 },
-            _ => Cells { vertices, cells: simplices, corners: 3, code: 5 },
+            Kind::Points => Cells { vertices: points, cells: points, corners: points, code: VERTEX },
+            Kind::TetrahedralMesh => {
+                Cells { vertices, cells: simplices, corners: 4 * simplices, code: TETRAHEDRON }
+            }
+            _ => Cells { vertices, cells: simplices, corners: 3 * simplices, code: TRIANGLE },
         }
     }
 }

@@ -53,7 +53,8 @@ fn points<R: Read>(rows: Rows<R>, dims: u8) -> VertexPoints<PlyVertices<R>> {
     header.points = Some(rows.header.rows(Sort::Vertex));
     // Properties that cannot be attributes are skipped.
     header.attributes = rows.header.attributes().unwrap_or_default();
-    let rows = Rows { keeps_attributes: !header.attributes.is_empty(), ..rows };
+    let kept = if header.attributes.is_empty() { Kept::None } else { Kept::OfVertices };
+    let rows = Rows { kept, ..rows };
     VertexPoints::new(PlyVertices { rows }, header)
 }
 
@@ -128,32 +129,40 @@ impl<R: Read> Elements for PlyElements<R> {
 }
 
 /// A row that is used.
-enum Row {
+pub(super) enum Row {
     Vertex(Point),
     Face(Vec<u64>),
 }
 
 /// The rows after the header, in the order of the file.
-struct Rows<R: Read> {
+pub(super) struct Rows<R: Read> {
     lines: Lines<R>,
-    header: PlyHeader,
+    pub(super) header: PlyHeader,
     table: usize,
     row: u64,
-    /// Whether attributes of vertices are read, and those of the last one.
-    keeps_attributes: bool,
-    attributes: Vec<u8>,
+    /// Whose attributes are read, and those of the last row.
+    pub(super) kept: Kept,
+    pub(super) attributes: Vec<u8>,
+}
+
+/// Whose attributes are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kept {
+    None,
+    OfVertices,
+    All,
 }
 
 impl<R: Read> Rows<R> {
     /// Reads the header.
-    fn open(input: R, name: impl Into<String>) -> Result<Self> {
+    pub(super) fn open(input: R, name: impl Into<String>) -> Result<Self> {
         let mut lines = Lines::new(input, name);
         let header = PlyHeader::read(&mut lines).map_err(|e| lines.locate(e))?;
-        Ok(Rows { lines, header, table: 0, row: 0, keeps_attributes: false, attributes: Vec::new() })
+        Ok(Rows { lines, header, table: 0, row: 0, kept: Kept::None, attributes: Vec::new() })
     }
 
     /// The next vertex or face; rows of other elements are skipped.
-    fn next(&mut self) -> Result<Option<Row>> {
+    pub(super) fn next(&mut self) -> Result<Option<Row>> {
         while let Some(table) = self.header.tables.get(self.table) {
             if self.row == table.rows {
                 (self.table, self.row) = (self.table + 1, 0);
@@ -161,7 +170,11 @@ impl<R: Read> Rows<R> {
             }
             self.row += 1;
             self.attributes.clear();
-            let keeps = self.keeps_attributes && table.sort == Sort::Vertex;
+            let keeps = match table.sort {
+                Sort::Vertex => self.kept != Kept::None,
+                Sort::Face => self.kept == Kept::All,
+                Sort::Strip | Sort::Other => false,
+            };
             let attributes = keeps.then_some(&mut self.attributes);
             let (point, corners) = match self.header.encoding {
                 Encoding::Ascii => read_text_row(&mut self.lines, &table.properties, attributes)?,
@@ -201,7 +214,7 @@ impl<R: Read> Rows<R> {
         }
     }
 
-    fn locate(&self, error: Error) -> Error {
+    pub(super) fn locate(&self, error: Error) -> Error {
         match self.header.encoding {
             Encoding::Ascii => self.lines.locate(error),
             Encoding::Binary(_) => {

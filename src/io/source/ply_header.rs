@@ -28,7 +28,7 @@ pub(super) enum Role {
     Corners,
     /// Length of a list.
     Length,
-    /// A single number of a vertex that is none of its coordinates.
+    /// A single number of a vertex that is none of its coordinates, or of a face.
     Attribute,
     /// Anything else: skipped.
     Other,
@@ -108,13 +108,21 @@ impl PlyHeader {
         Ok(header)
     }
 
-    /// The attributes of vertices. Red, green and blue in this order are one attribute.
+    /// The attributes of vertices.
+    ///
+    /// # Errors
+    /// As [`PlyHeader::attributes_of`].
+    pub(super) fn attributes(&self) -> std::result::Result<Attributes, String> {
+        self.attributes_of(Sort::Vertex)
+    }
+
+    /// The attributes of vertices or of faces. Red, green and blue in this order are one attribute.
     ///
     /// # Errors
     /// A text about the rule that they break: two have one name, or they are too many.
-    pub(super) fn attributes(&self) -> std::result::Result<Attributes, String> {
+    pub(super) fn attributes_of(&self, sort: Sort) -> std::result::Result<Attributes, String> {
         let mut attributes: Vec<Attribute> = Vec::new();
-        for table in self.tables.iter().filter(|table| table.sort == Sort::Vertex) {
+        for table in self.tables.iter().filter(|table| table.sort == sort) {
             let properties = table.properties.iter().zip(&table.names);
             let singles = properties.filter(|(property, _)| property.role == Role::Attribute);
             attributes
@@ -216,7 +224,7 @@ fn parse_property<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, sort: Sort) -
         (Sort::Vertex, false, b"y") => Role::Axis(1),
         (Sort::Vertex, false, b"z") => Role::Axis(2),
         (Sort::Face, true, b"vertex_indices" | b"vertex_index") => Role::Corners,
-        (Sort::Vertex, false, _) => Role::Attribute,
+        (Sort::Vertex | Sort::Face, false, _) => Role::Attribute,
         _ => Role::Other,
     };
     Ok((Property { role, length, scalar }, String::from_utf8_lossy(name).into_owned()))

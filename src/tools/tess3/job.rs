@@ -164,7 +164,14 @@ impl Job<'_> {
         started: Instant,
     ) -> Result<Report> {
         let mut report = Report::new(molecule.number, molecule.selected.points().len());
-        molecule.write(self.options.product, balls, &mut report, || self.table())?;
+        let product = self.options.product;
+        if let Some(picture) = balls.picture {
+            let mut output = (self.open)(None)?;
+            molecule.draw(product, picture, balls, &mut report, &mut output)?;
+            output.commit()?;
+        } else {
+            molecule.write(product, balls, &mut report, || self.table())?;
+        }
         report.times.triangulate = started.elapsed();
         Ok(report)
     }

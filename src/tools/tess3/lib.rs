@@ -20,7 +20,7 @@ pub mod sweep;
 mod tables;
 
 pub use alpha::AlphaComplex;
-pub use balls::{BallOptions, ContactFilter, Level, NamedRadii};
+pub use balls::{BallOptions, ColourBy, ContactFilter, Level, NamedRadii, PictureForm, PictureOptions};
 pub use job::{ModelName, run};
 pub use mesh::write_mesh;
 pub use method::{Arithmetic, Method, NO_EXPERIMENTS};
@@ -90,6 +90,14 @@ pub struct Options {
     pub balls: Option<BallOptions>,
 }
 
+impl Options {
+    /// Whether each model has an output of its own.
+    #[must_use]
+    pub fn is_per_model(&self) -> bool {
+        self.product.is_per_model() || self.balls.as_ref().is_some_and(|balls| balls.picture.is_some())
+    }
+}
+
 /// Counts and times of one model.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Report {
@@ -107,6 +115,8 @@ pub struct Report {
     pub is_of_cells: bool,
     /// Atoms that have no cell in the power diagram, as others take all of it.
     pub without_cell: u64,
+    /// Atoms whose surface a mesh lacks, as rounding leaves its border in doubt.
+    pub left_out: u64,
     /// Hydrogens that were measured with radii of heavy atoms that include them.
     pub hydrogens: u64,
     /// Tetrahedra that the kernel created, infinite ones included; most were replaced later.
@@ -142,6 +152,10 @@ impl Report {
             let verb = if self.without_cell == 1 { "has" } else { "have" };
             let (without, atoms) = (self.without_cell, self.atoms);
             texts.push(format!("{without} of {atoms} atoms {verb} no cell: others take all of it"));
+        }
+        if self.left_out > 0 {
+            let reason = "rounding leaves the border of their surface in doubt";
+            texts.push(format!("{} atoms are left out of the mesh: {reason}", self.left_out));
         }
         if self.is_of_cells {
             return texts;

@@ -1,15 +1,20 @@
 //! Atoms as balls: exposed areas, volumes and contacts of their cells, as tables.
 
+mod colours;
 mod groups;
+mod pictures;
 mod pockets;
 mod radii;
 mod tables;
 
+pub use pictures::{ColourBy, PictureForm, PictureOptions};
 pub use radii::NamedRadii;
 
+use std::io::Write;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
+use self::pictures::Picture;
 use self::pockets::PocketTable;
 use super::{Product, Report};
 use groups::Groups;
@@ -37,6 +42,10 @@ pub struct BallOptions {
     pub volumes: bool,
     /// Which contacts have rows.
     pub contacts: ContactFilter,
+    /// Rows of pockets are about their mouths.
+    pub mouths: bool,
+    /// A mesh takes the place of the table.
+    pub picture: Option<PictureOptions>,
     /// Radii of heavy atoms include their hydrogens.
     pub has_united_radii: bool,
     /// Threads that measure a structure.
@@ -126,6 +135,26 @@ impl Molecule<'_> {
         Ok(self.radii(options, report)?.into_iter().map(|radius| radius * radius).collect())
     }
 
+    /// Writes a mesh of the surface, of contacts or of pockets. The output is opened at first.
+    ///
+    /// # Errors
+    /// If an atom has no radius; those of writing.
+    pub(super) fn draw(
+        &self,
+        product: Product,
+        picture: PictureOptions,
+        options: &BallOptions,
+        report: &mut Report,
+        output: &mut impl Write,
+    ) -> Result<()> {
+        let radii = self.radii(options, report)?;
+        let balls = Balls { centres: self.selected.points(), radii: &radii };
+        report.is_of_cells = true;
+        report.vertices = report.atoms;
+        report.left_out = Picture { molecule: self, options, picture, balls }.write(product, output)?;
+        Ok(())
+    }
+
     /// Measures the balls, and writes the rows of a table: of cells, of the molecular surface, of contacts, or
     /// of pockets. The output is opened when they are measured.
     ///
@@ -145,8 +174,13 @@ impl Molecule<'_> {
         if product == Product::Pockets {
             let found = pockets(balls)?;
             let groups = Groups::new(self.selected, options.level);
-            return PocketTable { molecule: self, level: options.level, groups: &groups }
-                .write(&found, open()?);
+            return PocketTable {
+                molecule: self,
+                level: options.level,
+                mouths: options.mouths,
+                groups: &groups,
+            }
+            .write(&found, open()?);
         }
         let is_contacts = product == Product::ContactAreas;
         let Cells { cells, contacts } = if product == Product::Surface {

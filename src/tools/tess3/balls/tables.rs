@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::groups::{Groups, Key, key};
-use super::{BallOptions, Level, Molecule};
+use super::{BallOptions, ContactFilter, Level, Molecule};
 use crate::rows::distance;
 use spmesh_core::error::Result;
 use spmesh_geometry::balls::{Cell, Contact, Contacts};
@@ -76,7 +76,8 @@ pub(super) struct ContactTable<'t> {
 
 impl ContactTable<'_> {
     pub(super) fn write(&self, contacts: &Contacts, rows: &mut TableSink) -> Result<()> {
-        let wanted = contacts.iter().filter(|contact| self.is_wanted(contact));
+        let wanted =
+            contacts.iter().filter(|contact| is_wanted(self.molecule, &self.options.contacts, contact));
         if self.options.level == Level::Atom {
             for contact in wanted.filter(|contact| self.area(contact) >= self.options.contacts.min_area) {
                 self.row_of_atoms(contact, rows)?;
@@ -108,20 +109,9 @@ impl ContactTable<'_> {
         contact.area * self.molecule.scale.powi(2)
     }
 
-    fn is_wanted(&self, contact: &Contact) -> bool {
-        let filter = &self.options.contacts;
-        let differ = |level| {
-            let [p, q]: [Option<Key>; 2] =
-                contact.balls.map(|ball| Some(key(&self.molecule.selected.atom(ball as usize)?, level)));
-            p != q
-        };
-        filter.within.is_none_or(|most| self.distance(contact) <= most) && filter.between.is_none_or(differ)
-    }
-
     /// Distance of the centres, in Å.
     fn distance(&self, contact: &Contact) -> f64 {
-        distance(contact.balls.map(|ball| self.molecule.selected.points()[ball as usize]))
-            * self.molecule.scale
+        distance_of(self.molecule, contact)
     }
 
     fn row_of_atoms(&self, contact: &Contact, rows: &mut TableSink) -> Result<()> {
@@ -139,4 +129,20 @@ impl ContactTable<'_> {
         pair.iter().for_each(|&group| rows.field(self.groups.name(group)));
         Ok(())
     }
+}
+
+/// Whether a contact passes a filter, up to its area.
+pub(super) fn is_wanted(molecule: &Molecule<'_>, filter: &ContactFilter, contact: &Contact) -> bool {
+    let differ = |level| {
+        let [p, q]: [Option<Key>; 2] =
+            contact.balls.map(|ball| Some(key(&molecule.selected.atom(ball as usize)?, level)));
+        p != q
+    };
+    filter.within.is_none_or(|most| distance_of(molecule, contact) <= most)
+        && filter.between.is_none_or(differ)
+}
+
+/// Distance of the centres of two atoms, in Å.
+fn distance_of(molecule: &Molecule<'_>, contact: &Contact) -> f64 {
+    distance(contact.balls.map(|ball| molecule.selected.points()[ball as usize])) * molecule.scale
 }

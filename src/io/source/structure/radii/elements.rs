@@ -28,6 +28,11 @@ impl Element {
         (1..=SYMBOLS.len()).contains(&number).then_some(Element(number as u8))
     }
 
+    /// Its atomic number.
+    pub(super) fn number(self) -> u8 {
+        self.0
+    }
+
     /// Its symbol.
     pub(super) fn symbol(self) -> &'static str {
         SYMBOLS[usize::from(self.0) - 1]

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use foldhash::fast::FixedState;
 
+use super::elements::Element;
 use super::guess::Labels;
 use super::{Radii, STEPS, looked_up};
 use crate::source::structure::model::{AtomView, Structure};
@@ -70,14 +71,30 @@ impl<'s> RadiusFinder<'s> {
     /// Finds the radius of the first atom of a kind.
     #[cold]
     fn find(&mut self, kind: Kind, atom: &AtomView<'_>) -> Result<u32> {
-        let texts = [atom.residue_name(), atom.name(), atom.element()].map(looked_up);
-        let [residue, name, element] = texts.each_ref().map(String::as_str);
-        let labels = Labels { residue, atom: name, element, symbol_len: kind.symbol_len };
+        let texts = looked_up_texts(atom);
+        let labels = labels(&texts, atom);
         let element = labels.element();
         let steps = self.radii.find(&labels, element).ok_or_else(|| unknown(atom, element.is_some()))?;
         self.known.insert(kind, steps);
         Ok(steps)
     }
+}
+
+impl AtomView<'_> {
+    /// Atomic number of its element, as the file states it or its names tell; 0 if they do not.
+    #[must_use]
+    pub fn atomic_number(&self) -> u8 {
+        labels(&looked_up_texts(self), self).element().map_or(0, Element::number)
+    }
+}
+
+/// Names of residue and atom, and the element, as they are looked up.
+fn looked_up_texts(atom: &AtomView<'_>) -> [String; 3] {
+    [atom.residue_name(), atom.name(), atom.element()].map(looked_up)
+}
+
+fn labels<'t>([residue, name, element]: &'t [String; 3], atom: &AtomView<'_>) -> Labels<'t> {
+    Labels { residue, atom: name, element, symbol_len: atom.atom.symbol_len }
 }
 
 /// An error about an atom without a radius.
