@@ -19,6 +19,8 @@ pub enum Check {
     ConstrainedDelaunay,
     /// Ties between cocircular or cospherical points are resolved canonically.
     Canonical,
+    /// Every vertex of no tetrahedron, in a mesh with weights, has an empty cell in the power diagram.
+    Hidden,
     /// Every vertex is used, and its simplices close around it or go from boundary to boundary.
     Vertices,
     /// No vertex is used after it was finalized, and all are finalized at the end.
@@ -54,13 +56,14 @@ pub enum Check {
 
 impl Check {
     /// All checks, in the order of reports.
-    pub const ALL: [Check; 21] = [
+    pub const ALL: [Check; 22] = [
         Check::Orientation,
         Check::Edges,
         Check::Facets,
         Check::Delaunay,
         Check::ConstrainedDelaunay,
         Check::Canonical,
+        Check::Hidden,
         Check::Vertices,
         Check::Finalization,
         Check::Hull,
@@ -101,6 +104,9 @@ impl Check {
             }
             Check::Canonical => {
                 ("canonical", "cocircular or cospherical points are triangulated canonically")
+            }
+            Check::Hidden => {
+                ("hidden", "vertices of no tetrahedron have an empty cell: others around them are heavier")
             }
             Check::Vertices => {
                 ("vertices", "the simplices of every vertex close around it, or up to the hull")

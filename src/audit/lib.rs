@@ -147,6 +147,7 @@ impl Audit {
         };
         let is_mesh = header.kind.vertices_per_simplex() > 0;
         checks.extend((is_mesh && standard == Standard::Canonical).then_some(Check::Canonical));
+        checks.extend((is_mesh && header.weighted.is_some()).then_some(Check::Hidden));
         checks.extend((is_mesh && given.is_some()).then_some(Check::Points));
         let ledger = Ledger::of(&checks);
         Ok(Audit { state, given, ledger, violation: None, open_max: 0 })

@@ -152,7 +152,7 @@ impl<const D: usize> Tool<D> {
         let output = Output::create(&flags.output, true)?;
         let reader = open_stream(input)?;
         if reader.header().weighted.is_some() && !options.weighted {
-            notice(self.name, &flags.common, "the points have weights, which --weights takes into account");
+            notice(self.name, &flags.common, "the points have weights; without --weights they are ignored");
         }
         let mut progress = Progress::new(&flags.common, self.verb, reader.header().points);
         let threads = threads(flags.threads).get();

@@ -276,7 +276,9 @@ fn run_one(flags: &Flags) -> Result<Finished> {
 fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Result<()> {
     let models = structure.models.len();
     if options.is_per_model() && flags.selection.wants_all_models() && models > 1 {
-        let message = format!("{models} models need a folder for their meshes: --out-dir FOLDER");
+        let has_picture = options.balls.as_ref().is_some_and(|balls| balls.picture.is_some());
+        let remedy = if has_picture { "choose one with --model N" } else { "--out-dir FOLDER" };
+        let message = format!("{models} models need a folder for their meshes: {remedy}");
         return Err(Error::usage(message).of_input(&structure.name));
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! Weighted points of space: the attribute `weight` says by how much less their power distance is.
+//! Weighted points of space: the attribute `weight` is subtracted from squared distances.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
@@ -10,7 +10,7 @@ use spmesh_model::attributes::{Attribute, Attributes, NumberType};
 /// What the header says of the weights of points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weighted {
-    /// No weight of the stream is greater. In squared stored units, as weights are.
+    /// Upper bound of all weights of the stream, in squared stored units.
     pub greatest: f64,
 }
 

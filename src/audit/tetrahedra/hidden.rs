@@ -95,7 +95,7 @@ impl Hidden {
         let waiting = self.sets.drain(..).flat_map(Waiting::into_left);
         let Some(corner) = waiting.min_by_key(|corner| corner.id) else { return Ok(()) };
         let message = format!("no tetrahedron has vertex {}, and none that follows holds it", corner.id);
-        Err(name_corners(Violation::new(Check::Vertices, message), &[corner]))
+        Err(name_corners(Violation::new(Check::Hidden, message), &[corner]))
     }
 
     /// Puts new vertices into sets.
@@ -128,7 +128,7 @@ fn check_hidden(
 ) -> Result<(), Violation> {
     let (four, fifth) = (corners.map(Corner::weighted), vertex.weighted());
     let place = in_orthosphere(four, fifth);
-    ledger.count(Check::Delaunay, place.exactly);
+    ledger.count(Check::Hidden, place.exactly);
     let is_hidden = match place.sign {
         Ordering::Less => true,
         Ordering::Greater => false,
@@ -144,5 +144,5 @@ fn check_hidden(
         vertex.id,
         named(corners)
     );
-    Err(name_corners(name_corners(Violation::new(Check::Delaunay, message), &[vertex]), corners))
+    Err(name_corners(name_corners(Violation::new(Check::Hidden, message), &[vertex]), corners))
 }

@@ -18,16 +18,16 @@ const RADIUS: &str = "radius";
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Weights, for spdelaunay3d --weights")]
 pub(super) struct WeightFlags {
-    /// Weigh points by their radii: an attribute, as radius of a PLY file; or for atoms, as in tess3, a table
-    /// (protor, bondi, united) or a file of radii
+    /// Weight = radius squared: the name of an attribute with radii, such as radius of a PLY file; for atoms, a
+    /// table (protor, bondi, united, charmm) or a file of radii, as in tess3
     #[arg(long, value_name = "NAME|FILE", requires = "octree")]
     radii: Option<String>,
 
-    /// Radius of a probe that is added to each radius [default: 0]
-    #[arg(long, value_name = "RADIUS", requires = "radii", value_parser = parse_probe)]
+    /// Radius of a probe that is added to each radius, in units of the coordinates, for atoms Å [default: 0]
+    #[arg(long, value_name = "RADIUS", requires = "radii", allow_hyphen_values = true, value_parser = parse_probe)]
     probe: Option<f64>,
 
-    /// Weigh points by an attribute that holds the weights: for balls, the squares of radii
+    /// The name of an attribute that holds the weights: for balls, the squares of radii
     #[arg(
         long,
         value_name = "NAME",

@@ -55,7 +55,9 @@ fn check(flags: &Flags) -> Result<()> {
         ("--apart", flags.apart),
     ];
     match of_streams.into_iter().find(|(_, is_given)| *is_given) {
-        Some((flag, _)) => Err(Error::usage(format!("{flag} is for streams, this is a surface in PLY"))),
+        Some((flag, _)) => Err(Error::usage(format!(
+            "{flag} is for streams, this is a surface in PLY with colours of its own"
+        ))),
         None if flags.eye.is_some_and(|eye| !eye.iter().all(|angle| angle.is_finite())) => {
             Err(Error::usage("--eye takes two angles in degrees"))
         }

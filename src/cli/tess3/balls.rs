@@ -39,13 +39,14 @@ pub(super) struct BallFlags {
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes", "ses"])]
     contact_areas: bool,
 
-    /// Write a table of pockets and voids, the largest first: spaces outside all balls whose way out narrows;
-    /// voids have none (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
+    /// Write a table of pockets and voids, the largest first: spaces outside all balls whose exits narrow; a
+    /// void has no exit (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
     #[arg(conflicts_with_all = ["ses", "contact_areas"])]
     pockets: bool,
 
-    /// Rows of --pockets are the mouths, the largest of each pocket first, or with --per what is at each
+    /// Rows of --pockets are the mouths, the largest of each pocket first; with --per, the atoms, residues or
+    /// chains at each mouth
     #[arg(long)]
     mouths: bool,
 
@@ -64,7 +65,7 @@ pub(super) struct BallFlags {
     #[arg(long, value_enum, value_name = "LEVEL")]
     per: Option<LevelFlag>,
 
-    /// Only rows of at least this area (Å²); with --per, the sum
+    /// Only contacts of at least this area (Å²); with --per, the sum
     #[arg(long, value_name = "AREA", value_parser = parse_positive)]
     min_area: Option<f64>,
 
@@ -197,7 +198,7 @@ impl BallFlags {
         match (self.per, self.volumes) {
             _ if self.mouths => Err(Error::usage("--mouths is a table: give a name that ends in .tsv")),
             (Some(_), _) => {
-                Err(Error::usage("--per is for tables: a mesh has the atoms of its parts as numbers"))
+                Err(Error::usage("--per is for tables; a mesh states the serial numbers of atoms"))
             }
             (_, true) => {
                 Err(Error::usage("--volumes is a table: give a name that ends in .tsv, or --sasa alone"))

@@ -8,8 +8,8 @@ use spmesh_core::error::{Error, Result};
 use spmesh_io::sink::TableFormat;
 use spmesh_tess3::Product;
 
-/// Endings of tables. Lines of JSON are no JSON, so `.json` is not one of them.
-pub(super) const ENDINGS: &[&str] = &["tsv", "csv", "txt", "xyz", "jsonl", "ndjson", "parquet"];
+/// Endings of tables. Lines of JSON are no JSON, and tabs no commas, so `.json` and `.csv` are none of them.
+pub(super) const ENDINGS: &[&str] = &["tsv", "txt", "xyz", "jsonl", "ndjson", "parquet"];
 
 /// Values of `--format`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -39,8 +39,8 @@ pub(super) fn format(
     product: Product,
 ) -> Result<TableFormat> {
     if !product.is_table() {
-        let message = "--format goes with tables: --table, --contacts, --sasa, --volumes, --contact-areas or \
-                       --pockets";
+        let message = "--format goes with tables: --table, --contacts, --sasa, --volumes, --ses, --contact-areas \
+                       or --pockets";
         return if flag.is_some() { Err(Error::usage(message)) } else { Ok(TableFormat::default()) };
     }
     let of_ending = output.and_then(TableFormat::of);

@@ -48,7 +48,7 @@ impl Tetrahedralization {
     /// Cost: three passes, of which `threads` share the last, and 100 kB for each thread.
     ///
     /// # Errors
-    /// None: for the sake of [`parallel::map`].
+    /// Never fails: the type is that of [`parallel::map`].
     pub fn into_corners(self, keep: impl Fn(usize) -> bool, threads: NonZeroUsize) -> Result<Corners> {
         let Tetrahedralization { vertices, tetrahedra: mut storage, .. } = self;
         let shift = shift_of_groups(vertices.len(), storage.len());

@@ -55,7 +55,7 @@ use whole::{Setting, Tally, Whole};
 /// bits.
 pub const MAX_POINTS: usize = 60_000_000;
 
-/// Fewer points are not worth a thread.
+/// Least number of points that is worth a thread.
 const POINTS_PER_THREAD: usize = 20_000;
 
 /// The kernel with its buffers.
@@ -70,7 +70,7 @@ pub struct Kernel {
     /// Whether points that have more low bits in common are inserted first (thesis 3.4.1).
     pub by_bit_levels: bool,
     /// How many threads triangulate points without weights. The tetrahedra do not depend on it; their order
-    /// does. It makes no difference along [`Sequence::Pass`], nor by bit levels.
+    /// does. [`Sequence::Pass`] and bit levels use one thread.
     pub threads: NonZeroUsize,
     /// The least number of points that is worth a thread.
     pub points_per_thread: usize,

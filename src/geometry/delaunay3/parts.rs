@@ -34,7 +34,7 @@ const SPARE: usize = 50;
 /// inserted yet: the ones between parts.
 ///
 /// # Errors
-/// None: for the sake of [`parallel::map`].
+/// Never fails: the type is that of [`parallel::map`].
 pub(super) fn insert<W: Weights>(
     whole: &mut Whole,
     setting: &Setting<W>,
