@@ -120,28 +120,30 @@ class Sampling {
   public:
     // The largest cubes have this side.
     Sampling(const Boundary& boundary, double probe, double side, std::uint64_t seed)
-        : probe_(probe), half_width_(probe * HALF_WIDTH), side_(side), random_(seed) {
-        divide(boundary);
-    }
+        : balls_(boundary.balls), index_(boundary, 2 * side), probe_(probe), half_width_(probe * HALF_WIDTH),
+          side_(side), random_(seed) {}
 
     double half_width() const { return half_width_; }
 
     // Cubes are halved `levels` times. Without `is_sampling` the undecided cubes are only counted.
     Measure run(int levels, bool is_sampling) {
         Measure measure;
-        for (const auto& [centre, part] : blocks_) descend(centre, side_, part, levels, is_sampling, measure);
+        // No greater distance is asked for, from any point of a large cube.
+        double reach = probe_ + margin(side_) + half_width_ + half_diagonal(side_);
+        visit_largest([&](Vector middle) {
+            descend(middle, side_, index_.within(middle, reach), levels, is_sampling, measure);
+        });
         return measure;
     }
 
   private:
     double margin(double side) const { return half_diagonal(side) + 2 * half_width_; }
 
-    // Makes the largest cubes that a ball meets, each with all that can matter for its points.
-    void divide(const Boundary& boundary) {
-        Index index(boundary, 2 * side_);
+    // Calls `visit` with the centre of each of the largest cubes that a ball meets.
+    template <class Visit> void visit_largest(Visit visit) const {
         std::unordered_set<std::uint64_t> seen;
         auto at = [&](double c) { return long(std::floor(c / side_)); };
-        for (const Ball& ball : boundary.balls) {
+        for (const Ball& ball : balls_) {
             Vector c = ball.centre;
             double r = ball.radius;
             for (long i = at(c.x - r); i <= at(c.x + r); ++i)
@@ -149,10 +151,7 @@ class Sampling {
                     for (long k = at(c.z - r); k <= at(c.z + r); ++k) {
                         Vector middle = {(i + 0.5) * side_, (j + 0.5) * side_, (k + 0.5) * side_};
                         if (length(middle - c) > r + half_diagonal(side_)) continue;
-                        if (!seen.insert(Grid::key(i, j, k)).second) continue;
-                        // No greater distance is asked for, from any point of the cube.
-                        double reach = probe_ + margin(side_) + half_width_ + half_diagonal(side_);
-                        blocks_.emplace_back(middle, index.within(middle, reach));
+                        if (seen.insert(Grid::key(i, j, k)).second) visit(middle);
                     }
         }
     }
@@ -191,9 +190,10 @@ class Sampling {
         measure.wide_band.add(cube, is_in(apart[0], wide), is_in(apart[1], wide));
     }
 
+    const std::vector<Ball>& balls_;
+    Index index_;
     double probe_, half_width_, side_;
     std::mt19937_64 random_;
-    std::vector<std::pair<Vector, Part>> blocks_;
 };
 
 int main(int count, char** words) {
