@@ -19,8 +19,10 @@
 
 #include "boundary.hpp"
 
-// Half the width of the band, as a part of the probe's radius.
+// Half the width of the band, as a part of the least radius of a patch.
 static const double HALF_WIDTH = 1.0 / 32;
+// Patches smaller than this part of the probe are too few to matter.
+static const double PATCH_MIN = 0.25;
 // Side of the largest cubes, as a part of the greatest radius.
 static const double SIDE = 0.4;
 
@@ -120,8 +122,11 @@ class Sampling {
   public:
     // The largest cubes have this side.
     Sampling(const Boundary& boundary, double probe, double side, std::uint64_t seed)
-        : balls_(boundary.balls), index_(boundary, 2 * side), probe_(probe), half_width_(probe * HALF_WIDTH),
-          side_(side), random_(seed) {}
+        : balls_(boundary.balls), index_(boundary, 2 * side), probe_(probe), side_(side), random_(seed) {
+        double least = probe;
+        for (const Ball& ball : balls_) least = std::min(least, ball.radius - probe);
+        half_width_ = HALF_WIDTH * std::max(least, PATCH_MIN * probe);
+    }
 
     double half_width() const { return half_width_; }
 
@@ -192,7 +197,7 @@ class Sampling {
 
     const std::vector<Ball>& balls_;
     Index index_;
-    double probe_, half_width_, side_;
+    double probe_, side_, half_width_;
     std::mt19937_64 random_;
 };
 
