@@ -286,6 +286,7 @@ fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Resu
 
 fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
     let shown = flags.summary.clone().unwrap_or_else(|| folder.join(SUMMARY_NAME));
+    endings::check(&shown, &[tables::ENDINGS])?;
     let is_parquet = TableFormat::of(&shown) == Some(TableFormat::Parquet);
     if is_parquet {
         TableFormat::Parquet.check()?;

@@ -346,8 +346,9 @@ fn errors_name_remedies() {
     assert_outcome("tess3", &["--sasa", "-"], text.as_bytes(), 2, "state it in a file for --radii");
     let carbon = pdb(&[Record::carbon(1, [0.0; 3])]);
     for (arguments, part) in [
-        (&["--radii", "bondi"][..], "--radii goes with --sasa"),
-        (&["--probe", "1"], "--probe goes with --sasa"),
+        (&["--radii", "bondi", "--table"][..], "--radii goes with meshes, --sasa"),
+        (&["--radii", "bondi", "--per", "chain"], "--per does not go with a mesh"),
+        (&["--probe", "1"], "--probe needs --radii"),
         (&["--sasa", "--probe", "1.23456"], "three decimals"),
         (&["--sasa", "--probe=-1"], "--probe"),
         (&["--sasa", "--probe", "nan"], "--probe"),

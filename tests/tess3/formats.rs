@@ -8,7 +8,7 @@ use super::molecules::Rows;
 use crate::programs::{Folder, assert_outcome, outcome, run, sample};
 
 /// Flags of each kind of table.
-const TABLES: [&[&str]; 8] = [
+const TABLES: [&[&str]; 11] = [
     &["--table"],
     &["--contacts", "--alpha", "3"],
     &["--sasa", "--volumes"],
@@ -17,6 +17,9 @@ const TABLES: [&[&str]; 8] = [
     &["--contact-areas", "--per", "residue"],
     &["--pockets", "--probe", "0"],
     &["--pockets", "--probe", "0", "--per", "atom"],
+    &["--pockets", "--mouths", "--probe", "0"],
+    &["--pockets", "--mouths", "--probe", "0", "--per", "residue"],
+    &["--ses", "--probe", "1.4"],
 ];
 
 /// The table of a sample in a format: the content of the file.

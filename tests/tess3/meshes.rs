@@ -65,7 +65,7 @@ impl Mesh {
             }
         }
         assert!(is_final.iter().all(|&is_final| is_final));
-        assert_eq!(mesh.labels.len(), mesh.points.len());
+        assert!(mesh.labels.len() == mesh.points.len() || mesh.labels.is_empty());
         if let Some(bounds) = header.bounds {
             for axis in 0..3 {
                 let values = || stored.iter().map(|point| point[axis]);

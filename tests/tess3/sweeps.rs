@@ -428,3 +428,27 @@ fn named_pipes_are_read_once() {
     let rows = summary(&folder);
     assert_eq!((rows.number(0, "atoms"), rows.text(0, "input_sha256")), (4.0, ""));
 }
+
+/// A sweep that stops, or is killed, before it comes to a file must not forget what there is of it.
+#[test]
+fn names_and_outputs_do_not_depend_on_interruptions() {
+    let (folder, files) = files();
+    let names = ["2abc.spm", "in/1abc.pdb.spm", "more/1abc.pdb.spm", "summary.tsv"];
+    assert_eq!(sweep(&folder, &[], &files).0, Some(0));
+    assert_eq!(folder.names("out"), names);
+    folder.write("in/1abc.pdb", pdb(&cloud(51, 9_000, 51)));
+    assert_eq!(sweep(&folder, &["--resume"], &files).0, Some(0));
+    assert_eq!(folder.names("out"), names, "a revised file keeps the name of its output");
+    // The largest file comes first, fails, and ends the sweep.
+    let whole = fs::read(&files[1]).unwrap();
+    folder.write("in/2abc.ent", "no structure\n".repeat(10_000));
+    folder.write("in/1abc.pdb", pdb(&cloud(52, 9_000, 52)));
+    let (code, message) = sweep(&folder, &["--resume", "--strict", "--threads", "1"], &files);
+    assert_eq!(code, Some(3), "{message}");
+    assert_eq!(folder.names("out"), ["more/1abc.pdb.spm", "summary.tsv"], "nothing is stale");
+    fs::write(&files[1], whole).unwrap();
+    assert_eq!(sweep(&folder, &["--resume"], &files).0, Some(0));
+    assert_eq!(folder.names("out"), names);
+    let made = fs::read(folder.path("out/in/1abc.pdb.spm")).unwrap();
+    assert_eq!(Mesh::read(&made).points.len(), 52);
+}

@@ -173,7 +173,24 @@ fn flags_that_do_not_fit_are_refused() {
 
 #[test]
 fn no_points_have_no_weights() {
-    let points = done("spfinalize", &["--octree", "--radii", "size", "-"], b"# x y z size\n");
+    let flags = ["--octree", "--skip-invalid", "--radii", "size", "-"];
+    let points = done("spfinalize", &flags, b"# x y z size\nnan 0 0 1\n");
     let mesh = done("spdelaunay3d", &["--weights", "-"], &points);
     done("spinfo", &["--audit", "-"], &mesh);
+}
+
+#[test]
+fn weights_of_a_stream_can_be_kept() {
+    let folder = Folder::new();
+    let flags = ["--octree", "--radii", "bondi", "--probe", "1.4", "tests/data/1pfe.cif.gz"];
+    let points = folder.write("points.spm", done("spfinalize", &flags, b""));
+    let again = done("spfinalize", &["--octree", "--weights", "weight", "--cell-points", "50", &points], b"");
+    let [a, b] = [std::fs::read(&points).unwrap(), again].map(|points| {
+        let mesh = done("spdelaunay3d", &["--weights", "-"], &points);
+        done("spinfo", &["--audit", "-"], &mesh);
+        mesh
+    });
+    assert_eq!(set(&Mesh::read(&a)), set(&Mesh::read(&b)));
+    let greatest = |mesh: &[u8]| StreamReader::new(mesh, "mesh").unwrap().header().weighted;
+    assert_eq!(greatest(&a), greatest(&b), "exact, whatever the unit");
 }

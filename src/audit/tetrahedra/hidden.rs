@@ -126,6 +126,10 @@ fn check_hidden(
     standard: Standard,
     ledger: &mut Ledger,
 ) -> Result<(), Violation> {
+    if let Some(other) = corners.iter().find(|corner| corner.at == vertex.at) {
+        let message = format!("vertices {} and {} coincide", other.id, vertex.id);
+        return Err(name_corners(Violation::new(Check::Vertices, message), &[*other, vertex]));
+    }
     let (four, fifth) = (corners.map(Corner::weighted), vertex.weighted());
     let place = in_orthosphere(four, fifth);
     ledger.count(Check::Hidden, place.exactly);

@@ -24,7 +24,8 @@ pub(super) struct WeightFlags {
     radii: Option<String>,
 
     /// Radius of a probe that is added to each radius, in units of the coordinates, for atoms Å [default: 0]
-    #[arg(long, value_name = "RADIUS", requires = "radii", allow_hyphen_values = true, value_parser = parse_probe)]
+    #[arg(long, value_name = "RADIUS", requires = "radii", conflicts_with = "weights")]
+    #[arg(allow_hyphen_values = true, value_parser = parse_probe)]
     probe: Option<f64>,
 
     /// The name of an attribute that holds the weights: for balls, the squares of radii

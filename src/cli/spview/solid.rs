@@ -39,6 +39,9 @@ pub(super) fn draw(flags: &Flags, input: impl Read, name: &str) -> Result<Pictur
     draw_solid(&surface, &options).map_err(|e| e.of_input(name))
 }
 
+/// The light by default; surfaces have theirs at the eye.
+const LIGHT: [f64; 2] = [315.0, 45.0];
+
 fn check(flags: &Flags) -> Result<()> {
     let of_streams = [
         ("--fill", flags.fill.is_some()),
@@ -53,13 +56,25 @@ fn check(flags: &Flags) -> Result<()> {
         ("--order", flags.order.is_some()),
         ("--set", flags.set.is_some()),
         ("--apart", flags.apart),
+        ("--no-cells", flags.no_cells),
+        ("--stretch", flags.stretch.is_some()),
+        ("--range", flags.range.is_some()),
+        ("--middle", flags.middle.is_some()),
+        ("--kill", flags.outline.kill()?.is_some()),
+        ("--concave", flags.outline.concave()?.is_some()),
+        ("--mask", flags.outline.mask_path().is_some()),
+        ("--crs", flags.crs.system()?.is_some()),
+        ("--light", flags.light != LIGHT),
     ];
     match of_streams.into_iter().find(|(_, is_given)| *is_given) {
         Some((flag, _)) => Err(Error::usage(format!(
             "{flag} is for streams, this is a surface in PLY with colours of its own"
         ))),
-        None if flags.eye.is_some_and(|eye| !eye.iter().all(|angle| angle.is_finite())) => {
-            Err(Error::usage("--eye takes two angles in degrees"))
+        None if flags
+            .eye
+            .is_some_and(|[azimuth, altitude]| !(azimuth.is_finite() && altitude.abs() <= 90.0)) =>
+        {
+            Err(Error::usage("--eye takes two angles in degrees, the second from -90 to 90"))
         }
         None => Ok(()),
     }

@@ -132,8 +132,9 @@ impl BallFlags {
         if self.mouths && !self.pockets {
             return Err(Error::usage("--mouths goes with --pockets"));
         }
-        if is_filtration && self.per.is_some() {
-            return Err(Error::usage("--per does not go with --filtration"));
+        if self.per.is_some() && (is_filtration || (product == Product::Mesh && self.radii.is_some())) {
+            let what = if is_filtration { "--filtration" } else { "a mesh" };
+            return Err(Error::usage(format!("--per does not go with {what}")));
         }
         if self.product().is_none() && !has_weights {
             let idle = [
@@ -151,7 +152,9 @@ impl BallFlags {
                         _ if flag == "--per" => {
                             "goes with --sasa, --volumes, --ses, --contact-areas or --pockets"
                         }
-                        _ => "goes with --sasa, --volumes, --ses, --contact-areas, --pockets or --filtration",
+                        _ => {
+                            "goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or --filtration"
+                        }
                     };
                     Err(Error::usage(format!("{flag} {remedy}")))
                 }

@@ -5,7 +5,7 @@ use spmesh_model::bounds::Bounds;
 
 /// Greatest number of balls of a tile, without those around it. Larger tiles have fewer of these, but need
 /// more memory.
-pub(super) const TILE_MAX: usize = 10_000;
+pub(super) const TILE_MAX: usize = 6_000;
 
 /// The balls of a tile, as indices of all balls.
 #[derive(Debug, Default)]

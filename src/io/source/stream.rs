@@ -14,8 +14,9 @@ use super::row_plan::{RowPlan, offers_of};
 use super::twin::TwinSource;
 use super::vertices::VertexPoints;
 use spmesh_core::error::{Error, Result};
+use spmesh_model::attributes::Attribute;
 use spmesh_model::bounds::Point;
-use spmesh_stream::{Event, Kind, StreamReader};
+use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader, Weighted};
 
 /// Reads the header of a stream.
 pub(super) fn state(file: Bytes, name: &str) -> Result<Stated> {
@@ -48,8 +49,19 @@ fn state_of(source: &impl EventSource) -> Result<Stated> {
         crs: header.crs.clone(),
         bounds: header.bounds,
         points: header.points,
-        offers: offers_of(header.attributes.iter()),
+        offers: offers_of(&attributes_of(header)),
     })
+}
+
+/// The attributes of the points. Weights are in squared stored units, so they get a scale.
+fn attributes_of(header: &Header) -> Vec<Attribute> {
+    let mut attributes: Vec<Attribute> = header.attributes.iter().cloned().collect();
+    let weight = Weighted::attribute();
+    if let (Some(_), Coordinates::I32 { scale, .. }) = (header.weighted, header.coordinates) {
+        let of_weights = attributes.iter_mut().filter(|attribute| attribute.name == weight.name);
+        of_weights.for_each(|attribute| attribute.scale = Some([scale[0] * scale[0], 0.0]));
+    }
+    attributes
 }
 
 /// One pass over the points of a stream, of a text twin, or of a mesh.

@@ -1,5 +1,7 @@
 //! Weights of points: an attribute `weight` that triangulators understand, made of another attribute.
 
+use std::ops::Range;
+
 use super::passes::{Observer, Pass, Passes};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::{Description, PointReader};
@@ -73,11 +75,14 @@ pub struct Weighed<'a, P: Passes + ?Sized> {
     source: &'a WeightSource,
     column: Column,
     step: f64,
+    /// The bytes of a row that the new rows lack: an attribute of the name of weights.
+    replaced: Range<usize>,
     description: Description,
 }
 
 impl<'a, P: Passes + ?Sized> Weighed<'a, P> {
-    /// Gives the points of `input` weights, whose attribute comes last in their rows.
+    /// Gives the points of `input` weights, whose attribute comes last in their rows. It may take the place of the
+    /// one that it is made of.
     ///
     /// # Errors
     /// Usage, if the points lack the attribute of `source`, are points of the plane, or have another attribute
@@ -89,18 +94,20 @@ impl<'a, P: Passes + ?Sized> Weighed<'a, P> {
         }
         let column = description.attributes.column(source.attribute()).map_err(Error::usage)?;
         let own = Weighted::attribute();
-        if description.attributes.find(&own.name).is_some() {
+        let existing = description.attributes.find(&own.name).map(|(_, place)| place);
+        if existing.is_some() && source.attribute() != own.name {
             let remedy = format!("choose others than \"{}\" with --attributes", own.name);
             return Err(Error::usage(format!("the points have this attribute already: {remedy}")));
         }
-        let all = description.attributes.iter().cloned().chain([own]).collect();
+        let others = description.attributes.iter().filter(|attribute| attribute.name != own.name);
+        let all = others.cloned().chain([own.clone()]).collect();
         let attributes = Attributes::new(all).map_err(Error::usage)?;
         let step = match description.coordinates {
             Coordinates::F64 => 1.0,
             Coordinates::I32 { scale, .. } => scale[0],
         };
         let description = Description { attributes, ..description.clone() };
-        Ok(Weighed { input, source, column, step, description })
+        Ok(Weighed { input, source, column, step, replaced: existing.unwrap_or(0..0), description })
     }
 
     /// What the header says of the weights. It takes a pass over the points.
@@ -149,6 +156,7 @@ struct WeighedReader<'a> {
     column: &'a Column,
     step: f64,
     row_len: usize,
+    replaced: Range<usize>,
     /// Points before the batch.
     done: u64,
     weights: Vec<f64>,
@@ -157,13 +165,14 @@ struct WeighedReader<'a> {
 
 impl<'a> WeighedReader<'a> {
     fn new<P: Passes + ?Sized>(weighed: &'a Weighed<'_, P>) -> Result<Self> {
-        let Weighed { input, source, column, step, .. } = weighed;
+        let Weighed { input, source, column, step, replaced, .. } = weighed;
         Ok(WeighedReader {
             reader: input.read()?,
             source,
             column,
             step: *step,
             row_len: input.description().attributes.row_len(),
+            replaced: replaced.clone(),
             done: 0,
             weights: Vec::new(),
             rows: Vec::new(),
@@ -181,11 +190,16 @@ impl PointReader for WeighedReader<'_> {
             let value = self.column.of(rows, index);
             let weight = self.source.weight(value, self.step);
             if !(self.source.allows(value) && weight.is_finite()) {
-                let message = format!("{value}, expected {}", self.source.expected());
+                let message = if self.source.allows(value) {
+                    format!("the weight of {value:e} in steps of {:e} is beyond the range of f64", self.step)
+                } else {
+                    format!("{value}, expected {}", self.source.expected())
+                };
                 return Err(Error::malformed(message).at(format!("point {}", self.done + index as u64 + 1)));
             }
             self.weights.push(weight);
-            self.rows.extend_from_slice(row);
+            self.rows.extend_from_slice(&row[..self.replaced.start]);
+            self.rows.extend_from_slice(&row[self.replaced.end..]);
             self.rows.extend_from_slice(&weight.to_le_bytes());
         }
         self.done += batch.len() as u64;

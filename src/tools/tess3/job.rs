@@ -83,8 +83,10 @@ impl Job<'_> {
         let name = ModelName { place, number: structure.models[at].number };
         // Points without atoms and labels move into the kernel, which then needs no copy.
         let model = &structure.models[at];
-        let is_plain =
-            self.options.product == Product::Mesh && model.atoms.is_empty() && model.labels.is_empty();
+        let is_plain = self.options.product == Product::Mesh
+            && self.options.balls.is_none()
+            && model.atoms.is_empty()
+            && model.labels.is_empty();
         if is_plain {
             selection::select(structure, &self.options.selection)?;
         }

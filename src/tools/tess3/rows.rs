@@ -12,7 +12,9 @@ pub(super) fn columns(line: &str) -> Vec<Column> {
 /// The type of the column of a name; numbers unless it is listed.
 fn kind(name: &str) -> ColumnKind {
     match name.trim_end_matches(|c: char| c.is_ascii_digit()) {
-        "model" | "serial" | "tetrahedra" | "atoms" | "contacts" | "pocket" | "mouths" => ColumnKind::Integer,
+        "model" | "serial" | "tetrahedra" | "atoms" | "contacts" | "pocket" | "mouth" | "mouths" => {
+            ColumnKind::Integer
+        }
         "kind" | "atom" | "residue" | "chain" | "molecule" => ColumnKind::Text,
         _ => ColumnKind::Number,
     }

@@ -42,7 +42,8 @@ const BLOCK: usize = 1024;
 /// # Errors
 /// As [`super::measure`]; usage, if the radius of the probe is negative or greater than that of a ball.
 ///
-/// Cost: 1.5 to 2.5 times that of [`super::measure`]. Memory: 150 bytes more for each place where the probe touches
+/// Cost: for molecules 1.5 to 2.5 times that of [`super::measure`]; k² for each probe that has k others at rest
+/// within its diameter, so that a large probe inside of a shell of small balls takes long. Memory: 150 bytes more for each place where the probe touches
 /// three balls.
 ///
 /// ```

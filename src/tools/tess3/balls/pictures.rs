@@ -49,6 +49,9 @@ pub enum ColourBy {
     Pocket,
 }
 
+/// Most vertices of a surface, by their estimated number. Each takes 200 bytes.
+const VERTICES_MAX: f64 = 2e7;
+
 /// The picture of the atoms of a molecule.
 pub(super) struct Picture<'p> {
     pub(super) molecule: &'p Molecule<'p>,
@@ -63,12 +66,15 @@ impl Picture<'_> {
     /// # Errors
     /// Those of measuring and of writing; usage, if the format cannot hold the mesh.
     pub(super) fn write(&self, product: Product, output: &mut impl Write) -> Result<u64> {
-        self.check()?;
-        match (product, self.picture.form) {
-            (Product::ContactAreas, _) => self.contacts(output).map(|()| 0),
-            (Product::Pockets, PictureForm::Vtu) => self.bodies(output).map(|()| 0),
-            _ => self.surface(product == Product::Pockets, output),
+        if (product, self.picture.form) == (Product::Pockets, PictureForm::Vtu) {
+            return self.bodies(output).map(|()| 0);
         }
+        self.check()?;
+        if product == Product::ContactAreas {
+            return self.contacts(output).map(|()| 0);
+        }
+        self.check_size()?;
+        self.surface(product == Product::Pockets, output)
     }
 
     /// The surface; of pockets only the part around these.
@@ -215,6 +221,24 @@ impl Picture<'_> {
         }
         let least = (1e4 * least).ceil() / 1e4;
         Err(Error::usage(format!("--resolution {resolution} is too fine: here the least is {least:.4} Å")))
+    }
+
+    /// # Errors
+    /// Usage, if the surface has too many vertices at this resolution; those of measuring.
+    fn check_size(&self) -> Result<()> {
+        let cells = measure(self.balls, None, self.options.threads)?.cells;
+        let area: f64 = cells.iter().map(|cell| cell.area).sum();
+        // Of triangles with sides of the resolution, each vertex has two.
+        let vertices = area / (0.75f64.sqrt() * self.step() * self.step());
+        if vertices <= VERTICES_MAX {
+            return Ok(());
+        }
+        let (resolution, millions) = (self.picture.resolution, (vertices / 1e6).ceil());
+        let remedy = resolution * (vertices / VERTICES_MAX).sqrt();
+        Err(Error::usage(format!(
+            "at --resolution {resolution} the surface has some {millions} million vertices: give at least {:.4}",
+            (1e4 * remedy).ceil() / 1e4
+        )))
     }
 
     /// The resolution in stored units.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::Sweep;
-use super::done::DoneFile;
+use super::done::{self, DoneFile};
 use super::input::Input;
 use super::summary::{Line, Written};
 use crate::heap::peak_during;
@@ -77,8 +77,40 @@ fn check_free(output: &Path, taken: &Inputs) -> Result<()> {
     Err(Error::usage(message).of_input(output.display().to_string()))
 }
 
-/// Triangulates a file. A panic is an error of this file. Outputs of an earlier sweep are removed if they are
-/// not replaced.
+/// The name of the outputs that an earlier sweep made of a file, without the number of a model and the
+/// extension; `None` if it made none of this kind.
+pub(super) fn stem(known: &DoneFile, sweep: &Sweep) -> Option<PathBuf> {
+    let ending = ending(&sweep.options);
+    known.outputs().filter(|(output, _)| done::is_inside(output)).find_map(|(output, _)| {
+        let name = output.to_str()?.strip_suffix(&ending)?;
+        let plain = name.rsplit_once(".model").filter(|(_, number)| number.parse::<i64>().is_ok());
+        let is_numbered = sweep.options.selection.models == Models::All && sweep.options.is_per_model();
+        Some(PathBuf::from(plain.filter(|_| is_numbered).map_or(name, |(plain, _)| plain)))
+    })
+}
+
+/// Removes the outputs that an earlier sweep made of a file.
+pub(super) fn remove_earlier(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<()> {
+    let ending = ending(&sweep.options);
+    let of_kind = |output: &&PathBuf| output.to_string_lossy().ends_with(&ending);
+    job.outputs.iter().filter(of_kind).try_for_each(|output| remove(&sweep.folder.join(output), taken))
+}
+
+/// Removes a file, unless it is one of those that are `taken`, or does not exist.
+fn remove(path: &Path, taken: &Inputs) -> Result<()> {
+    if taken.at(path).is_some() {
+        return Ok(());
+    }
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+            Err(Error::io("removing the output of an earlier sweep", e).of_input(path.display().to_string()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Triangulates a file. A panic is an error of this file. If it fails, nothing is left under the usual name of its
+/// output.
 pub(super) fn run(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> End {
     let started = Instant::now();
     let input = Input::of(job.file).ok().flatten();
@@ -87,30 +119,10 @@ pub(super) fn run(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> End {
         let message = format!("internal error: {panic}; please report it with the file");
         Err(Error::new(ErrorKind::Io, message).of_input(job.file.display().to_string()))
     });
-    let result = remove_stale(job, sweep, taken, &result).and(result);
+    let usual = sweep.folder.join(output_name(&job.stem, &sweep.options, None));
+    let removed = if result.is_err() { remove(&usual, taken) } else { Ok(()) };
+    let result = removed.and(result);
     End { result, input, time: started.elapsed(), peak_memory }
-}
-
-/// Removes outputs of this kind that an earlier sweep made of a file and this one did not.
-fn remove_stale(job: &Job<'_>, sweep: &Sweep, taken: &Inputs, result: &Result<Vec<Model>>) -> Result<()> {
-    let made: Vec<&Path> = result.iter().flatten().map(|model| &*model.output).collect();
-    let usual = output_name(&job.stem, &sweep.options, None);
-    let ending = ending(&sweep.options);
-    let of_kind = |output: &&PathBuf| output.to_string_lossy().ends_with(&ending);
-    for output in job.outputs.iter().chain(result.is_err().then_some(&usual)).filter(of_kind) {
-        let path = sweep.folder.join(output);
-        if made.contains(&&**output) || taken.at(&path).is_some() {
-            continue;
-        }
-        match fs::remove_file(&path) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                let name = path.display().to_string();
-                return Err(Error::io("removing the output of an earlier sweep", e).of_input(name));
-            }
-            _ => {}
-        }
-    }
-    Ok(())
 }
 
 fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model>> {

@@ -9,7 +9,7 @@ mod names;
 mod row;
 mod summary;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -80,7 +80,8 @@ pub enum News<'n> {
 
 /// Triangulates all files, the largest first, and reports each to `listener`.
 ///
-/// A file that fails leaves no output of an earlier sweep behind, nor does one that now has fewer models.
+/// Outputs of this kind that an earlier sweep made of files that are done now are removed before the work. So
+/// none is stale, whenever the sweep ends.
 ///
 /// Memory: one file per thread, and the names of all.
 ///
@@ -108,12 +109,14 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
         if sweep.resume { (found?, Done::default()) } else { (Done::default(), found.unwrap_or_default()) };
     let mut outcome = Outcome::default();
     listener(News::Files(files.len() as u64));
+    let names = names::stems(&files, &HashSet::new());
+    let names: HashMap<&Path, PathBuf> = files.iter().copied().zip(names).collect();
     let files = left_to_do(files, &mut done, sweep, &mut || {
         outcome.skipped += 1;
         listener(News::Done);
     });
     let files = files.into_iter().map(|(file, known)| (file, known.or_else(|| earlier.take(file)))).collect();
-    let jobs = jobs(files, &done);
+    let jobs = jobs(files, &names, &done, sweep);
     // Not an input, but it must not be replaced either.
     let taken = Inputs::of(inputs.into_iter().chain(summary_file).chain(sweep.parquet.as_deref()));
     jobs.iter().try_for_each(|job| file::check(job, sweep, &taken))?;
@@ -122,6 +125,8 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
         summary_lock = summary_file.map_or(Ok(None), lock::lock_or_create)?;
     }
     let parquet = sweep.parquet.as_ref().map(|path| Output::create(path, true)).transpose()?;
+    // Before the summary forgets them.
+    jobs.iter().try_for_each(|job| file::remove_earlier(job, sweep, &taken))?;
     let mut summary = Summary::create(&sweep.summary, &done)?;
     // The new summary has a lock of its own.
     drop(summary_lock);
@@ -203,9 +208,13 @@ fn left_to_do<'f>(
 
 /// The jobs, the largest file first: otherwise threads could idle while one works on the largest file at the
 /// end.
-fn jobs<'f>(files: Vec<(&'f Path, Option<DoneFile>)>, done: &Done) -> Vec<Job<'f>> {
-    let paths: Vec<&Path> = files.iter().map(|(file, _)| *file).collect();
-    let stems = names::stems(&paths, &done.stems());
+fn jobs<'f>(
+    files: Vec<(&'f Path, Option<DoneFile>)>,
+    names: &HashMap<&Path, PathBuf>,
+    done: &Done,
+    sweep: &Sweep,
+) -> Vec<Job<'f>> {
+    let stems = stems(&files, names, done, sweep);
     let job = |((file, known), stem): ((&'f Path, Option<DoneFile>), PathBuf)| {
         let outputs = known.iter().flat_map(DoneFile::outputs).map(|(output, _)| output);
         (work(file), Job { file, stem, outputs: outputs.filter(|output| done::is_inside(output)).collect() })
@@ -213,6 +222,31 @@ fn jobs<'f>(files: Vec<(&'f Path, Option<DoneFile>)>, done: &Done) -> Vec<Job<'f
     let mut jobs: Vec<(u64, Job<'f>)> = files.into_iter().zip(stems).map(job).collect();
     jobs.sort_by_key(|(work, _)| std::cmp::Reverse(*work));
     jobs.into_iter().map(|(_, job)| job).collect()
+}
+
+/// The names of the outputs, without extensions. A sweep that goes on keeps those of before; else they are the
+/// `names` of a sweep over all files from the start, unless what is done has them already.
+fn stems(
+    files: &[(&Path, Option<DoneFile>)],
+    names: &HashMap<&Path, PathBuf>,
+    done: &Done,
+    sweep: &Sweep,
+) -> Vec<PathBuf> {
+    let of_earlier = |known: &Option<DoneFile>| file::stem(known.as_ref().filter(|_| sweep.resume)?, sweep);
+    let mut stems: Vec<Option<PathBuf>> = files.iter().map(|(_, known)| of_earlier(known)).collect();
+    let mut taken = done.stems();
+    taken.extend(stems.iter().flatten().cloned());
+    for (stem, (file, _)) in stems.iter_mut().zip(files) {
+        let name = &names[file];
+        if stem.is_none() && !taken.contains(name) {
+            *stem = Some(name.clone());
+        }
+    }
+    taken.extend(stems.iter().flatten().cloned());
+    let others: Vec<&Path> =
+        files.iter().zip(&stems).filter(|(_, stem)| stem.is_none()).map(|((file, _), _)| *file).collect();
+    let mut others = names::stems(&others, &taken).into_iter();
+    stems.into_iter().map(|stem| stem.or_else(|| others.next()).unwrap_or_default()).collect()
 }
 
 /// Estimated number of bytes to read.
