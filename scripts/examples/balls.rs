@@ -1,8 +1,8 @@
 //! Measures balls, for `scripts/check-balls`.
 //!
 //! `balls BALLS PROBE [--surface]`: BALLS has lines `x y z radius`; the probe is added to each radius.
-//! Prints a line `cell INDEX AREA VOLUME` for each ball and a line `contact INDEX INDEX AREA` for each face, with
-//! all digits. With `--surface` it prints only `surface INDEX AREA VOLUME`, of the molecular surface.
+//! Prints a line `cell INDEX AREA VOLUME` for each ball and a line `contact INDEX INDEX AREA` for each face,
+//! with all digits. With `--surface` it prints only `surface INDEX AREA VOLUME`, of the molecular surface.
 
 use std::error::Error;
 use std::io::Write;

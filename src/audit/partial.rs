@@ -2,7 +2,8 @@
 //!
 //! It proves what another program needs to complete the mesh: the final simplices are correct, exactly the
 //! walls and the residual are open, the residual fits the final simplices ([`super::residual_fit`]), and the
-//! region loses no point and has none outside it. The audit of the merged mesh proves that parts fit together.
+//! region loses no point and has none outside it. The audit of the merged mesh proves that parts fit
+//! together.
 
 use std::cmp::Ordering;
 use std::collections::HashSet;

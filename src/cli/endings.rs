@@ -1,7 +1,7 @@
 //! Refuses names of outputs whose ending stands for a format that a program does not write.
 //!
-//! An ending that stands for nothing here is as good as none: the output then has the format that flags choose, or
-//! the usual one.
+//! An ending that stands for nothing here is as good as none: the output then has the format that flags
+//! choose, or the usual one.
 
 use std::path::Path;
 

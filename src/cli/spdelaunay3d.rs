@@ -40,8 +40,8 @@ pub struct Flags {
     #[arg(long, value_enum, default_value_t = DuplicatesFlag::First, value_name = "POLICY")]
     duplicates: DuplicatesFlag,
 
-    /// Make the regular tetrahedralization, for points that have weights (spfinalize --radii or --weights). Of
-    /// coinciding points the heaviest is the vertex
+    /// Make the regular tetrahedralization, for points that have weights (spfinalize --radii or --weights).
+    /// Of coinciding points the heaviest is the vertex
     #[arg(long, conflicts_with_all = ["partial", "merge"])]
     weights: bool,
 }

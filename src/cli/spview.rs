@@ -127,8 +127,9 @@ pub struct Flags {
     #[command(flatten)]
     outline: OutlineFlags,
 
-    /// The percentiles of the visible elevations or values that the colours span, or none for all of them; values
-    /// beyond have the colours of the ends, and the legend shows it [default: 2,98; none with --at or --snapshot]
+    /// The percentiles of the visible elevations or values that the colours span, or none for all of them;
+    /// values beyond have the colours of the ends, and the legend shows it [default: 2,98; none with --at or
+    /// --snapshot]
     #[arg(long, value_name = "LOW,HIGH|none", value_parser = parse_stretch, conflicts_with = "range")]
     stretch: Option<Stretch>,
 
@@ -185,9 +186,10 @@ pub struct Flags {
     #[arg(long)]
     apart: bool,
 
-    /// For surfaces in PLY: where the eye is, in degrees counterclockwise from the x axis, and above the plane of
-    /// x and y [default: 30,20]
-    #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
+    /// For surfaces in PLY: where the eye is, in degrees counterclockwise from the x axis, and above the
+    /// plane of x and y [default: 30,20]
+    #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>)]
+    #[arg(allow_hyphen_values = true)]
     eye: Option<[f64; 2]>,
 
     #[command(flatten)]

@@ -46,7 +46,7 @@ Examples:
     tess3 1abc.cif --assembly 1 --classes polymer,ligand -o 1abc.spm
   Tetrahedra with circumradius and volume; only those of the alpha complex of radius 4 Å:
     tess3 1abc.pdb --hetatm off --alpha 4 --table | sort -gk10
-  Solvent-accessible area of each residue, molecular surface and volume, areas of contacts between chains, and pockets:
+  Accessible area of each residue, molecular surface, areas of contacts between chains, and pockets:
     tess3 1abc.cif.gz --classes polymer --sasa --per residue -o sasa.tsv
     tess3 1abc.cif.gz --classes polymer --ses --per molecule
     tess3 1abc.cif.gz --classes polymer --contact-areas --between chains -o interface.tsv
@@ -299,7 +299,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
         ));
     }
     let options = flags.options()?;
-    flags.picture.refuse("a sweep writes tables: leave out --out-dir, and give -o FILE.ply or FILE.vtu")?;
+    flags.picture.refuse("does not go with sweeps, which write tables: give -o FILE.ply or FILE.vtu")?;
     let wanted = Sweep {
         files: flags.files()?,
         list: flags.lof.clone(),

@@ -67,8 +67,8 @@ pub struct Header {
     /// How a triangle mesh is constrained; `None` if it is not. A program that makes a mesh from another
     /// either passes segments and sides on or states none.
     pub constrained: Option<Constrained>,
-    /// Whether points of space are weighted: a mesh is then the regular one. A program that makes a stream from
-    /// another either passes weights on or states none.
+    /// Whether points of space are weighted: a mesh is then the regular one. A program that makes a stream
+    /// from another either passes weights on or states none.
     pub weighted: Option<Weighted>,
     /// Program and version that wrote the stream.
     pub producer: String,

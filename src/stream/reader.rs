@@ -37,7 +37,8 @@ enum Wanted {
 ///
 /// Every error is [`ErrorKind::Malformed`], [`ErrorKind::Unsupported`] if the stream needs what this version
 /// does not know, or I/O. It names input, block and byte.
-/// Memory: one block, compressed and not, with its decoded event, and the incomplete words of a 4D cell that spans blocks.
+/// Memory: one block, compressed and not, with its decoded event, and the incomplete words of a 4D cell that
+/// spans blocks.
 pub struct StreamReader<R: Read> {
     input: R,
     name: String,

@@ -107,7 +107,8 @@ impl Style {
         }
     }
 
-    /// The colours of a range of elevations, or of times up to `count`; `percentiles` finds those of the values.
+    /// The colours of a range of elevations, or of times up to `count`; `percentiles` finds those of the
+    /// values.
     pub(super) fn colours(
         &self,
         fill: Fill,

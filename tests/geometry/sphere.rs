@@ -44,8 +44,8 @@ fn dot(p: &[BigInt; 3], q: &[BigInt; 3]) -> BigInt {
     &p[0] * &q[0] + &p[1] * &q[1] + &p[2] * &q[2]
 }
 
-/// A ball: its centre relative to the first corner is `m / 2v`, with v > 0, and its squared radius is that of m
-/// over 4 v² and an excess.
+/// A ball: its centre relative to the first corner is `m / 2v`, with v > 0, and its squared radius is that of
+/// m over 4 v² and an excess.
 struct Ball {
     m: [BigInt; 3],
     volume: BigInt,

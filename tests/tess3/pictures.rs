@@ -215,12 +215,12 @@ fn flags_of_tables_and_meshes_do_not_mix() {
         (&["--sasa", "--per", "residue", "-o", &ply][..], "--per is for tables"),
         (&["--sasa", "--volumes", "-o", &ply], "--volumes is a table"),
         (&["--pockets", "--mouths", "-o", &ply], "--mouths is a table"),
-        (&["--sasa", "--resolution", "0.4"], "--resolution is for meshes"),
+        (&["--sasa", "--resolution", "0.4"], "--resolution needs -o FILE.ply"),
         (&["--sasa", "--resolution", "0.001", "-o", &ply], "too fine"),
         (&["--sasa", "--resolution", "0", "-o", &ply], "too fine"),
         (&["--volumes", "--mouths"], "--mouths goes with --pockets"),
         (&["--contacts", "-o", &ply], "the name is that of a mesh"),
-        (&["--sasa", "--colour-by", "chain", "--out-dir", "x"], "a sweep writes tables"),
+        (&["--sasa", "--colour-by", "chain", "--out-dir", "x"], "does not go with sweeps"),
     ] {
         assert_outcome("tess3", &[&[&file[..]], arguments].concat(), b"", 2, part);
     }

@@ -14,9 +14,9 @@ use super::{Decided, ROUNDING, decide, decided};
 /// A position with its weight.
 pub(crate) type Weighted = (Xyz, f64);
 
-/// Whether the power distance of `e` from the orthocentre of the positive tetrahedron `a`, `b`, `c`, `d` is less
-/// (`Greater`: in conflict), greater (`Less`) or the same as that of its corners. With equal weights this is
-/// [`in_sphere`].
+/// Whether the power distance of `e` from the orthocentre of the positive tetrahedron `a`, `b`, `c`, `d` is
+/// less (`Greater`: in conflict), greater (`Less`) or the same as that of its corners. With equal weights
+/// this is [`in_sphere`].
 pub(crate) fn in_orthosphere([a, b, c, d]: [Weighted; 4], e: Weighted) -> Decided {
     if [a, b, c, d].iter().all(|(_, weight)| *weight == e.1) {
         return in_sphere(a.0, b.0, c.0, d.0, e.0);
@@ -30,8 +30,8 @@ pub(crate) fn in_raised_orthosphere([a, b, c, d]: [Weighted; 4], e: Weighted) ->
 }
 
 /// As the filter of spheres, with two roundings more in a lift, those of the difference of two weights and of
-/// its sum with the square: 18.1 `ROUNDING` in all, and 20 cover it and the sum of the magnitudes. Differences
-/// of weights are below 2^400, as their magnitudes count as lifts.
+/// its sum with the square: 18.1 `ROUNDING` in all, and 20 cover it and the sum of the magnitudes.
+/// Differences of weights are below 2^400, as their magnitudes count as lifts.
 fn filtered(abcd: [Weighted; 4], e: Weighted) -> Option<Ordering> {
     let heavier = abcd.map(|(_, weight)| weight - e.1);
     let (determinant, magnitude, lifts) = estimated_lifted(abcd.map(|(at, _)| at), e.0, heavier);
@@ -78,8 +78,8 @@ mod tests {
 
     const CORNER: [Xyz; 4] = [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
 
-    /// The orthocentre of four corners of weight w is (1, 1, 1), with the power 3 - w. A fifth point at distance
-    /// d is on it if its weight is d² - 3 + w.
+    /// The orthocentre of four corners of weight w is (1, 1, 1), with the power 3 - w. A fifth point at
+    /// distance d is on it if its weight is d² - 3 + w.
     #[test]
     fn orthogonal_points_are_found_at_every_size() {
         for scale in [1.0, 3.0, 1e7, 1e9 / 7.0, 2f64.powi(40), 2f64.powi(300), 2f64.powi(-400)] {

@@ -12,8 +12,9 @@ use crate::point_tree::PointTree;
 
 /// Hidden vertices that wait for the tetrahedron that holds them.
 ///
-/// The convex function of the whole mesh, whose graph has the lifted vertices, has one value at a hidden vertex,
-/// whichever of the tetrahedra that touch it says so. So the first one is enough: the vertex must not lie below.
+/// The convex function of the whole mesh, whose graph has the lifted vertices, has one value at a hidden
+/// vertex, whichever of the tetrahedra that touch it says so. So the first one is enough: the vertex must not
+/// lie below.
 ///
 /// Memory: the hidden vertices that wait.
 #[derive(Default)]

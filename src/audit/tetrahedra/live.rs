@@ -79,7 +79,8 @@ impl LiveTetrahedra {
         }
     }
 
-    /// Checks a patch, whose new vertices have `rows`, and gives the vertices that it finalizes to `finalize`.
+    /// Checks a patch, whose new vertices have `rows`, and gives the vertices that it finalizes to
+    /// `finalize`.
     pub(super) fn patch(
         &mut self,
         patch: &Patch,

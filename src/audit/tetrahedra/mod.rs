@@ -41,8 +41,8 @@
 //! test of the audit itself, and because a fault found at its vertex is easier to understand than one found
 //! in the hull at the end.
 //!
-//! *Weights.* With lifts that are less by the weights, all of this holds for the regular tetrahedralization. A
-//! vertex that no tetrahedron has must then lie in one that follows, and not below the graph ([`hidden`]).
+//! *Weights.* With lifts that are less by the weights, all of this holds for the regular tetrahedralization.
+//! A vertex that no tetrahedron has must then lie in one that follows, and not below the graph ([`hidden`]).
 //!
 //! *Facets and edges that are closed are forgotten.* If one comes again, its tetrahedra lie where others are,
 //! so that something is covered twice, as above. So the audit need not remember it.

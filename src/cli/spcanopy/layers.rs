@@ -1,7 +1,7 @@
 //! The surfaces through the points above each threshold, and the highest of them.
 //!
-//! Each layer goes through the same steps as a pipe of programs, with temporary files for pipes: finalization,
-//! triangulation, drawing.
+//! Each layer goes through the same steps as a pipe of programs, with temporary files for pipes:
+//! finalization, triangulation, drawing.
 
 use std::cell::Cell;
 use std::fs::File;

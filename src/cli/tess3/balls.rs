@@ -153,7 +153,8 @@ impl BallFlags {
                             "goes with --sasa, --volumes, --ses, --contact-areas or --pockets"
                         }
                         _ => {
-                            "goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or --filtration"
+                            "goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or \
+                             --filtration"
                         }
                     };
                     Err(Error::usage(format!("{flag} {remedy}")))

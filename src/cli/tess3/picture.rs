@@ -48,8 +48,7 @@ impl PictureFlags {
             Some("ply") => PictureForm::Ply,
             Some("vtu") => PictureForm::Vtu,
             _ => {
-                let reason = "a table is written: give -o FILE.ply or FILE.vtu, with --sasa, --contact-areas or \
-                              --pockets";
+                let reason = "needs -o FILE.ply or FILE.vtu, and --sasa, --contact-areas or --pockets";
                 return self.refuse(reason).map(|()| None);
             }
         };
@@ -72,6 +71,6 @@ impl PictureFlags {
             (_, Some(_)) => "--colour-by",
             _ => return Ok(()),
         };
-        Err(Error::usage(format!("{flag} is for meshes, and {reason}")))
+        Err(Error::usage(format!("{flag} {reason}")))
     }
 }

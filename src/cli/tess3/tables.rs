@@ -39,8 +39,8 @@ pub(super) fn format(
     product: Product,
 ) -> Result<TableFormat> {
     if !product.is_table() {
-        let message = "--format goes with tables: --table, --contacts, --sasa, --volumes, --ses, --contact-areas \
-                       or --pockets";
+        let message = "--format goes with tables: --table, --contacts, --sasa, --volumes, --ses, \
+                       --contact-areas or --pockets";
         return if flag.is_some() { Err(Error::usage(message)) } else { Ok(TableFormat::default()) };
     }
     let of_ending = output.and_then(TableFormat::of);

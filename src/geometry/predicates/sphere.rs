@@ -35,9 +35,9 @@
 //!   underflow of its squares is far below the rest, as the radius is half a side at least.
 //! * *Weights*: [`SphereBounds::power_ball_inside`] has the lifts `p = |b|^2 - (w_b - w_a)` and so on, with
 //!   `n_p = |b|^2 + |w_b - w_a|` in place of `p` in the sums of magnitudes. The difference of weights errs by
-//!   `u` of itself, and the sum of both is rounded: `6 u n_p`, for exact differences of coordinates `4 u n_p`.
-//!   So the constants of the numerators are greater by one. The radius is the root of `|o|^2 + W - w_a`, which
-//!   grows no faster than `|o|`; four more roundings below the root are less than `8 u` of it.
+//!   `u` of itself, and the sum of both is rounded: `6 u n_p`, for exact differences of coordinates `4 u
+//!   n_p`. So the constants of the numerators are greater by one. The radius is the root of `|o|^2 + W -
+//!   w_a`, which grows no faster than `|o|`; four more roundings below the root are less than `8 u` of it.
 //! * *Sides*: `a + o + r` is summed in floating point with three roundings, each below `u` times the sum of
 //!   the magnitudes; `4 u` times that sum covers them.
 
@@ -90,10 +90,10 @@ impl SphereBounds {
         self.is_inside(a, vectors, lifts, 0.0, region)
     }
 
-    /// The same for points with weights: whether the ball around the orthocentre, with a squared radius that is
-    /// that of the orthosphere and `greatest`, certainly lies in the open interior of `region`. No point outside
-    /// of the half-open region is in conflict with the tetrahedron then, or orthogonal to it, if no weight is
-    /// above `greatest`.
+    /// The same for points with weights: whether the ball around the orthocentre, with a squared radius that
+    /// is that of the orthosphere and `greatest`, certainly lies in the open interior of `region`. No point
+    /// outside of the half-open region is in conflict with the tetrahedron then, or orthogonal to it, if no
+    /// weight is above `greatest`.
     ///
     /// Never true if one of the four weights is above `greatest`.
     #[inline]
@@ -114,8 +114,8 @@ impl SphereBounds {
         bounds.is_inside(a, vectors, lifts, greatest - weights[0], region)
     }
 
-    /// The test for a tetrahedron of `a` and three vectors, with the lift of each and the sum of the magnitudes
-    /// that it is made of. `excess` is added to the squared radius.
+    /// The test for a tetrahedron of `a` and three vectors, with the lift of each and the sum of the
+    /// magnitudes that it is made of. `excess` is added to the squared radius.
     #[inline(always)]
     fn is_inside(
         self,

@@ -59,8 +59,8 @@ use spmesh_stream::{Coordinates, Crs, Event, Header, Kind};
 
 /// An output that takes the events of a stream, whatever its format.
 pub trait EventSink {
-    /// Writes an event. `rows` are the attributes of its points; empty if the header lists none. The last event
-    /// is [`Event::End`]; after it the output is complete and flushed.
+    /// Writes an event. `rows` are the attributes of its points; empty if the header lists none. The last
+    /// event is [`Event::End`]; after it the output is complete and flushed.
     ///
     /// # Errors
     /// If the format cannot express the event, or writing fails.

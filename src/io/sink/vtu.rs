@@ -27,7 +27,8 @@ pub(super) const POLYGON: u8 = 7;
 pub(super) const TETRAHEDRON: u8 = 10;
 
 /// Writes points or a mesh as VTU: the vertices with their labels as the point data `label` and their
-/// attributes under their names, the simplices as cells, points as cells of one vertex. World coordinates as doubles; finalization is not written.
+/// attributes under their names, the simplices as cells, points as cells of one vertex. World coordinates as
+/// doubles; finalization is not written.
 ///
 /// VTU states its counts first, so everything waits in unnamed temporary files until the end. Memory: buffers
 /// only.

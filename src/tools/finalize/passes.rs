@@ -44,8 +44,8 @@ impl Passes for Input {
     }
 }
 
-/// Reads the next batch of which `keeps` accepts points, and leaves out all others; empty at the end. Sets `rows` to
-/// the rows of these points, of `row_len` bytes.
+/// Reads the next batch of which `keeps` accepts points, and leaves out all others; empty at the end. Sets
+/// `rows` to the rows of these points, of `row_len` bytes.
 ///
 /// # Errors
 /// Those of the reader.

@@ -81,12 +81,12 @@ pub struct Weighed<'a, P: Passes + ?Sized> {
 }
 
 impl<'a, P: Passes + ?Sized> Weighed<'a, P> {
-    /// Gives the points of `input` weights, whose attribute comes last in their rows. It may take the place of the
-    /// one that it is made of.
+    /// Gives the points of `input` weights, whose attribute comes last in their rows. It may take the place
+    /// of the one that it is made of.
     ///
     /// # Errors
-    /// Usage, if the points lack the attribute of `source`, are points of the plane, or have another attribute
-    /// of the name of weights.
+    /// Usage, if the points lack the attribute of `source`, are points of the plane, or have another
+    /// attribute of the name of weights.
     pub fn new(input: &'a P, source: &'a WeightSource) -> Result<Self> {
         let description = input.description();
         if description.dims != 3 {

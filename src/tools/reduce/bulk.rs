@@ -40,8 +40,8 @@ pub(super) trait Bulk<const D: usize>: Default {
     const FACET: &'static str;
     const TRIANGULATION: &'static str;
 
-    /// Bytes of a point that waits in a residual, with its walls; and of one that is being triangulated, beyond
-    /// those.
+    /// Bytes of a point that waits in a residual, with its walls; and of one that is being triangulated,
+    /// beyond those.
     const WAITING_BYTES: usize;
     const KERNEL_BYTES: usize;
 

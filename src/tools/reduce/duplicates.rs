@@ -24,7 +24,8 @@ pub enum Duplicates {
 
 impl Duplicates {
     /// Sets the elevation of each vertex. `duplicates` are pairs of a point and the vertex that it coincides
-    /// with. The vertex is the first of the coinciding points. With `weights`, it gets the row of the heaviest.
+    /// with. The vertex is the first of the coinciding points. With `weights`, it gets the row of the
+    /// heaviest.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Malformed`] if points coincide and the policy is

@@ -309,8 +309,8 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     }
 
     /// Writes the final simplices, and the points that are finalized here without being in one: first hidden
-    /// points, at last vertices of the hull whose simplices were all written below, and at the root the points
-    /// of an input without simplices.
+    /// points, at last vertices of the hull whose simplices were all written below, and at the root the
+    /// points of an input without simplices.
     ///
     /// # Errors
     /// Those of `flush`; [`spmesh_core::error::ErrorKind::Malformed`] if a point has no simplex outside of

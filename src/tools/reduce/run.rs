@@ -43,7 +43,8 @@ pub struct Options<const D: usize = 2> {
     pub memory: Option<u64>,
     /// Whether the blocks of the mesh are compressed.
     pub compress: bool,
-    /// Whether points are weighted by their attribute `weight`: the mesh is then the regular tetrahedralization.
+    /// Whether points are weighted by their attribute `weight`: the mesh is then the regular
+    /// tetrahedralization.
     pub weighted: bool,
 }
 
@@ -62,8 +63,8 @@ pub struct Options<const D: usize = 2> {
 ///
 /// # Errors
 /// If the input is not a stream of two-dimensional points, is malformed or truncated, or writing fails;
-/// [`spmesh_core::error::ErrorKind::Memory`] if more memory is needed than `options.memory`. END is not written
-/// then.
+/// [`spmesh_core::error::ErrorKind::Memory`] if more memory is needed than `options.memory`. END is not
+/// written then.
 pub fn triangulate<R, W>(
     reader: StreamReader<R>,
     output: W,

@@ -4,8 +4,9 @@
 //! bounds (thesis 5.4), and in the plane, points on a curve have triangles whose circles are as large as the
 //! curve bends. If the cell is smaller, no simplex is final, and the time to triangulate it is lost.
 //!
-//! Random points show the shape of the whole node, neighbours the size of its simplices: those of two close rows
-//! are far smaller than simplices of random points of the rows. A node is passed up only if both samples say so.
+//! Random points show the shape of the whole node, neighbours the size of its simplices: those of two close
+//! rows are far smaller than simplices of random points of the rows. A node is passed up only if both samples
+//! say so.
 
 use super::bulk::Bulk;
 use super::node::Rules;

@@ -37,14 +37,15 @@ const BLOCK: usize = 1024;
 ///
 /// A ball has the part of the body in its cell, and the patches at this part. A concave patch counts for the
 /// three balls that its probe touches, also where it reaches into other cells: with a large probe, or in thin
-/// layers, the volume of a ball may be negative. Sums are exact. With a probe of radius 0 the result is that of [`super::measure`].
+/// layers, the volume of a ball may be negative. Sums are exact. With a probe of radius 0 the result is that
+/// of [`super::measure`].
 ///
 /// # Errors
 /// As [`super::measure`]; usage, if the radius of the probe is negative or greater than that of a ball.
 ///
-/// Cost: for molecules 1.5 to 2.5 times that of [`super::measure`]; k² for each probe that has k others at rest
-/// within its diameter, so that a large probe inside of a shell of small balls takes long. Memory: 150 bytes more for each place where the probe touches
-/// three balls.
+/// Cost: for molecules 1.5 to 2.5 times that of [`super::measure`]; k² for each probe that has k others at
+/// rest within its diameter, so that a large probe inside of a shell of small balls takes long. Memory: 150
+/// bytes more for each place where the probe touches three balls.
 ///
 /// ```
 /// use spmesh_geometry::balls::{Balls, molecular_surface};

@@ -18,7 +18,8 @@ const TILTED: Point3 = [0.48, 0.36, 0.8];
 const TILT: f64 = 0.25;
 
 /// The facets of the hull of `points` that are on the left of the chords, which go around the exposed part;
-/// all facets if there are no chords. Points are relative to the centre of the sphere. `None` if rounding has left a chord out of the hull.
+/// all facets if there are no chords. Points are relative to the centre of the sphere. `None` if rounding has
+/// left a chord out of the hull.
 pub(super) fn patch(
     points: &[Point3],
     chords: &[[u32; 2]],

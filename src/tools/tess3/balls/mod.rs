@@ -155,8 +155,8 @@ impl Molecule<'_> {
         Ok(())
     }
 
-    /// Measures the balls, and writes the rows of a table: of cells, of the molecular surface, of contacts, or
-    /// of pockets. The output is opened when they are measured.
+    /// Measures the balls, and writes the rows of a table: of cells, of the molecular surface, of contacts,
+    /// or of pockets. The output is opened when they are measured.
     ///
     /// # Errors
     /// If an atom has no radius; those of measuring and writing.

@@ -236,7 +236,8 @@ impl Picture<'_> {
         let (resolution, millions) = (self.picture.resolution, (vertices / 1e6).ceil());
         let remedy = resolution * (vertices / VERTICES_MAX).sqrt();
         Err(Error::usage(format!(
-            "at --resolution {resolution} the surface has some {millions} million vertices: give at least {:.4}",
+            "at --resolution {resolution} the surface has some {millions} million vertices: give at least \
+             {:.4}",
             (1e4 * remedy).ceil() / 1e4
         )))
     }

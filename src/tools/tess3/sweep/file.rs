@@ -109,8 +109,8 @@ fn remove(path: &Path, taken: &Inputs) -> Result<()> {
     }
 }
 
-/// Triangulates a file. A panic is an error of this file. If it fails, nothing is left under the usual name of its
-/// output.
+/// Triangulates a file. A panic is an error of this file. If it fails, nothing is left under the usual name
+/// of its output.
 pub(super) fn run(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> End {
     let started = Instant::now();
     let input = Input::of(job.file).ok().flatten();

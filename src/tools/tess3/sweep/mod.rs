@@ -224,8 +224,8 @@ fn jobs<'f>(
     jobs.into_iter().map(|(_, job)| job).collect()
 }
 
-/// The names of the outputs, without extensions. A sweep that goes on keeps those of before; else they are the
-/// `names` of a sweep over all files from the start, unless what is done has them already.
+/// The names of the outputs, without extensions. A sweep that goes on keeps those of before; else they are
+/// the `names` of a sweep over all files from the start, unless what is done has them already.
 fn stems(
     files: &[(&Path, Option<DoneFile>)],
     names: &HashMap<&Path, PathBuf>,
