@@ -50,8 +50,10 @@ pub(super) fn insert<W: Weights>(
     let sizes: Vec<usize> =
         (0..).zip(&numbers).map(|(part, numbers)| room(&cut, part, inserted, numbers.len())).collect();
     whole.tetrahedra.clear();
-    whole.tetrahedra.reserve_exact(cut.frozen + sizes.iter().sum::<usize>());
-    let mut rest = Slots::of(&mut whole.tetrahedra);
+    let room = cut.frozen + sizes.iter().sum::<usize>();
+    whole.tetrahedra.reserve_exact(room);
+    whole.room = whole.room.max(room);
+    let mut rest = Slots::of(&mut whole.tetrahedra, room);
     let mut frozen = rest.split_off_front(cut.frozen);
     let mut len = cut.frozen;
     let mut jobs = Vec::new();

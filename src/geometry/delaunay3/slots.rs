@@ -14,11 +14,16 @@ pub(super) struct Slots<'s> {
 }
 
 impl<'s> Slots<'s> {
-    /// All room of an array. Its tetrahedra stay where they are; [`Slots::give_back`] restores its length.
-    pub(super) fn of(array: &'s mut Vec<Tetrahedron>) -> Slots<'s> {
+    /// Room for `count` tetrahedra in an array, those in it included. They stay where they are;
+    /// [`Slots::give_back`] restores its length.
+    ///
+    /// # Panics
+    /// If the array has less room.
+    pub(super) fn of(array: &'s mut Vec<Tetrahedron>, count: usize) -> Slots<'s> {
         let len = array.len();
         array.clear();
-        Slots { room: array.spare_capacity_mut(), len }
+        let (room, _) = array.spare_capacity_mut().split_at_mut(count);
+        Slots { room, len }
     }
 
     /// Restores the length of the array that [`Slots::of`] took, of which `len` tetrahedra are in use.

@@ -52,14 +52,18 @@ pub(super) struct Whole {
     pub(super) vertices: Vec<Vertex>,
     pub(super) tetrahedra: Vec<Tetrahedron>,
     pub(super) free: Vec<u32>,
+    /// For how many tetrahedra there is room. The array may have more, of earlier uses, on which the order of
+    /// tetrahedra must not depend.
+    pub(super) room: usize,
 }
 
 impl Whole {
     /// The first tetrahedron and those around it, in the memory of an array.
     pub(super) fn new(vertices: Vec<Vertex>, mut tetrahedra: Vec<Tetrahedron>, first: [u32; 4]) -> Whole {
         tetrahedra.clear();
-        tetrahedra.reserve_exact(TETRAHEDRA_PER_VERTEX * vertices.len());
-        let mut whole = Whole { vertices: Vec::new(), tetrahedra, free: Vec::new() };
+        let room = TETRAHEDRA_PER_VERTEX * vertices.len();
+        tetrahedra.reserve_exact(room);
+        let mut whole = Whole { vertices: Vec::new(), tetrahedra, free: Vec::new(), room };
         whole.change(|empty| Complex::new(vertices, empty.tetrahedra, first));
         whole
     }
@@ -67,7 +71,7 @@ impl Whole {
     /// Changes the complex.
     pub(super) fn change(&mut self, change: impl for<'s> FnOnce(Complex<'s>) -> Complex<'s>) {
         let (vertices, free) = (std::mem::take(&mut self.vertices), std::mem::take(&mut self.free));
-        let tetrahedra = Slots::of(&mut self.tetrahedra);
+        let tetrahedra = Slots::of(&mut self.tetrahedra, self.room);
         let complex = change(Complex { vertices, tetrahedra, free, frozen: 0 });
         let len = complex.tetrahedra.len();
         (self.vertices, self.free) = (complex.vertices, complex.free);
@@ -140,7 +144,8 @@ impl Whole {
             let message = format!("more than {TETRAHEDRA_MAX} tetrahedra, the kernel's maximum");
             return Err(Error::new(ErrorKind::Io, message));
         }
-        self.tetrahedra.reserve_exact(len / 4 + 2 * self.vertices.len());
+        self.room = len + len / 4 + 2 * self.vertices.len();
+        self.tetrahedra.reserve_exact(self.room - len);
         Ok(())
     }
 }
