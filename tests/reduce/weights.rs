@@ -125,7 +125,12 @@ fn weigh(random: &mut Random, kind: usize, apart: f64) -> f64 {
         _ => 0.0,
     };
     let weight = weight * apart * apart;
-    if apart >= 1.0 { weight.round() } else { weight }
+    match weight.is_finite() {
+        true if apart >= 1.0 => weight.round(),
+        true => weight,
+        // Of points too far apart for squares.
+        false => 0.0,
+    }
 }
 
 /// The mean distance of points, roughly.
