@@ -26,7 +26,7 @@ pub struct Surface {
 /// Reads the vertices and faces of PLY with normals and colours. Polygons become fans.
 ///
 /// # Errors
-/// As [`open_ply`]; also if a face has a vertex that does not exist.
+/// As [`super::ply::open_ply`]; also if a face has a vertex that does not exist.
 ///
 /// Memory: 60 bytes per vertex and 20 per triangle, as they arrive.
 pub fn read_ply_surface<R: Read>(input: R, name: impl Into<String>) -> Result<Surface> {
