@@ -35,10 +35,14 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// One run with fresh buffers. The kernel takes ownership of the points, so that memory holds them once.
 fn compare(points: Vec<[f64; 3]>, is_timed: bool) -> Result<(), Box<dyn Error>> {
-    let count = points.len();
-    let mut mesh = Tetrahedralization::default();
     let mut kernel = Kernel::new();
     kernel.is_timed = is_timed;
+    run(kernel, points)
+}
+
+fn run(mut kernel: Kernel, points: Vec<[f64; 3]>) -> Result<(), Box<dyn Error>> {
+    let count = points.len();
+    let mut mesh = Tetrahedralization::default();
     let (result, seconds) = timed(|| kernel.triangulate(Cow::Owned(points), &mut mesh));
     result?;
     report(&mesh, count, seconds);
@@ -56,14 +60,9 @@ fn in_a_way(points: Vec<[f64; 3]>, way: &str) -> Result<(), Box<dyn Error>> {
     if way.starts_with("float") {
         return in_floating_point(&points, sequence);
     }
-    let count = points.len();
-    let mut mesh = Tetrahedralization::default();
     let mut kernel = Kernel::new();
     kernel.sequence = sequence;
-    let (result, seconds) = timed(|| kernel.triangulate(Cow::Owned(points), &mut mesh));
-    result?;
-    report(&mesh, count, seconds);
-    Ok(())
+    run(kernel, points)
 }
 
 #[cfg(feature = "experiments")]

@@ -27,6 +27,9 @@ use tee::Tee;
 
 const TOOL: &str = "spview";
 
+/// The direction of the light by default.
+const LIGHT: &str = "315,45";
+
 const EXAMPLES: &str = "\
 Examples:
   A terrain as a picture, coloured by elevation and lit from the north-west:
@@ -121,7 +124,7 @@ pub struct Flags {
     oblique: bool,
 
     /// Direction of the light, in degrees: clockwise from north, and above the horizon
-    #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, default_value = "315,45", allow_hyphen_values = true)]
+    #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, default_value = LIGHT, allow_hyphen_values = true)]
     light: [f64; 2],
 
     #[command(flatten)]

@@ -1,12 +1,11 @@
 //! Cells of unions of balls against closed forms and against sampling, which share nothing with the power
 //! diagram.
 
+use super::vectors::{Point, cross, dot, length, minus, square, unit_vector};
 use spmesh_geometry::balls::{Balls, Cells, measure};
 use spmesh_reference::sets::Random;
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
-
-type Point = [f64; 3];
 
 fn measured(centres: &[Point], radii: &[f64]) -> Cells {
     measure(Balls { centres, radii }, Some(0.0), NonZeroUsize::MIN).expect("finite balls")
@@ -256,15 +255,6 @@ fn disk<'r>(
     (rho, point)
 }
 
-fn unit_vector(random: &mut Random) -> Point {
-    loop {
-        let v = [(); 3].map(|()| 2.0 * random.unit() - 1.0);
-        if (0.01..1.0).contains(&square(v)) {
-            return v.map(|c| c / length(v));
-        }
-    }
-}
-
 /// A point of all three spheres, if there is one off the plane of their centres.
 fn meeting_point(centres: [Point; 3], radii: [f64; 3]) -> Option<Point> {
     let [b, c] = [1, 2].map(|i| minus(centres[i], centres[0]));
@@ -297,24 +287,4 @@ fn dihedral([p, q]: [Point; 2], a: Point, b: Point) -> f64 {
     let axis = minus(q, p);
     let (m, n) = (cross(axis, minus(a, p)), cross(axis, minus(b, p)));
     length(cross(m, n)).atan2(dot(m, n))
-}
-
-fn minus(p: Point, q: Point) -> Point {
-    [0, 1, 2].map(|i| p[i] - q[i])
-}
-
-fn dot(p: Point, q: Point) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
-
-fn cross(p: Point, q: Point) -> Point {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
-}
-
-fn square(p: Point) -> f64 {
-    dot(p, p)
-}
-
-fn length(p: Point) -> f64 {
-    square(p).sqrt()
 }

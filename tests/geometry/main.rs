@@ -18,3 +18,4 @@ mod queries;
 mod sphere;
 mod surface;
 mod surfaces;
+mod vectors;

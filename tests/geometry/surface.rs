@@ -1,12 +1,11 @@
 //! Molecular surfaces against closed forms, and against sampling by their definition: excluded is what is at
 //! least the radius of the probe away from every point that its centre can reach.
 
+use super::vectors::{Point, along, cross, dot, minus, square, unit_vector};
 use spmesh_geometry::balls::{Balls, Cell, measure, molecular_surface};
 use spmesh_reference::sets::Random;
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
-
-type Point = [f64; 3];
 
 /// `radii` are those without the probe.
 fn surface(centres: &[Point], radii: &[f64], probe: f64) -> Vec<Cell> {
@@ -412,33 +411,4 @@ fn is_in_cone(p: Point, apex: Point, points: [Point; 3]) -> bool {
 
 fn least(items: impl Iterator<Item = usize>, of: impl Fn(usize) -> f64) -> usize {
     items.min_by(|&i, &j| of(i).total_cmp(&of(j))).expect("not empty")
-}
-
-fn unit_vector(random: &mut Random) -> Point {
-    loop {
-        let v = [(); 3].map(|()| 2.0 * random.unit() - 1.0);
-        if (0.01..1.0).contains(&square(v)) {
-            return v.map(|c| c / square(v).sqrt());
-        }
-    }
-}
-
-fn along(p: Point, by: f64, direction: Point) -> Point {
-    [0, 1, 2].map(|i| p[i] + by * direction[i])
-}
-
-fn minus(p: Point, q: Point) -> Point {
-    [0, 1, 2].map(|i| p[i] - q[i])
-}
-
-fn dot(p: Point, q: Point) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
-
-fn cross(p: Point, q: Point) -> Point {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
-}
-
-fn square(p: Point) -> f64 {
-    dot(p, p)
 }

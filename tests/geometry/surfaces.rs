@@ -5,10 +5,9 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 
+use super::vectors::{Point, cross, dot, minus};
 use spmesh_geometry::balls::{Balls, Faces, Surface, faces, measure, pockets, surface};
 use spmesh_reference::sets::Random;
-
-type Point = [f64; 3];
 
 fn meshed(centres: &[Point], radii: &[f64], step: f64) -> Surface {
     let surface = surface(Balls { centres, radii }, step, NonZeroUsize::MIN).expect("finite balls");
@@ -16,18 +15,6 @@ fn meshed(centres: &[Point], radii: &[f64], step: f64) -> Surface {
     check_on_spheres(&surface, centres, radii);
     assert_eq!(surface.left_out, 0);
     surface
-}
-
-fn minus(p: Point, q: Point) -> Point {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-}
-
-fn dot(p: Point, q: Point) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
-
-fn cross(p: Point, q: Point) -> Point {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
 }
 
 /// Each edge belongs to two triangles, which run along it in opposite directions.

@@ -142,6 +142,18 @@ fn distance(points: &[Point]) -> f64 {
     side(0).max(side(1)).max(side(2)) / (points.len() as f64).cbrt()
 }
 
+/// Points in a stream with weights of a kind, and the distance that they are about apart.
+fn balls_of(
+    random: &mut Random,
+    points: &[Point],
+    (coordinates, tagging): (Coordinates, Tagging),
+    kind: usize,
+) -> (Balls, f64) {
+    let stream = stream_of(3, points, coordinates, tagging, random);
+    let apart = distance(points);
+    (weighted(&stream, |_| weigh(random, kind, apart)), apart)
+}
+
 #[test]
 fn no_family_depends_on_cells() {
     let mut hidden = [0; 5];
@@ -152,9 +164,7 @@ fn no_family_depends_on_cells() {
             let tagging = TAGGINGS[(number + kind) % TAGGINGS.len()];
             let coordinates =
                 if fits_a_grid(&points) && tagging != Tagging::Ragged { GRID } else { Coordinates::F64 };
-            let stream = stream_of(3, &points, coordinates, tagging, &mut random);
-            let apart = distance(&points);
-            let balls = weighted(&stream, |_| weigh(&mut random, kind, apart));
+            let (balls, _) = balls_of(&mut random, &points, (coordinates, tagging), kind);
             *hidden += assert_regular(&balls, &format!("{family:?}, {tagging:?}, weights {kind}"));
         }
     }
@@ -202,9 +212,7 @@ fn larger_sets_do_not_depend_on_cells() {
     {
         let mut random = Random::new(family as u64);
         let points = of(&mut random, family, 2500);
-        let stream = stream_of(3, &points, Coordinates::F64, Tagging::Chunked(2), &mut random);
-        let apart = distance(&points);
-        let balls = weighted(&stream, |_| weigh(&mut random, kind, apart));
+        let (balls, _) = balls_of(&mut random, &points, (Coordinates::F64, Tagging::Chunked(2)), kind);
         assert_regular(&balls, &format!("{family:?}"));
     }
 }
@@ -213,9 +221,7 @@ fn larger_sets_do_not_depend_on_cells() {
 fn memory_follows_the_faces_of_cells() {
     let mut random = Random::new(3);
     let points = of(&mut random, Family::Uniform, 40_000);
-    let stream = stream_of(3, &points, Coordinates::F64, Tagging::Chunked(2), &mut random);
-    let apart = distance(&points);
-    let balls = weighted(&stream, |_| weigh(&mut random, 0, apart));
+    let (balls, _) = balls_of(&mut random, &points, (Coordinates::F64, Tagging::Chunked(2)), 0);
     let (mesh, stats) = tetrahedralize(&balls.stream, &options(1)).unwrap();
     assert!(stats.residual_max < 32_000, "{} residual points waited", stats.residual_max);
     audit(&mesh).unwrap();
@@ -266,9 +272,7 @@ fn crowds_at_few_places_keep_the_heaviest() {
 fn planted_faults_are_found() {
     let mut random = Random::new(8);
     let points = of(&mut random, Family::Uniform, 500);
-    let stream = stream_of(3, &points, Coordinates::F64, Tagging::Chunked(1), &mut random);
-    let apart = distance(&points);
-    let balls = weighted(&stream, |_| weigh(&mut random, 1, apart));
+    let (balls, apart) = balls_of(&mut random, &points, (Coordinates::F64, Tagging::Chunked(1)), 1);
     let (mesh, _) = tetrahedralize(&balls.stream, &options(1)).unwrap();
     // Another weight in any one row.
     let with_weight = |which: usize, change: f64| {

@@ -44,6 +44,17 @@ fn decide(determinant: f64, error: f64) -> Option<Ordering> {
     }
 }
 
+/// Numbers around zero from an interval of a length, the same on every machine (xorshift64).
+#[cfg(test)]
+fn random(mut state: u64) -> impl FnMut(f64) -> f64 {
+    move |length| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * length
+    }
+}
+
 /// 2 to the power of `exponent`, of a normal number.
 const fn power_of_two(exponent: i64) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)

@@ -163,6 +163,7 @@ where
 
 #[cfg(test)]
 mod tests {
+    use super::super::random;
     use super::*;
 
     const SQUARE: [Xy; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
@@ -208,13 +209,7 @@ mod tests {
     /// A filter with a wrong bound would disagree with the integers near zero.
     #[test]
     fn filter_and_integers_agree() {
-        let mut state = 88_172_645_463_325_252_u64;
-        let mut random = |range: f64| {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * range
-        };
+        let mut random = random(88_172_645_463_325_252);
         let mut decided = 0;
         for round in 0..20_000 {
             let angle = [random(6.2), random(6.2), random(6.2), random(6.2)];

@@ -74,6 +74,7 @@ fn whole(value: f64, unit: i32) -> BigInt {
 
 #[cfg(test)]
 mod tests {
+    use super::super::random;
     use super::*;
 
     const CORNER: [Xyz; 4] = [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
@@ -114,13 +115,7 @@ mod tests {
     /// A filter with a wrong bound would disagree with the integers near zero.
     #[test]
     fn filter_and_integers_agree() {
-        let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-        let mut random = |range: f64| {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * range
-        };
+        let mut random = random(0x9e37_79b9_7f4a_7c15);
         let mut decided = 0;
         for round in 0..20_000 {
             let centre = [random(1e3), random(1e3), random(1e3)];

@@ -277,6 +277,7 @@ where
 
 #[cfg(test)]
 mod tests {
+    use super::super::random;
     use super::*;
 
     /// A positive tetrahedron of corners of the unit cube, and another corner.
@@ -336,13 +337,7 @@ mod tests {
     /// A filter with a wrong bound would disagree with the integers near zero.
     #[test]
     fn filter_and_integers_agree() {
-        let mut state = 88_172_645_463_325_252_u64;
-        let mut random = |range: f64| {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * range
-        };
+        let mut random = random(88_172_645_463_325_252);
         let mut decided = [0, 0];
         for round in 0..20_000 {
             let shift = [random(1e3), random(1e3), random(1e3)];

@@ -3,7 +3,8 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::{Flags, WhenFlag};
+use super::{Flags, LIGHT, WhenFlag};
+use crate::parse_numbers;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::read_ply_surface;
 use spmesh_view::{Picture, SolidOptions, draw_solid};
@@ -39,9 +40,6 @@ pub(super) fn draw(flags: &Flags, input: impl Read, name: &str) -> Result<Pictur
     draw_solid(&surface, &options).map_err(|e| e.of_input(name))
 }
 
-/// The light by default; surfaces have theirs at the eye.
-const LIGHT: [f64; 2] = [315.0, 45.0];
-
 fn check(flags: &Flags) -> Result<()> {
     let of_streams = [
         ("--fill", flags.fill.is_some()),
@@ -64,7 +62,8 @@ fn check(flags: &Flags) -> Result<()> {
         ("--concave", flags.outline.concave()?.is_some()),
         ("--mask", flags.outline.mask_path().is_some()),
         ("--crs", flags.crs.system()?.is_some()),
-        ("--light", flags.light != LIGHT),
+        // Surfaces have their light at the eye.
+        ("--light", parse_numbers(LIGHT) != Ok(flags.light)),
     ];
     match of_streams.into_iter().find(|(_, is_given)| *is_given) {
         Some((flag, _)) => Err(Error::usage(format!(

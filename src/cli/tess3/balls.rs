@@ -126,41 +126,18 @@ impl BallFlags {
     /// # Errors
     /// Those of reading radii; usage, if there is nothing to measure.
     pub(super) fn options(&self, product: Product, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
-        let is_filtration = product == Product::Filtration;
-        let has_weights = (is_filtration || product == Product::Mesh) && self.radii.is_some();
+        let takes_weights = matches!(product, Product::Filtration | Product::Mesh);
+        let has_weights = takes_weights && self.radii.is_some();
         self.check_contacts_only()?;
         if self.mouths && !self.pockets {
             return Err(Error::usage("--mouths goes with --pockets"));
         }
-        if self.per.is_some() && (is_filtration || (product == Product::Mesh && self.radii.is_some())) {
-            let what = if is_filtration { "--filtration" } else { "a mesh" };
+        if self.per.is_some() && (product == Product::Filtration || has_weights) {
+            let what = if product == Product::Filtration { "--filtration" } else { "a mesh" };
             return Err(Error::usage(format!("--per does not go with {what}")));
         }
         if self.product().is_none() && !has_weights {
-            let idle = [
-                ("--radii", self.radii.is_some()),
-                ("--probe", self.probe.is_some()),
-                ("--per", self.per.is_some()),
-            ];
-            return match idle.into_iter().find(|(_, is_given)| *is_given) {
-                Some((flag, _)) => {
-                    let remedy = match (is_filtration, flag) {
-                        (true, "--probe") => "needs --radii",
-                        (false, "--probe") if product == Product::Mesh => {
-                            "needs --radii, or one of --sasa, --volumes, --ses, --contact-areas and --pockets"
-                        }
-                        _ if flag == "--per" => {
-                            "goes with --sasa, --volumes, --ses, --contact-areas or --pockets"
-                        }
-                        _ => {
-                            "goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or \
-                             --filtration"
-                        }
-                    };
-                    Err(Error::usage(format!("{flag} {remedy}")))
-                }
-                None => Ok(None),
-            };
+            return self.check_idle(product).map(|()| None);
         }
         let level = self.level();
         if self.contact_areas && level == Level::Molecule {
@@ -209,6 +186,29 @@ impl BallFlags {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Refuses flags of balls where there are none.
+    fn check_idle(&self, product: Product) -> Result<()> {
+        let message = if self.radii.is_some() {
+            "--radii goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or --filtration"
+        } else if self.probe.is_some() {
+            match product {
+                Product::Filtration => "--probe needs --radii",
+                Product::Mesh => {
+                    "--probe needs --radii, or one of --sasa, --volumes, --ses, --contact-areas and --pockets"
+                }
+                _ => {
+                    "--probe goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or \
+                     --filtration"
+                }
+            }
+        } else if self.per.is_some() {
+            "--per goes with --sasa, --volumes, --ses, --contact-areas or --pockets"
+        } else {
+            return Ok(());
+        };
+        Err(Error::usage(message))
     }
 
     /// Refuses flags that choose contacts where there are none. (To the parser, a flag that conflicts with

@@ -18,12 +18,7 @@ pub(super) struct Dual<'t> {
 
 impl<'t> Dual<'t> {
     pub(super) fn new(tile: &'t Tile<'t>) -> Self {
-        let power = |t: usize| {
-            let apex = tile.tetrahedra()[t].vertices[0];
-            let to_centre = difference(tile.centre(t), tile.point(apex));
-            dot(to_centre, to_centre) - tile.radius(apex).powi(2)
-        };
-        Dual { tile, powers: (0..tile.tetrahedra().len()).map(power).collect() }
+        Dual { tile, powers: (0..tile.tetrahedra().len()).map(|t| tile.power(t)).collect() }
     }
 
     /// Whether no ball covers the orthocentre of a tetrahedron.

@@ -20,8 +20,7 @@ use super::nearest::Nearest;
 use super::shares::{
     Measure, angle, ball, dihedral, length, lens, lens_of_disks, solid_angle, triple, volume,
 };
-use super::tile::Tile;
-use super::tiles::Members;
+use super::tile::{Tile, with_all};
 use crate::delaunay3::{EDGES, Tetrahedron};
 use crate::vector::{cross, difference};
 use spmesh_core::error::Result;
@@ -73,12 +72,7 @@ impl Pocket {
 /// Cost: that of the triangulation of all balls, on one thread. Memory: about 500 bytes per ball.
 pub fn pockets(balls: Balls<'_>) -> Result<Vec<Pocket>> {
     super::check(balls)?;
-    if balls.centres.is_empty() {
-        return Ok(Vec::new());
-    }
-    let all = Members::all(balls);
-    let tile = Tile::new(balls, &all)?;
-    Ok(with_members(&tile).into_iter().map(|(pocket, _)| pocket).collect())
+    with_all(balls, |tile| Ok(with_members(tile).into_iter().map(|(pocket, _)| pocket).collect()))
 }
 
 /// The pockets, the largest volume first, each with the numbers of its tetrahedra.
@@ -128,8 +122,7 @@ impl<'t> Search<'t> {
         let mut open: Vec<usize> = (0..self.states.len()).filter(is_outside).collect();
         while let Some(t) = open.pop() {
             for side in 0..4 {
-                let Some(other) = self.tile.tetrahedra()[t].neighbour(side) else { continue };
-                let (other, across) = (other.tetrahedron as usize, other.corner as usize);
+                let Some((other, across)) = self.dual.across(t, side) else { continue };
                 if self.states[other] == State::Empty && self.dual.flows(other, across) {
                     self.states[other] = State::Outside;
                     open.push(other);
@@ -160,8 +153,7 @@ impl<'t> Search<'t> {
             let t = members[next];
             next += 1;
             for corner in 0..4 {
-                let Some(other) = self.tile.tetrahedra()[t].neighbour(corner) else { continue };
-                let other = other.tetrahedron as usize;
+                let Some((other, _)) = self.dual.across(t, corner) else { continue };
                 if self.states[other] == State::Empty && !is_seen[other] && !self.dual.is_closed(t, corner) {
                     is_seen[other] = true;
                     members.push(other);
@@ -198,9 +190,8 @@ impl<'t> Search<'t> {
             balls.extend(vertices.iter().filter_map(|&v| self.tile.ball(v)));
             free.add(1.0, self.free_part(t, edges));
             for (corner, facet) in TETRAHEDRON_FACETS.into_iter().enumerate() {
-                let other =
-                    self.tile.tetrahedra()[t].neighbour(corner).map(|other| other.tetrahedron as usize);
-                let is_outside = other.is_none_or(|other| self.states[other] == State::Outside);
+                let other = self.dual.across(t, corner);
+                let is_outside = other.is_none_or(|(other, _)| self.states[other] == State::Outside);
                 if is_outside && !self.dual.is_closed(t, corner) {
                     facets.push(facet.map(|i| vertices[i]));
                 }

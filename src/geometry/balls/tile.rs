@@ -49,6 +49,14 @@ pub(super) struct Tile<'t> {
     may_be_exposed: Vec<bool>,
 }
 
+/// What `make` makes of all balls as one tile; the default if there are none.
+pub(super) fn with_all<T: Default>(balls: Balls<'_>, make: impl FnOnce(&Tile<'_>) -> Result<T>) -> Result<T> {
+    if balls.centres.is_empty() {
+        return Ok(T::default());
+    }
+    make(&Tile::new(balls, &Members::all(balls))?)
+}
+
 impl<'t> Tile<'t> {
     /// Number of vertices, of which outposts are no balls.
     pub(super) fn vertices(&self) -> u32 {

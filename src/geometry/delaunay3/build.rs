@@ -7,27 +7,23 @@ use super::lanes::Lanes;
 use super::stats::{PhaseTimer, Stats};
 use super::tetrahedralization::Vertex;
 use super::weights::Weights;
+use super::whole::Setting;
 use crate::order::Insertions;
 use crate::predicates::{Point3, Predicates3, Sign, WithPredicates3};
 
 /// Inserts vertices into a complex, all in one arithmetic.
 pub(super) struct Build<'a, 's, W> {
     pub(super) complex: Complex<'s>,
-    pub(super) weights: &'a W,
+    pub(super) setting: &'a Setting<W>,
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
-    pub(super) is_timed: bool,
-    /// Whether portable instructions are used only.
-    pub(super) is_portable: bool,
-    /// The numbers of the vertices in the order of insertion. Those of the complex are skipped.
+    /// The numbers of the vertices in the order of insertion; those of `first` are skipped.
     pub(super) insertions: &'a mut Insertions,
     pub(super) first: [u32; 4],
     /// Tetrahedra of the complex that are not frozen, along the curve. The first walk starts at the first.
     pub(super) starts: &'a [u32],
     /// Takes the vertices that frozen tetrahedra, or lack of room, kept from being inserted.
     pub(super) refused: &'a mut Vec<u32>,
-    /// See [`Insertion`].
-    pub(super) infinite_lift: f64,
 }
 
 impl<'s, W: Weights> Build<'_, 's, W> {
@@ -37,18 +33,18 @@ impl<'s, W: Weights> Build<'_, 's, W> {
     /// Inlined, like everything that it calls with lanes, into one function per kind of processor.
     #[inline(always)]
     pub(super) fn run<L: Lanes>(self, predicates: &mut dyn Exact, token: L::Token) -> Complex<'s> {
-        let Build { insertions, first, starts, refused, .. } = self;
+        let Build { setting, insertions, first, starts, refused, .. } = self;
         let finite = self.complex.infinite() as usize;
         let mut start = starts.first().copied().unwrap_or(0);
         self.cavity.clear();
         let mut insertion = Insertion::<L, W> {
             complex: self.complex,
-            weights: self.weights,
+            weights: &setting.weights,
             predicates,
             cavity: self.cavity,
             stats: self.stats,
-            timer: PhaseTimer::new(self.is_timed),
-            infinite_lift: self.infinite_lift,
+            timer: PhaseTimer::new(setting.is_timed),
+            infinite_lift: setting.infinite_lift,
             tests: 0,
             unfiltered: 0,
             token,

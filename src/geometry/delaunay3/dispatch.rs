@@ -12,7 +12,7 @@ use {super::avx2::Avx2, crate::processor::Avx2Fma};
 pub(super) fn run<'s, W: Weights>(build: Build<'_, 's, W>, predicates: &mut dyn Exact) -> Complex<'s> {
     #[cfg(target_arch = "x86_64")]
     if let Some(token) = Avx2Fma::detect()
-        && !build.is_portable
+        && !build.setting.is_portable
     {
         // SAFETY: the token proves that the processor has AVX2 and FMA.
         return unsafe { run_avx2(build, predicates, token) };

@@ -180,13 +180,14 @@ impl Kernel {
                 infinite_lift: infinite_lift(extent, mesh.vertices.len()),
                 weights,
                 arithmetic,
+                first,
                 is_timed: self.is_timed,
                 is_portable: self.is_portable,
             };
             let (vertices, tetrahedra) = (&mut mesh.vertices, &mut mesh.tetrahedra);
             let mut whole = Whole::new(std::mem::take(vertices), std::mem::take(tetrahedra), first);
             let mut tally = Tally::default();
-            let inserted = self.insert_all(&mut whole, &setting, insertions, first, &mut tally);
+            let inserted = self.insert_all(&mut whole, &setting, insertions, &mut tally);
             self.counts.merge(&tally.counts);
             if let Err(error) = inserted {
                 mesh.clear();

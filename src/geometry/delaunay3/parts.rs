@@ -39,14 +39,15 @@ pub(super) fn insert<W: Weights>(
     whole: &mut Whole,
     setting: &Setting<W>,
     inserted: usize,
-    insertions: impl Iterator<Item = u32>,
+    insertions: Insertions,
     threads: NonZeroUsize,
     tally: &mut Tally,
 ) -> Result<Vec<u32>> {
     let coarse = whole.tetrahedra.clone();
     let cut = Cut::new(&coarse, &whole.vertices, threads.get().min(PARTS_MAX));
     let mut numbers = vec![Vec::new(); cut.parts()];
-    insertions.for_each(|v| numbers[usize::from(cut.part_of(v))].push(v));
+    let new = insertions.filter(|v| !setting.first.contains(v));
+    new.for_each(|v| numbers[usize::from(cut.part_of(v))].push(v));
     let sizes: Vec<usize> =
         (0..).zip(&numbers).map(|(part, numbers)| room(&cut, part, inserted, numbers.len())).collect();
     whole.tetrahedra.clear();
@@ -71,16 +72,20 @@ pub(super) fn insert<W: Weights>(
     // Memory that the parts need.
     drop(cut);
     drop(coarse);
-    let vertices = std::mem::take(&mut whole.vertices);
-    let count = vertices.len();
-    drop(vertices);
+    let count = std::mem::take(&mut whole.vertices).len();
     let done = parallel::map(threads, parts, |part| Ok(part.run(setting)))?;
     between.write(&mut frozen, done.iter().map(|done| (done.part, &done.rim[..])));
     // SAFETY: each part has filled its room, and the room of frozen tetrahedra is full.
     unsafe { Slots::give_back(&mut whole.tetrahedra, len) };
+    Ok(join(whole, done, count, tally))
+}
+
+/// Makes the `count` vertices and the free places of parts those of the whole. Returns the vertices that the
+/// parts refused.
+fn join(whole: &mut Whole, parts: Vec<Done>, count: usize, tally: &mut Tally) -> Vec<u32> {
     let mut refused = Vec::new();
     whole.free.clear();
-    for part in done {
+    for part in parts {
         if whole.vertices.is_empty() {
             whole.vertices = part.vertices;
             whole.vertices.reserve_exact(count - whole.vertices.len());
@@ -93,7 +98,7 @@ pub(super) fn insert<W: Weights>(
     }
     whole.vertices.push(Vertex::default());
     tally.stats.refused += refused.len() as u64;
-    Ok(refused)
+    refused
 }
 
 /// The first word of the tetrahedron of this number.
@@ -174,17 +179,14 @@ impl Part<'_> {
         if !starts.is_empty() {
             let build = Build {
                 complex,
-                weights: &setting.weights,
+                setting,
                 cavity: &mut Cavity::default(),
                 stats: &mut tally.stats,
-                is_timed: setting.is_timed,
-                is_portable: setting.is_portable,
                 insertions: &mut insertions,
                 // They are not among the insertions.
                 first: [u32::MAX; 4],
                 starts: &starts,
                 refused: &mut refused,
-                infinite_lift: setting.infinite_lift,
             };
             complex = setting.arithmetic.run(build, &mut tally.counts);
         }

@@ -27,7 +27,10 @@ pub(super) struct Setting<W> {
     pub(super) arithmetic: Arithmetic3,
     /// See [`super::insertion::Insertion`].
     pub(super) infinite_lift: f64,
+    /// The vertices of the first tetrahedron.
+    pub(super) first: [u32; 4],
     pub(super) is_timed: bool,
+    /// Whether portable instructions are used only.
     pub(super) is_portable: bool,
 }
 
@@ -87,17 +90,16 @@ impl Whole {
         &mut self,
         setting: &Setting<W>,
         insertions: &mut Insertions,
-        first: [u32; 4],
         cavity: &mut Cavity,
         tally: &mut Tally,
     ) -> Result<()> {
         let mut refused = Vec::new();
         loop {
-            self.run(setting, insertions, first, cavity, tally, &mut refused);
+            self.run(setting, insertions, cavity, tally, &mut refused);
             // Only lack of room refuses vertices here.
             while let Some(vertex) = refused.pop() {
                 self.grow()?;
-                self.run(setting, &mut Insertions::listed(vec![vertex]), first, cavity, tally, &mut refused);
+                self.run(setting, &mut Insertions::listed(vec![vertex]), cavity, tally, &mut refused);
             }
             if insertions.len() == 0 {
                 return Ok(());
@@ -109,7 +111,6 @@ impl Whole {
         &mut self,
         setting: &Setting<W>,
         insertions: &mut Insertions,
-        first: [u32; 4],
         cavity: &mut Cavity,
         tally: &mut Tally,
         refused: &mut Vec<u32>,
@@ -117,20 +118,8 @@ impl Whole {
         let Tally { stats, counts } = tally;
         self.change(|complex| {
             let start = complex.words_of_tetrahedra().find(|&t| !complex.is_deleted(t)).unwrap_or(0);
-            let Setting { weights, infinite_lift, is_timed, is_portable, .. } = setting;
-            let build = Build {
-                complex,
-                weights,
-                cavity,
-                stats,
-                is_timed: *is_timed,
-                is_portable: *is_portable,
-                insertions,
-                first,
-                starts: &[start],
-                refused,
-                infinite_lift: *infinite_lift,
-            };
+            let (first, starts) = (setting.first, &[start]);
+            let build = Build { complex, setting, cavity, stats, insertions, first, starts, refused };
             setting.arithmetic.run(build, counts)
         });
     }
@@ -176,13 +165,12 @@ impl Kernel {
         whole: &mut Whole,
         setting: &Setting<W>,
         mut insertions: Insertions,
-        first: [u32; 4],
         tally: &mut Tally,
     ) -> Result<()> {
         let has_threads =
             self.threads.get() > 1 && W::ARE_EQUAL && self.sequence != Sequence::Pass && !self.by_bit_levels;
         if !has_threads {
-            return whole.insert(setting, &mut insertions, first, &mut self.cavity, tally);
+            return whole.insert(setting, &mut insertions, &mut self.cavity, tally);
         }
         let mut done = 0;
         for end in phases(insertions.len(), self.points_per_thread) {
@@ -193,17 +181,10 @@ impl Kernel {
                 && threads.get() > 1
                 && done > 0
             {
-                let refused = parts::insert(
-                    whole,
-                    setting,
-                    done,
-                    numbers.filter(|v| !first.contains(v)),
-                    threads,
-                    tally,
-                )?;
+                let refused = parts::insert(whole, setting, done, numbers, threads, tally)?;
                 numbers = Insertions::listed(refused);
             }
-            whole.insert(setting, &mut numbers, first, &mut self.cavity, tally)?;
+            whole.insert(setting, &mut numbers, &mut self.cavity, tally)?;
             done = end;
         }
         Ok(())

@@ -75,14 +75,15 @@ fn radius() -> Attribute {
 /// # Errors
 /// If an atom has none, or points have no names.
 fn radii_of(selected: &Selected<'_>, radii: &Radii) -> Result<Vec<u8>> {
-    let Some(first) = selected.atom(0) else {
+    let Some(mut atoms) = radii.of_atoms(selected) else {
         return Err(Error::usage("points have no elements, and so no radii"));
     };
-    let mut finder = radii.finder(first.structure);
-    let atoms = (0..selected.points().len()).filter_map(|index| selected.atom(index));
-    let found: Result<Vec<[u8; RADIUS_LEN]>> =
-        atoms.map(|atom| Ok(finder.steps_of(&atom)?.to_le_bytes())).collect();
-    Ok(found?.concat())
+    let mut bytes = Vec::with_capacity(RADIUS_LEN * selected.points().len());
+    atoms.try_for_each(|found| {
+        bytes.extend(found?.1.to_le_bytes());
+        Ok(())
+    })?;
+    Ok(bytes)
 }
 
 /// One pass over atoms.

@@ -85,8 +85,7 @@ pub struct Options {
     pub format: TableFormat,
     /// Whether the blocks of meshes are compressed.
     pub compress: bool,
-    /// How atoms become balls, for the tables of balls, and filtrations with
-    /// weights.
+    /// How atoms become balls, for what is measured of these, and for meshes and filtrations with weights.
     pub balls: Option<BallOptions>,
 }
 

@@ -48,9 +48,9 @@ pub fn write_mesh<W: Write>(
     if weights.is_some() {
         builder.last_patches.fill(NONE);
         tetrahedra.as_flattened().iter().for_each(|&v| builder.last_patches[v as usize] = 0);
-        let is_hidden: Vec<u32> =
-            (0..).zip(&*builder.last_patches).filter(|(_, last)| **last == NONE).map(|(v, _)| v).collect();
-        builder.singles(is_hidden.into_iter(), writer)?;
+        let vertices = (0..).zip(&*builder.last_patches);
+        let hidden: Vec<u32> = vertices.filter(|(_, last)| **last == NONE).map(|(v, _)| v).collect();
+        builder.singles(hidden.into_iter(), writer)?;
     }
     for (number, corners) in (builder.number..).zip(tetrahedra.chunks(PATCH_TETRAHEDRA)) {
         corners.as_flattened().iter().for_each(|&v| builder.last_patches[v as usize] = number);

@@ -49,8 +49,8 @@ impl<'s> ModelTables<'s> {
         for row in found {
             table.start_row(&row)?;
             let measure = measure(row.map(|index| self.point(index)));
-            table.rows.number(measure.circumradius * self.scale)?;
-            table.rows.number(measure.volume * self.scale.powi(3))?;
+            table.rows.number(measure.circumradius * self.scale);
+            table.rows.number(measure.volume * self.scale.powi(3));
             table.rows.end()?;
         }
         Ok(())
@@ -79,7 +79,7 @@ impl<'s> ModelTables<'s> {
         let mut table = Table::new(rows, self);
         for (row, tetrahedra) in found {
             table.start_row(&row)?;
-            table.rows.number(distance(row.map(|index| self.point(index))) * self.scale)?;
+            table.rows.number(distance(row.map(|index| self.point(index))) * self.scale);
             table.rows.integer(tetrahedra)?;
             table.rows.end()?;
         }

@@ -1,5 +1,6 @@
 //! Probes at rest: corners of the surface that the centre of the probe can reach.
 
+use crate::balls::dual::Dual;
 use crate::balls::shares::{Foot, length};
 use crate::balls::tile::Tile;
 use crate::predicates::Point3;
@@ -36,12 +37,11 @@ impl Probe {
 /// at their ends alone, so that edges which meet agree about their end.
 pub(super) fn probes(tile: &Tile<'_>) -> Vec<Probe> {
     let mut probes = Vec::new();
-    let powers: Vec<f64> = (0..tile.tetrahedra().len()).map(|t| tile.power(t)).collect();
+    let dual = Dual::new(tile);
     for (t, tetrahedron) in tile.tetrahedra().iter().enumerate() {
         for (corner, facet) in TETRAHEDRON_FACETS.into_iter().enumerate() {
-            let Some(other) = tetrahedron.neighbour(corner) else { continue };
-            let other = other.tetrahedron as usize;
-            let ends = [t, other].map(|t| powers[t] > 0.0);
+            let Some((other, _)) = dual.across(t, corner) else { continue };
+            let ends = [t, other].map(|t| dual.is_empty(t));
             if other > t && ends != [false, false] {
                 let facet = facet.map(|i| tetrahedron.vertices[i]);
                 add(tile, facet, [t, other], ends, &mut probes);

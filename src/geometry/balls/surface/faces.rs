@@ -1,14 +1,13 @@
 //! The faces between cells as polygons.
 
 use super::super::dual::Dual;
-use super::super::tile::Tile;
-use super::super::tiles::Members;
+use super::super::tile::{Tile, with_all};
 use super::super::{Balls, Contact};
 use super::nodes::Nodes;
 use super::outline::{Step, outline};
-use super::{VERTICES_MAX, check_step};
+use super::{check_count, check_step};
 use crate::predicates::Point3;
-use spmesh_core::error::{Error, Result};
+use spmesh_core::error::Result;
 
 /// Faces between cells, as convex polygons whose arcs are divided. Neighbours share vertices.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -31,13 +30,12 @@ pub struct Faces {
 /// Cost and memory: those of the triangulation of all balls, on one thread.
 pub fn faces(balls: Balls<'_>, step: f64, is_wanted: impl Fn(&Contact) -> bool) -> Result<Faces> {
     check_step(balls, step)?;
+    with_all(balls, |tile| of_tile(tile, step, is_wanted))
+}
+
+fn of_tile(tile: &Tile<'_>, step: f64, is_wanted: impl Fn(&Contact) -> bool) -> Result<Faces> {
     let mut found = Vec::new();
-    if balls.centres.is_empty() {
-        return Ok(Faces::default());
-    }
-    let all = Members::all(balls);
-    let tile = Tile::new(balls, &all)?;
-    let dual = Dual::new(&tile);
+    let dual = Dual::new(tile);
     let mut nodes = Nodes::new(&dual, step);
     let mut corners = vec![u32::MAX; tile.tetrahedra().len()];
     let mut steps = Vec::new();
@@ -89,9 +87,7 @@ fn numbered<'n>(number: &'n mut u32, nodes: &mut Nodes<'_>, at: Point3) -> &'n u
 
 impl Faces {
     fn of(mut nodes: Nodes<'_>, mut found: Vec<(Contact, Vec<u32>)>) -> Result<Faces> {
-        if nodes.points.len() > VERTICES_MAX {
-            return Err(Error::usage("more than 2^31 - 1 vertices: take a coarser resolution"));
-        }
+        check_count(&nodes.points)?;
         found.sort_by_key(|(contact, _)| contact.balls);
         let same = nodes.merged();
         let mut faces = Faces { points: nodes.points, ..Faces::default() };

@@ -3,8 +3,7 @@
 use super::super::Balls;
 use super::super::pockets::{Pocket, with_members};
 use super::super::shares::length;
-use super::super::tile::Tile;
-use super::super::tiles::Members;
+use super::super::tile::{Tile, with_all};
 use super::{Surface, check_step, of_tile};
 use crate::predicates::Point3;
 use crate::vector::{cross, difference, dot};
@@ -30,15 +29,19 @@ pub fn linings(
     threads: NonZeroUsize,
 ) -> Result<(Surface, Vec<Pocket>, Vec<u32>)> {
     check_step(balls, step)?;
-    if balls.centres.is_empty() {
-        return Ok(Default::default());
-    }
-    let all = Members::all(balls);
-    let tile = Tile::new(balls, &all)?;
-    let surface = of_tile(&tile, balls, step, threads)?;
+    with_all(balls, |tile| of_pockets(tile, balls, step, threads))
+}
+
+fn of_pockets(
+    tile: &Tile<'_>,
+    balls: Balls<'_>,
+    step: f64,
+    threads: NonZeroUsize,
+) -> Result<(Surface, Vec<Pocket>, Vec<u32>)> {
+    let surface = of_tile(tile, balls, step, threads)?;
     let mut numbers = vec![0; tile.tetrahedra().len()];
     let mut pockets = Vec::new();
-    for (number, (pocket, members)) in (1..).zip(with_members(&tile)) {
+    for (number, (pocket, members)) in (1..).zip(with_members(tile)) {
         members.into_iter().for_each(|t| numbers[t] = number);
         pockets.push(pocket);
     }
@@ -48,7 +51,7 @@ pub fn linings(
         let (centre, radius) = (balls.centres[ball as usize], balls.radii[ball as usize]);
         let out = difference(mean(corners), centre);
         let middle = [0, 1, 2].map(|axis| centre[axis] + out[axis] * radius / length(out));
-        at = locate(&tile, at, middle);
+        at = locate(tile, at, middle);
         numbers[at]
     };
     let around = surface.triangles.iter().zip(&surface.balls).map(number).collect();

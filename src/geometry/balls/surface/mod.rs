@@ -15,8 +15,7 @@ pub use linings::linings;
 use super::Balls;
 use super::dual::Dual;
 use super::shares::length;
-use super::tile::Tile;
-use super::tiles::Members;
+use super::tile::{Tile, with_all};
 use crate::delaunay3::Kernel;
 use crate::predicates::Point3;
 use crate::vector::{difference, dot};
@@ -85,11 +84,7 @@ pub struct Surface {
 /// ```
 pub fn surface(balls: Balls<'_>, step: f64, threads: NonZeroUsize) -> Result<Surface> {
     check_step(balls, step)?;
-    if balls.centres.is_empty() {
-        return Ok(Surface::default());
-    }
-    let all = Members::all(balls);
-    of_tile(&Tile::new(balls, &all)?, balls, step, threads)
+    with_all(balls, |tile| of_tile(tile, balls, step, threads))
 }
 
 /// The surface of the balls of a tile, which are all.
@@ -119,6 +114,15 @@ fn check_step(balls: Balls<'_>, step: f64) -> Result<()> {
         return Ok(());
     }
     Err(Error::usage(format!("a step of {step:e} is too fine: at least {:e} fits", greatest / FINEST)))
+}
+
+/// # Errors
+/// Usage, if a mesh has more vertices than formats can number.
+fn check_count(points: &[Point3]) -> Result<()> {
+    if points.len() > VERTICES_MAX {
+        return Err(Error::usage("more than 2^31 - 1 vertices: take a coarser resolution"));
+    }
+    Ok(())
 }
 
 /// A ball as another one sees it: the cap that it cuts off.
@@ -285,9 +289,7 @@ impl Surface {
         };
         let first = self.points.len();
         self.points.extend(&patch.inside);
-        if self.points.len() > VERTICES_MAX {
-            return Err(Error::usage("more than 2^31 - 1 vertices: take a coarser resolution"));
-        }
+        check_count(&self.points)?;
         let on_border = patch.border.len();
         let number = |local: u32| match patch.border.get(local as usize) {
             Some(&node) => node,

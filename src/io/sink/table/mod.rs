@@ -160,17 +160,13 @@ impl TableSink {
     }
 
     /// Adds a number to the row.
-    ///
-    /// # Errors
-    /// None today.
-    pub fn number(&mut self, value: f64) -> Result<()> {
+    pub fn number(&mut self, value: f64) {
         let column = self.next(ColumnKind::Number);
         match &mut self.rows {
-            Rows::Text(rows) => rows.number(column, value).map_err(write_error)?,
+            Rows::Text(rows) => rows.number(column, value),
             #[cfg(feature = "parquet")]
             Rows::Parquet(rows) => rows.number(column, value),
         }
-        Ok(())
     }
 
     /// Adds nothing to the row, where a column does not apply.

@@ -1,7 +1,7 @@
 //! Rows as text: tab-separated values, and JSON Lines.
 
 use std::fmt::Display;
-use std::io::{self, Write};
+use std::io::Write;
 
 use super::Column;
 use super::number::write_number;
@@ -49,14 +49,14 @@ impl TextRows {
         write!(self.bytes, "{value}").expect("a vector takes all");
     }
 
-    pub(super) fn number(&mut self, column: usize, value: f64) -> io::Result<()> {
+    pub(super) fn number(&mut self, column: usize, value: f64) {
         // JSON has no infinity.
         if self.is_json && !value.is_finite() {
             self.nothing(column);
-            return Ok(());
+            return;
         }
         self.start(column);
-        write_number(&mut self.bytes, value)
+        write_number(&mut self.bytes, value);
     }
 
     pub(super) fn nothing(&mut self, column: usize) {

@@ -21,7 +21,7 @@ use groups::Groups;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::balls::{Balls, Cells, measure, molecular_surface, pockets};
 use spmesh_io::sink::TableSink;
-use spmesh_io::source::structure::{Radii, Selected};
+use spmesh_io::source::structure::{AtomView, Radii, Selected};
 use tables::{CellTable, ContactTable};
 
 /// Steps of a radius in 1 Å.
@@ -103,19 +103,23 @@ pub(super) struct Molecule<'s> {
 impl Molecule<'_> {
     /// Radii of all atoms with the probe, in stored units: integers where coordinates are.
     fn radii(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
-        let Some(first) = self.selected.atom(0) else {
+        let Some(atoms) = options.radii.of_atoms(self.selected) else {
             let message = "points have no elements, and so no radii: give a structure (PDB, mmCIF, XYZ)";
             return Err(Error::usage(message));
         };
-        let mut finder = options.radii.finder(first.structure);
-        let atoms = (0..self.selected.points().len()).filter_map(|index| self.selected.atom(index));
-        atoms
-            .map(|atom| {
-                let is_hydrogen = matches!(atom.element(), "H" | "D");
-                report.hydrogens += u64::from(is_hydrogen && options.has_united_radii);
-                Ok(self.length(finder.steps_of(&atom)? + options.probe))
-            })
-            .collect()
+        let mut radius = |(atom, steps): (AtomView<'_>, u32)| {
+            let is_hydrogen = matches!(atom.element(), "H" | "D");
+            report.hydrogens += u64::from(is_hydrogen && options.has_united_radii);
+            self.length(steps + options.probe)
+        };
+        atoms.map(|found| found.map(&mut radius)).collect()
+    }
+
+    /// Radii for a report that is of the cells of balls.
+    fn radii_of_cells(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
+        report.is_of_cells = true;
+        report.vertices = report.atoms;
+        self.radii(options, report)
     }
 
     /// Steps of a radius in stored units.
@@ -147,10 +151,8 @@ impl Molecule<'_> {
         report: &mut Report,
         output: &mut impl Write,
     ) -> Result<()> {
-        let radii = self.radii(options, report)?;
+        let radii = self.radii_of_cells(options, report)?;
         let balls = Balls { centres: self.selected.points(), radii: &radii };
-        report.is_of_cells = true;
-        report.vertices = report.atoms;
         report.left_out = Picture { molecule: self, options, picture, balls }.write(product, output)?;
         Ok(())
     }
@@ -167,10 +169,8 @@ impl Molecule<'_> {
         report: &mut Report,
         open: impl FnOnce() -> Result<&'o mut TableSink>,
     ) -> Result<()> {
-        let radii = self.radii(options, report)?;
+        let radii = self.radii_of_cells(options, report)?;
         let balls = Balls { centres: self.selected.points(), radii: &radii };
-        report.is_of_cells = true;
-        report.vertices = report.atoms;
         if product == Product::Pockets {
             let found = pockets(balls)?;
             let groups = Groups::new(self.selected, options.level);

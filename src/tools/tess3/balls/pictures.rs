@@ -8,7 +8,7 @@ use super::tables::is_wanted;
 use super::{BallOptions, Molecule};
 use crate::Product;
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::balls::{Balls, FINEST, faces, linings, measure, pockets, surface};
+use spmesh_geometry::balls::{Balls, Cell, FINEST, faces, linings, measure, pockets, surface};
 use spmesh_geometry::predicates::Point3;
 use spmesh_io::sink::{Mesh, Shape, Table};
 use spmesh_io::source::structure::{AtomView, Name};
@@ -73,12 +73,13 @@ impl Picture<'_> {
         if product == Product::ContactAreas {
             return self.contacts(output).map(|()| 0);
         }
-        self.check_size()?;
-        self.surface(product == Product::Pockets, output)
+        let cells = measure(self.balls, None, self.options.threads)?.cells;
+        self.check_size(&cells)?;
+        self.surface(product == Product::Pockets, &cells, output)
     }
 
     /// The surface; of pockets only the part around these.
-    fn surface(&self, only_pockets: bool, output: &mut impl Write) -> Result<u64> {
+    fn surface(&self, only_pockets: bool, cells: &[Cell], output: &mut impl Write) -> Result<u64> {
         let (step, threads) = (self.step(), self.options.threads);
         let by_pocket = only_pockets || self.picture.colours == ColourBy::Pocket;
         let (mut surface, mut of_triangles) = if by_pocket {
@@ -93,7 +94,6 @@ impl Picture<'_> {
             surface.retain(|triangle| of_triangles[triangle] > 0);
             of_triangles.retain(|&pocket| pocket > 0);
         }
-        let areas = measure(self.balls, None, threads)?.cells;
         let atoms = Atoms::new(self);
         let colour = |ball: u32, pocket: u32| {
             if by_pocket { of_number(pocket) } else { atoms.colour(ball, self.picture.colours) }
@@ -118,7 +118,7 @@ impl Picture<'_> {
             of_cells.put(&colour(ball, pocket));
             of_cells.put(&atoms.serial(ball));
             of_cells.put(&atoms.row(ball));
-            of_cells.put(&(areas[ball as usize].area * self.molecule.scale.powi(2)).to_le_bytes());
+            of_cells.put(&(cells[ball as usize].area * self.molecule.scale.powi(2)).to_le_bytes());
             if by_pocket {
                 of_cells.put(&pocket.to_le_bytes());
             }
@@ -224,9 +224,8 @@ impl Picture<'_> {
     }
 
     /// # Errors
-    /// Usage, if the surface has too many vertices at this resolution; those of measuring.
-    fn check_size(&self) -> Result<()> {
-        let cells = measure(self.balls, None, self.options.threads)?.cells;
+    /// Usage, if the surface has too many vertices at this resolution.
+    fn check_size(&self, cells: &[Cell]) -> Result<()> {
         let area: f64 = cells.iter().map(|cell| cell.area).sum();
         // Of triangles with sides of the resolution, each vertex has two.
         let vertices = area / (0.75f64.sqrt() * self.step() * self.step());

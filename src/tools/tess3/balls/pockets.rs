@@ -59,11 +59,11 @@ impl PocketTable<'_> {
 
     fn end_pocket(&self, pocket: &Pocket, rows: &mut TableSink) -> Result<()> {
         let scale = self.molecule.scale;
-        rows.number(pocket.volume * scale.powi(3))?;
-        rows.number(pocket.area * scale.powi(2))?;
+        rows.number(pocket.volume * scale.powi(3));
+        rows.number(pocket.area * scale.powi(2));
         rows.integer(pocket.mouths.len())?;
-        rows.number(pocket.mouth_area() * scale.powi(2))?;
-        rows.number(pocket.depth * scale)?;
+        rows.number(pocket.mouth_area() * scale.powi(2));
+        rows.number(pocket.depth * scale);
         rows.integer(pocket.balls.len())?;
         rows.integer(pocket.tetrahedra.len())?;
         rows.end()
@@ -88,7 +88,7 @@ impl PocketTable<'_> {
             };
             if self.level == Level::Molecule {
                 start(rows)?;
-                rows.number(mouth.area * self.molecule.scale.powi(2))?;
+                rows.number(mouth.area * self.molecule.scale.powi(2));
                 rows.integer(mouth.balls.len())?;
                 rows.end()?;
                 continue;

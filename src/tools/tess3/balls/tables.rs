@@ -58,10 +58,10 @@ impl CellTable<'_> {
         rows.integer(count)?;
         let scale = self.molecule.scale;
         if self.options.areas {
-            rows.number(cell.area * scale.powi(2))?;
+            rows.number(cell.area * scale.powi(2));
         }
         if self.options.volumes {
-            rows.number(cell.volume * scale.powi(3))?;
+            rows.number(cell.volume * scale.powi(3));
         }
         rows.end()
     }
@@ -98,7 +98,7 @@ impl ContactTable<'_> {
             if area >= self.options.contacts.min_area {
                 self.start_row(pair, rows)?;
                 rows.integer(count)?;
-                rows.number(area)?;
+                rows.number(area);
                 rows.end()?;
             }
         }
@@ -119,8 +119,8 @@ impl ContactTable<'_> {
         for ball in contact.balls {
             rows.integer(self.molecule.selected.label(ball as usize))?;
         }
-        rows.number(self.distance(contact))?;
-        rows.number(self.area(contact))?;
+        rows.number(self.distance(contact));
+        rows.number(self.area(contact));
         rows.end()
     }
 

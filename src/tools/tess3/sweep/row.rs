@@ -65,7 +65,7 @@ impl Row {
             match (kind, field.parse::<i64>(), field.parse::<f64>()) {
                 (ColumnKind::Text, ..) if !field.is_empty() => table.field(field),
                 (ColumnKind::Integer, Ok(value), _) => table.integer(value)?,
-                (ColumnKind::Number, _, Ok(value)) => table.number(value)?,
+                (ColumnKind::Number, _, Ok(value)) => table.number(value),
                 _ => table.nothing(),
             }
         }

@@ -21,7 +21,8 @@ use self::charmm::CHARMM;
 use self::elements::Element;
 use self::guess::Labels;
 use self::residues::{Group, PROTOR, UNITED, UNITED_ELEMENTS};
-use super::model::Structure;
+use super::model::{AtomView, Structure};
+use super::selection::Selected;
 use crate::source::origin::open_file;
 use spmesh_core::error::Result;
 
@@ -128,6 +129,18 @@ impl Radii {
     #[must_use]
     pub fn finder<'s>(&'s self, structure: &'s Structure) -> RadiusFinder<'s> {
         RadiusFinder::new(self, structure)
+    }
+
+    /// The selected atoms, each with its radius in steps of 0.001 Å; `None` if they are points without names.
+    ///
+    /// An item is an error as [`RadiusFinder::steps_of`].
+    pub fn of_atoms<'s>(
+        &'s self,
+        selected: &'s Selected<'s>,
+    ) -> Option<impl Iterator<Item = Result<(AtomView<'s>, u32)>>> {
+        let mut finder = self.finder(selected.atom(0)?.structure);
+        let atoms = (0..selected.points().len()).filter_map(|index| selected.atom(index));
+        Some(atoms.map(move |atom| Ok((atom, finder.steps_of(&atom)?))))
     }
 
     /// The radius of an atom, in steps of 0.001 Å.
