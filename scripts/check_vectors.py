@@ -4,7 +4,7 @@
     python3 check_vectors.py
 
 A vector in pass must give its text twin (.txt), one in fail must be refused with the words and the exit code of
-its .err file.
+its .err file. So must the manifests of meshes in parts in joined: a twin is then that of the joined mesh.
 Exit 0, or 1 with a line for each vector that came out otherwise.
 """
 
@@ -26,7 +26,16 @@ def load(path):
 def read(data):
     """The text twin, or None and the lines of the .err file with the whole message."""
     lines = []
-    stream = spmesh_reader.Stream(io.BytesIO(data), spmesh_reader.Text(lines.append))
+    return result_of(spmesh_reader.Stream(io.BytesIO(data), spmesh_reader.Text(lines.append)), lines)
+
+
+def join(path):
+    """As `read`, of a mesh in parts."""
+    lines = []
+    return result_of(spmesh_reader.Join(path, lines.append), lines)
+
+
+def result_of(stream, lines):
     try:
         stream.read()
     except spmesh_reader.REFUSED as error:
@@ -36,11 +45,14 @@ def read(data):
 
 def main():
     wrong = 0
-    paths = sorted(glob.glob(os.path.join(FOLDER, "*", "*.hex")))
+    paths = sorted(glob.glob(os.path.join(FOLDER, "*", "*.hex")) + glob.glob(os.path.join(FOLDER, "joined", "*.json")))
     for path in paths:
-        stem, name = path[: -len(".hex")], os.path.relpath(path, FOLDER)
-        text, error = read(bytes.fromhex("".join(line.split("#")[0] for line in load(path).splitlines())))
-        if name.startswith("pass"):
+        stem, name = os.path.splitext(path)[0], os.path.relpath(path, FOLDER)
+        if path.endswith(".json"):
+            text, error = join(path)
+        else:
+            text, error = read(bytes.fromhex("".join(line.split("#")[0] for line in load(path).splitlines())))
+        if os.path.exists(stem + ".txt"):
             holds = text == load(stem + ".txt")
         else:
             words, code = load(stem + ".err").splitlines()

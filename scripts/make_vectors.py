@@ -22,7 +22,8 @@ UNKNOWN = 2**64 - 1
 MAGIC = b"\x89SPM\r\n\x1a\n"
 KINDS = {"points": 1, "triangle mesh": 2, "partial triangle mesh": 3, "tetrahedral mesh": 4,
          "points in 4 dimensions": 5, "cells in 4 dimensions": 6, "simplices in 4 dimensions": 7,
-         "configurations": 8, "splines": 9, "partial tetrahedral mesh": 10}
+         "configurations": 8, "splines": 9, "partial tetrahedral mesh": 10,
+         "residual of a triangle mesh": 11, "residual of a tetrahedral mesh": 12}
 # Vectors in fail whose faults only a reader with memory of cells or vertices can see.
 NEED_MEMORY = {
     "cell-twice", "cell-after-ancestor", "cell-after-siblings", "point-in-final-cell", "point-in-final-ancestor",
@@ -34,6 +35,7 @@ TOO_NEW = {
     "version", "version-1", "version-huge", "kind", "coordinate-type", "feature-bit", "feature-bit-last",
     "record-required", "record-required-and-fault", "tag-unknown", "tag-unknown-after-skipped",
     "tag-unknown-before-fault", "rows-unknown-required",
+    "parts-from-before-required",
 }
 FUNCTIONS = ("edge", "vertex", "tent", "crease", "face")
 INF, NAN = float("inf"), float("nan")
@@ -74,12 +76,12 @@ class Vector:
 
     def header(self, kind, grid=None, dims=2, elevation=0, bounds=None, points=None, tree=None, region=None,
                chunked=False, wkt=None, geokeys=None, producer="vector", compressed=False, attributes=(), constrained=None, weighted=None,
-               edit=None, raw=None):
+               part=None, edit=None, raw=None):
         """`grid` is scale and offset; `raw` overrides fields, by their names below, and payloads of records,
         by their tags, with bytes, and adds a "tail" behind the records; `edit` changes the list of records, which are pairs of tag and payload."""
         raw = raw or {}
         self.grid, self.dims, self.axes, self.attributes = grid, dims, dims + elevation, attributes
-        records = self.records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, constrained, weighted, producer)
+        records = self.records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, constrained, weighted, part, producer)
         records = [(tag, [(raw[tag.decode()], "damaged")] if tag.decode() in raw else payload) for tag, payload in records]
         edit = edit or (lambda records: records)
         records = [(tag, [(payload, "payload")] if isinstance(payload, bytes) else payload) for tag, payload in edit(records)]
@@ -130,10 +132,12 @@ class Vector:
             self.say("constrained %s %s" % (yes[constrained[0]], number(constrained[1])))
         if weighted is not None:
             self.say("weighted " + number(weighted))
+        if part is not None:
+            self.say("part %d %d" % part)
         self.say('producer "%s"' % producer)
 
     @staticmethod
-    def records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, constrained, weighted, producer):
+    def records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, constrained, weighted, part, producer):
         """The records of the header in the order of the text: tags, and payloads as bytes with comments."""
         floats = lambda values: struct.pack("<%dd" % len(values), *map(float, values))
         records = []
@@ -160,6 +164,8 @@ class Vector:
             records.append((b"cons", [(bytes([is_cut]), "flags"), (floats([kill]), "kill length")]))
         if weighted is not None:
             records.append((b"wght", [(floats([weighted]), "greatest weight")]))
+        if part is not None:
+            records.append((b"part", [(struct.pack("<Q", part[0]), "plan"), (struct.pack("<I", part[1]), "number")]))
         if producer:
             records.append((b"prod", [(producer.encode(), "producer")]))
         return records
@@ -230,19 +236,28 @@ class Vector:
         self.lines += ["x cell %d" % code for code in codes]
         return self.block(b"CELL", [(struct.pack("<Q", code), "cell %d" % code) for code in codes])
 
-    def patch(self, first=0, new=(), imported=(), simplices=(), finalized=(), counts=None, rows=(), sides=None):
+    def patch(self, first=0, new=(), imported=(), simplices=(), finalized=(), counts=None, rows=(), sides=None,
+              origins=None, kept=None, amid=None):
+        """A skipped block with the tag `amid` stands behind those of vertices of other parts."""
         pairs = [self.point(point) for point in new]
         counts = counts or [len(new), len(imported), len(simplices), len(finalized)]
         ids = list(range(first, first + len(new))) + list(imported)
         name = lambda local: str(ids[local] + 1 if local < len(ids) else "?")
         self.lines.append("# patch")
         self.with_rows(["v " + text for _, text in pairs], rows)
+        self.lines += ["from %s %d" % (name(local), vertex + 1) for local, vertex in origins or ()]
         letter, simplex = ("c ", "tetrahedron") if self.dims == 3 else ("f ", "triangle")
         self.lines += [letter + " ".join(map(name, t)) for t in simplices]
         if sides is not None:
             self.sides(*sides)
         self.triangles += len(simplices)
         self.lines += ["x " + name(local) for local in finalized]
+        self.lines += ["kept " + name(local) for local in kept or ()]
+        for block, records in ((self.origins, origins), (self.kept, kept)):
+            if records is not None:
+                block(*records)
+                if amid:
+                    self.skip(amid)
         payload = [(struct.pack("<Q", first), "first id"), (struct.pack("<4I", *counts), "counts N M S F")]
         payload += [(data, "vertex %d: %s" % (first + i, text)) for i, (data, text) in enumerate(pairs)]
         payload += [(struct.pack("<Q", vertex), "imports vertex %d" % vertex) for vertex in imported]
@@ -272,6 +287,19 @@ class Vector:
     def open(self, *numbers):
         self.lines += ["open %d" % (n + 1) for n in numbers]
         return self.block(b"open", [(struct.pack("<I", n), "open segment %d" % n) for n in numbers])
+
+    def origins(self, *origins):
+        """New vertices of the next patch that are vertices of other parts: local index and global id. The lines of the
+        twin come with the patch."""
+        payload = []
+        for local, vertex in origins:
+            comment = "local vertex %d is vertex %d of part %d" % (local, vertex % 2**40, vertex >> 40)
+            payload.append((struct.pack("<IQ", local, vertex), comment))
+        return self.block(b"from", payload)
+
+    def kept(self, *locals):
+        """Finalized vertices of the next patch that later parts may use."""
+        return self.block(b"kept", [(struct.pack("<I", local), "keeps local vertex %d" % local) for local in locals])
 
     def labels(self, *labels):
         self.lines += ["label %d" % label for label in labels]
@@ -743,6 +771,282 @@ def failing_weights():
     yield "weight-nan", "weight", row("nan")
 
 
+PLAN = 0x0123456789ABCDEF
+# Parts 0 and 1 are leaves, part 2 joins what they leave, and part 3 is the root.
+PART = lambda number, **more: dict(kind="triangle mesh", grid=HALF, elevation=1, part=(PLAN, number), **more)
+CLASSED = lambda number: PART(number, attributes=[CLASS])
+SPACE_PART = lambda number: dict(**TETRAHEDRAL, part=(PLAN, number))
+# Corners of the joined mesh by letters, in the order of the parts that have them first: A to C in part 0, D to F in
+# part 1, P in part 2, Q in part 3. Their classes count up.
+PLACES = dict(A=(0, 0, 0), B=(2, 0, 1), C=(0, 2, 1), D=(8, 0, 2), E=(8, 8, 9), F=(6, 4, 3), P=(3, 6, 5), Q=(0, 8, 7))
+GLOBAL = dict(A=(0, 0), B=(0, 1), C=(0, 2), D=(1, 0), E=(1, 1), F=(1, 2), P=(2, 0), Q=(3, 0))
+GLOBAL = {letter: (part << 40) + number for letter, (part, number) in GLOBAL.items()}
+CLASSES = {letter: ([number],) for number, letter in enumerate(PLACES)}
+REST = dict(kind="residual of a triangle mesh", grid=HALF, elevation=1, region=(0, 0, 8, 8), part=(PLAN, 2))
+REST_SPACE = dict(kind="residual of a tetrahedral mesh", dims=3, grid=EVEN, region=(0, 0, 0, 8, 8, 8), part=(PLAN, 2))
+
+
+def part_patch(vector, first, letters, own, imported=(), simplices=(), finalized=(), kept=None):
+    """A patch with the vertices `letters`, of which `own` are none of other parts, and their rows."""
+    rows = [CLASSES[letter] for letter in letters]
+    origins = [(local, GLOBAL[letter]) for local, letter in enumerate(letters) if letter not in own]
+    new = [PLACES[letter] for letter in letters]
+    vector.patch(first, new, imported, simplices, finalized, rows=rows, origins=origins or None, kept=kept)
+    return vector.rows(*rows) if rows else vector
+
+
+def leaf_part():
+    """Keeps two vertices in a patch behind that which has them first."""
+    vector = part_patch(Vector(**CLASSED(0)), 0, "ABC", "ABC", (), [(0, 1, 2)], (0,))
+    return part_patch(vector, 3, "", "", (1, 2), (), (0, 1), (0, 1)).end(3, vertices=3, simplices=1)
+
+
+def other_leaf_part():
+    vector = part_patch(Vector(**CLASSED(1)), 0, "DEF", "DEF", (), [(0, 1, 2)], (0, 1, 2), (0, 1, 2))
+    return vector.end(5, vertices=3, simplices=1, merged=2)
+
+
+def inner_part():
+    vector = part_patch(Vector(**CLASSED(2)), 0, "BDPF", "P", (), [(0, 1, 3), (0, 3, 2)], (0, 1, 2, 3), (0, 2, 3))
+    return vector.end(4, vertices=4, simplices=2)
+
+
+def root_part():
+    vector = part_patch(Vector(**CLASSED(3)), 0, "QCBP", "Q", (), [(2, 3, 1), (1, 3, 0)], (0, 1, 2))
+    return part_patch(vector, 4, "FE", "", (3,), [(0, 1, 2)], (0, 1, 2)).end(6, vertices=6, simplices=3)
+
+
+def passing_parts():
+    """Parts of meshes, and residuals."""
+    yield "parts-leaf", "The first part of a mesh: two vertices are kept, in a patch of their own, with attributes", leaf_part()
+    yield "parts-leaf-second", "Another leaf: all its vertices are kept in the patch that has them", other_leaf_part()
+    yield "parts-inner", "A part with vertices of other parts, some of which it keeps for its parent, and one of its own", inner_part()
+    yield "parts-root", "The last part: its vertices are final everywhere, and only one is its own", root_part()
+    yield "parts-space-leaf", "A tetrahedron that keeps three corners", Vector(**SPACE_PART(0)).patch(
+        0, CORNERS[:4], (), [(0, 1, 2, 3)], (0, 1, 2, 3), kept=(1, 2, 3)).end(4, vertices=4, simplices=1)
+    yield "parts-space-root", "A tetrahedron on three vertices of another part, whose ids do not increase", Vector(**SPACE_PART(5)).patch(
+        0, [CORNERS[4], CORNERS[3], CORNERS[1], CORNERS[2]], (), [(0, 2, 1, 3)], (0, 1, 2, 3),
+        origins=[(1, 3), (2, 1), (3, 2)]).end(4, vertices=4, simplices=1)
+    yield "parts-empty", "A part without vertices, in f64", Vector("triangle mesh", part=(0, 3)).end()
+    yield "parts-skipped", "Blocks without records, and skipped ones between those that belong together", Vector(**PART(1)).patch(
+        0, SQUARE[:1], (), (), (0,), origins=[(0, 7)], kept=(), amid=b"note").skip().origins().kept().skip().patch(1).end(
+        1, vertices=1)
+    yield "parts-greatest", "The greatest plan, part and global id", Vector(
+        **{**PART(0), "part": (2**64 - 1, 2**22 - 1)}).patch(
+        0, SQUARE[:1], (), (), (0,), origins=[(0, (2**22 - 1 << 40) - 1)], kept=(0,)).end(1, vertices=1)
+    pair = struct.pack("<IQIQ", 0, 1, 1, 2)
+    yield "parts-compressed", "Compressed blocks of vertices of other parts", Vector(**COMPRESSED, kind="triangle mesh", part=(PLAN, 1)).instead(
+        *packed_records(12, 0, 24, bytes(pair[12 * record + at] for at in range(12) for record in range(2)))).patch(
+        0, SQUARE[:2], (), (), (0, 1), origins=[(0, 1), (1, 2)]).end(2, vertices=2)
+    yield "rest-plane", "The residual of a part: points of it and of earlier parts, and points that are no vertices yet", Vector(
+        **REST).residual((GLOBAL["B"], 2, 0, 1), (GLOBAL["P"], 3, 6, 5)).residual((None, 1, 7, 1), (GLOBAL["F"], 6, 4, 3)).walls(
+        (0, 1)).walls((3, 0), (1, 3)).end(23, residual=4, walls=3, merged=4)
+    yield "rest-plane-attributes", "A residual with attributes, a box, the number of points, and a region without borders", Vector(
+        **{**REST, "region": (-INF, -INF, INF, INF)}, bounds=(0, 0, 0, 8, 8, 9), points=6, attributes=[CLASS]).residual(
+        (None, 8, 8, 9), (GLOBAL["B"], 2, 0, 1), rows=[([7],), CLASSES["B"]]).rows(([7],), CLASSES["B"]).end(6, residual=2)
+    yield "rest-space", "The residual of a part in space", Vector(**REST_SPACE).residual(
+        *[(number,) + corner for number, corner in enumerate(CORNERS[:3])], (2**41 + 5, 7, 7, 7)).walls(
+        (0, 1, 2), (2, 1, 3)).end(9, residual=4, walls=2)
+    yield "rest-empty", "A residual without points", Vector(**{**REST, "part": (PLAN, 0)}, points=12).end(12, merged=12)
+
+
+def failing_parts():
+    """Parts that break a rule."""
+    raw = lambda data: [(data, "payload")]
+    header = lambda **fields: Vector(**{**PART(1), **fields}).end()
+    yield "parts-short", 'header record "part": 11 bytes, expected 12', header(raw=dict(part=bytes(11)))
+    yield "parts-long", 'header record "part": 13 bytes, expected 12', header(raw=dict(part=bytes(13)))
+    yield "parts-number", "part 4194304, expected less than 4194304", header(part=(PLAN, 2**22))
+    yield "parts-number-greatest", "part 4294967295, expected less than", header(part=(PLAN, 2**32 - 1))
+    yield "parts-constrained", "neither constrained nor weighted", header(constrained=(False, 0))
+    yield "parts-weighted", "neither constrained nor weighted", Vector(
+        "tetrahedral mesh", **WEIGHTED, part=(PLAN, 1)).end()
+    yield "parts-of-points", "a stream of kind points is no part of a mesh", header(kind="points")
+    yield "parts-partial", "is no part of a mesh", Vector(**PARTIAL, part=(PLAN, 1)).end()
+    yield "parts-partial-space", "is no part of a mesh", Vector(**PARTIAL_SPACE, part=(PLAN, 1)).end()
+    yield "parts-of-knots", "is no part of a mesh", Vector(**CONFIGURATIONS, part=(PLAN, 1)).end()
+    yield "parts-region", "a region goes with a partial mesh or a residual", header(region=(0, 0, 8, 8))
+    part = lambda number=1, **more: Vector(**PART(number, **more))
+    two = lambda vector, origins=None, kept=None, finalized=(0, 1): vector.patch(
+        0, SQUARE[:2], (), (), finalized, origins=origins, kept=kept)
+    ends = lambda vector: vector.end(2, vertices=2)
+    plain = lambda: Vector("triangle mesh", grid=HALF, elevation=1)
+    none = "in a stream that is no part of a mesh"
+    yield "parts-from-without-part", 'block "from" ' + none, ends(two(plain(), [(0, 0)]))
+    yield "parts-kept-without-part", 'block "kept" ' + none, ends(two(plain(), None, [0]))
+    yield "parts-from-empty-without-part", 'block "from" ' + none, ends(two(plain(), []))
+    yield "parts-from-of-points", 'may stand here', Vector(grid=HALF, elevation=1).origins().end()
+    yield "parts-from-partial", 'may stand here', Vector(**PARTIAL).origins().patch().end()
+    order = "vertices of other parts are not increasing numbers of new vertices"
+    yield "parts-from-order", order, ends(two(part(), [(1, 0), (0, 1)]))
+    yield "parts-from-repeated", order, ends(two(part(), [(0, 0), (0, 1)]))
+    yield "parts-from-beyond", order, ends(two(part(), [(0, 0), (2, 1)]))
+    yield "parts-from-imported", order, two(part(), None, None, (0,)).patch(
+        2, SQUARE[2:3], (1,), (), (0, 1), origins=[(1, 0)]).end(3, vertices=3)
+    yield "parts-from-same-part", "a vertex of part 1, expected one before part 1", ends(two(part(), [(0, 2**40)]))
+    yield "parts-from-later-part", "a vertex of part 5, expected one before part 1", ends(two(part(), [(0, 5 << 40)]))
+    yield "parts-from-first-part", "a vertex of part 0, expected one before part 0", ends(two(part(0), [(0, 0)]))
+    yield "parts-from-beyond-bits", "a vertex of part 4194304, expected one before", ends(two(part(2**22 - 1), [(0, 2**62)]))
+    yield "parts-from-no-vertex", "a vertex of part 16777215, expected one before", ends(two(part(), [(1, UNKNOWN)]))
+    yield "parts-from-second-patch", "a vertex of part 1, expected one before part 1", two(part(), [(0, 0)]).patch(
+        2, SQUARE[2:3], (), (), (0,), origins=[(0, 2**40)]).end(3, vertices=3)
+    keeps = "is kept for other parts, but not finalized here, or not in order"
+    yield "parts-kept-not-finalized", "vertex 1 of the patch " + keeps, two(part(), None, [0, 1], (0,)).patch(
+        2, (), (1,), (), (0,)).end(2, vertices=2)
+    yield "parts-kept-order", "vertex 0 of the patch " + keeps, ends(two(part(), None, [1, 0]))
+    yield "parts-kept-repeated", "vertex 1 of the patch " + keeps, ends(two(part(), None, [1, 1]))
+    yield "parts-kept-beyond", "vertex 2 of the patch " + keeps, ends(two(part(), None, [0, 1, 2]))
+    yield "parts-kept-final-before", "vertex 0 of the patch " + keeps, two(part(), None, None, (0,)).patch(
+        2, (), (1,), (), (), kept=(0,)).patch(2, (), (1,), (), (0,)).end(2, vertices=2)
+    yield "parts-from-length", "whole number of records of 12", ends(two(part().block(b"from", raw(bytes(16)))))
+    yield "parts-kept-length", "whole number of records of 4", ends(two(part().block(b"kept", raw(bytes(6)))))
+    patch = "expected the patch of the vertices of other parts"
+    yield "parts-from-twice", 'block "from", ' + patch, ends(two(part().origins((0, 0)), [(1, 1)]))
+    yield "parts-from-empty-twice", 'block "from", ' + patch, ends(two(part().origins(), []))
+    yield "parts-kept-twice", 'block "kept", ' + patch, ends(two(part().kept(0), None, [1]))
+    yield "parts-from-after-kept", 'block "from", ' + patch, ends(two(part().kept(), []))
+    yield "parts-kept-between", 'block "kept", ' + patch, ends(two(part().origins().kept(), None, []))
+    yield "parts-from-before-end", 'block "END ", ' + patch, ends(two(part()).origins())
+    yield "parts-kept-before-end", 'block "END ", ' + patch, ends(two(part()).kept())
+    yield "parts-from-before-labels", 'block "LABL", ' + patch, Vector(**SPACE_PART(1)).origins().labels().end()
+    yield "parts-from-before-segments", 'block "segm", ' + patch, part().origins().segments().end()
+    yield "parts-from-before-required", 'the stream needs block tag "Kept"', part().origins().block(b"Kept", []).patch().end()
+    yield "parts-from-before-rows", 'may stand here', Vector(**CLASSED(1)).origins().rows().end()
+    yield "parts-rows-after-from", 'block "from", expected the attributes', Vector(**CLASSED(1)).patch(
+        0, SQUARE[:1], (), (), (0,), rows=[([1],)]).origins().rows(([1],)).end(1, vertices=1)
+    yield "parts-sides", 'block "side" in a stream that is not constrained', two(part(), None).sides().end()
+    yield "parts-from-cut", "truncated", part().origins((0, 0)).cut(1)
+    yield "parts-no-end", "truncated", two(part().origins())
+    yield "parts-not-finalized", "1 of 2 vertices were finalized", ends(two(part(), [(1, 0)], None, (0,)))
+    yield "parts-finalized-twice", "vertex 0 referenced after finalization", two(part(), None, [0]).patch(
+        2, (), (0,), (), (0,)).end(2, vertices=2)
+    yield "parts-points-of-others", "END states", two(part(), [(0, 0)]).end(1, vertices=2)
+    yield "parts-vertices-of-others", "END states", two(part(), [(0, 0)]).end(2, vertices=1)
+    yield "parts-residual", "may stand here", part().residual((None, 0, 0, 0)).end(1, residual=1)
+
+    rest = lambda **fields: Vector(**{**REST, **fields})
+    space = lambda **fields: Vector(**{**REST_SPACE, **fields})
+    one = [(0, 1, 1, 0)]
+    yield "rest-without-part", "a residual without the part that it is of", rest(part=None).end()
+    yield "rest-space-without-part", "a residual without the part that it is of", space(part=None).end()
+    yield "rest-number", "part 4194304, expected less than 4194304", rest(part=(PLAN, 2**22)).end()
+    yield "rest-without-region", "a region goes with a partial mesh or a residual", rest(region=None).end()
+    yield "rest-space-without-region", "a region goes with a partial mesh or a residual", space(region=None).end()
+    yield "rest-region-empty", "region is empty", rest(region=(0, 0, 0, 8)).end()
+    yield "rest-region-length", "48 bytes, expected 32", rest(region=(0, 0, 0, 8, 8, 8)).end()
+    yield "rest-tree", "no finalization tree", rest(tree=QUADTREE).end()
+    yield "rest-space-tree", "no finalization tree", space(tree=OCTREE).end()
+    yield "rest-chunked", "can be chunked", rest(chunked=True).end()
+    yield "rest-in-space", "a residual of a triangle mesh in 3", rest(dims=3, elevation=0, grid=EVEN, region=(0,) * 3 + (8,) * 3).end()
+    yield "rest-space-in-plane", "a residual of a tetrahedral mesh in 2", space(dims=2, region=(0, 0, 8, 8)).end()
+    yield "rest-scales", "expected one scale", rest(grid=UNEVEN).end()
+    yield "rest-space-scales", "expected one scale", space(grid=HALF).end()
+    yield "rest-constrained", "is not constrained", rest(constrained=(False, 0)).end()
+    yield "rest-weighted", "weights in a residual of a tetrahedral mesh", Vector(
+        "residual of a tetrahedral mesh", **WEIGHTED, region=(0,) * 3 + (8,) * 3, part=(PLAN, 2)).end()
+    yield "rest-patch", 'may stand here', rest().patch().end()
+    yield "rest-space-patch", 'may stand here', space().patch().end()
+    yield "rest-points", 'may stand here', rest().points().end()
+    yield "rest-from", 'may stand here', rest().origins().end()
+    yield "rest-kept", 'may stand here', rest().residual(*one).kept().end(1, residual=1)
+    yield "rest-labels", 'may stand here', space().labels().end()
+    yield "rest-after-walls", 'may stand here', rest().residual((None, 0, 0, 0), (None, 1, 1, 0)).walls(
+        (0, 1)).residual((None, 2, 2, 0)).end(3, residual=3, walls=1)
+    id_of = lambda vertex, number=2: rest(part=(PLAN, number)).residual((vertex, 1, 1, 0)).end(1, residual=1)
+    yield "rest-id-later-part", "residual point has the id %d of no vertex" % (3 << 40), id_of(3 << 40)
+    yield "rest-id-first-part", "residual point has the id %d of no vertex" % 2**40, id_of(2**40, 0)
+    yield "rest-id-beyond-bits", "residual point has the id %d of no vertex" % 2**62, id_of(2**62, 2**22 - 1)
+    yield "rest-id-almost-none", "of no vertex", id_of(2**64 - 2)
+    yield "rest-length", "whole number of records of 20", rest().block(b"RPNT", raw(bytes(24))).end(1, residual=1)
+    yield "rest-outside-region", "outside of the region", rest().residual((None, 8, 0, 0)).end(1, residual=1)
+    yield "rest-outside-box", "outside of the header's bounding box", rest(bounds=(0, 0, 0, 3, 3, 0)).residual(
+        (None, 1, 1, 1)).end(1, residual=1)
+    yield "rest-wall", "wall 0 to 1 between no", rest().residual(*one).walls((0, 1)).end(1, residual=1, walls=1)
+    yield "rest-wall-length", "whole number of records of 12", space().residual(*one).block(b"WALL", raw(bytes(8))).end(
+        1, residual=1)
+    yield "rest-rows", 'block "END ", expected the attributes', rest(attributes=[CLASS]).residual(*one).end(1, residual=1)
+    yield "rest-end-vertices", "END states", rest().residual(*one).end(1, residual=1, vertices=1)
+    yield "rest-end-simplices", "END states", rest().residual(*one).end(1, residual=1, simplices=1)
+    yield "rest-end-residual", "END states", rest().residual(*one).end(1)
+    yield "rest-end-walls", "END states", rest().residual(*one).end(1, residual=1, walls=1)
+    yield "rest-end-header", "another number of points", rest(points=2).residual(*one).end(1, residual=1)
+    yield "rest-no-end", "truncated", rest().residual(*one)
+
+
+def whole_mesh(parts, merged=0, bounds=None):
+    """The manifest of parts: number, file, vector, own vertices and simplices."""
+    entries = [dict(number=number, file=file, bytes=len(vector.bytes()), vertices=vertices, simplices=simplices)
+               for number, file, vector, vertices, simplices in parts]
+    points = merged + sum(entry["vertices"] for entry in entries)
+    return dict(format="spmesh mesh in parts", version=1, plan="%016x" % PLAN, bounds=bounds, points=points,
+                merged=merged, parts=entries)
+
+
+def two_parts():
+    """Two parts by names, and damaged ones. The first part keeps B and C."""
+    parts = {}
+    for name, keeps in (("leaf", (1, 2)), ("leaf-final", (1,))):
+        parts[name] = Vector(**PART(0)).patch(0, [PLACES[letter] for letter in "ABC"], (), [(0, 1, 2)], (0, 1, 2), kept=keeps).end(
+            3, vertices=3, simplices=1)
+    for name, keeps, vertex in (("root", None, 2), ("root-keeps", (2,), 2), ("root-beyond", None, 3)):
+        parts[name] = Vector(**PART(1)).patch(0, [PLACES[letter] for letter in "BCF"], (), [(0, 2, 1)], (0, 1, 2), origins=[
+            (0, 1), (1, vertex)], kept=keeps).end(3, vertices=3, simplices=1)
+    return parts
+
+
+def joined():
+    """Name of a mesh in parts, its manifest, and either its text twin or the words of the error, with an exit code."""
+    parts = [(1, "../pass/parts-leaf-second.spm", other_leaf_part(), 3, 1), (0, "../pass/parts-leaf.spm", leaf_part(), 3, 1),
+             (2, "../pass/parts-inner.spm", inner_part(), 1, 2), (3, "../pass/parts-root.spm", root_part(), 1, 3)]
+    whole = whole_mesh(parts, 2, [[0, 0, 0], [8, 8, 9]])
+    # Part 1 comes first, so its vertices have the least ids.
+    vector = Vector("triangle mesh", grid=HALF, elevation=1, attributes=[CLASS], bounds=(0, 0, 0, 8, 8, 9))
+    patch = lambda first, letters, *rest: vector.patch(
+        first, [PLACES[letter] for letter in letters], *rest, rows=[CLASSES[letter] for letter in letters])
+    patch(0, "DEF", (), [(0, 1, 2)], ())
+    patch(3, "ABC", (), [(0, 1, 2)], (0,))
+    # D, F and B are imported in the order of their ids: 0, 2, 4. D is final.
+    patch(6, "P", (0, 2, 4), [(3, 1, 2), (3, 2, 0)], (1,))
+    # B, C and P: 4, 5, 6.
+    patch(7, "Q", (4, 5, 6), [(1, 3, 2), (2, 3, 0)], (0, 1, 2))
+    # E, F and P: 1, 2, 6.
+    patch(8, "", (1, 2, 6), [(1, 0, 2)], (0, 1, 2))
+    yield "all", whole, vector.end(10, vertices=8, simplices=7, merged=2).text(), 0
+
+    entries = whole["parts"]
+    change = lambda at, **fields: dict(whole, parts=[dict(entry, **fields) if i == at else entry for i, entry in enumerate(entries)])
+    order = lambda *places: dict(whole, parts=[entries[place] for place in places])
+    yield "version", dict(whole, version=2), "version 2 of a manifest", 6
+    yield "format", dict(whole, format="spmesh plan"), "", 3
+    yield "plan", dict(whole, plan="0123456789abcdee"), "this is not part 1 of the plan", 3
+    yield "plan-no-hash", dict(whole, plan="plan"), "is no hash of a plan", 3
+    yield "no-parts", dict(whole, parts=[]), "a mesh without parts", 3
+    yield "unknown-field", dict(whole, colour=1), "this is JSON, but no manifest of a mesh in parts", 3
+    yield "box-not-ordered", dict(whole, bounds=[[0, 3, 0], [8, 2, 9]]), "bounding box is not ordered", 3
+    yield "box-too-small", dict(whole, bounds=[[0, 0, 0], [7, 8, 9]]), "outside of the header's bounding box", 3
+    yield "part-field-missing", dict(whole, parts=[{key: value for key, value in entry.items() if key != "vertices"}
+                                                   for entry in entries]), "this is JSON, but no manifest of a mesh in parts", 3
+    yield "part-twice", order(0, 1, 2, 2), "part 2 of 4 comes twice, or is none", 3
+    yield "part-missing", order(0, 1, 3), "part 3 of 3 comes twice, or is none", 3
+    yield "part-other", change(3, file=entries[2]["file"]), "this is not part 3 of the plan", 3
+    yield "part-of-none", change(3, file="../pass/mesh-two-patches.spm"), "this is not part 3 of the plan", 3
+    yield "part-residual", change(2, file="../pass/rest-plane.spm"), "this is not part 2 of the plan", 3
+    yield "part-malformed", change(0, file="../fail/parts-kept-order.spm"), "is kept for other parts", 3
+    yield "vertices-many", change(0, vertices=4), "3 vertices of its own, expected 4", 3
+    yield "vertices-few", change(0, vertices=2), "3 vertices of its own, expected 2", 3
+    # Parts use vertices of parts that come later, or that have not kept them, or have fewer.
+    yield "order", order(0, 2, 1, 3), "", 3
+    two = two_parts()
+    pair = lambda first, second: whole_mesh([(0, first + ".spm", two[first], 3, 1), (1, second + ".spm", two[second], 1, 1)])
+    vector = Vector("triangle mesh", grid=HALF, elevation=1).patch(
+        0, [PLACES[letter] for letter in "ABC"], (), [(0, 1, 2)], (0,)).patch(
+        3, [PLACES["F"]], (1, 2), [(1, 0, 2)], (0, 1, 2)).end(4, vertices=4, simplices=2)
+    yield "two", pair("leaf", "root"), vector.text(), 0
+    yield "not-kept", pair("leaf-final", "root"), "", 3
+    yield "kept-by-last", pair("leaf", "root-keeps"), "", 3
+    yield "vertex-of-none", pair("leaf", "root-beyond"), "", 3
+
+
 def passing():
     """Name, title and vector of each stream that is well-formed."""
     yield "points-empty", "No points, nothing known but their number", Vector(
@@ -761,6 +1065,7 @@ def passing():
     yield from passing_attributes()
     yield from passing_constrained()
     yield from passing_weights()
+    yield from passing_parts()
     yield "points-geokeys", "A CRS in GeoTIFF records, one of them empty", Vector(
         grid=HALF, elevation=1,
         geokeys=[bytes.fromhex("01000100000001000004000001000100"), b"", b"WGS 84|\0"]).points((1, 2, 3)).end(1)
@@ -1615,7 +1920,8 @@ def failing_configurations(raw):
 # Sections of the text about the parts of a stream.
 SECTIONS = {b"PNTS": "4.2", b"CELL": "4.3", b"PTCH": "4.4", b"LABL": "4.5", b"RPNT": "4.6", b"WALL": "4.7",
             b"PNT4": "4.8", b"CEL4": "4.9", b"SIM4": "4.10", b"CONF": "4.11", b"FUNC": "4.12", b"COEF": "4.13",
-            b"attp": "4.14", b"END ": "4.15", b"segm": "4.17", b"side": "4.17", b"open": "4.17"}
+            b"attp": "4.14", b"END ": "4.15", b"segm": "4.17", b"side": "4.17", b"open": "4.17",
+            b"from": "4.18", b"kept": "4.18"}
 
 
 def place_of(name, data):
@@ -1644,7 +1950,7 @@ def files():
         yield "pass/%s.spm" % name, vector.bytes()
         entry = dict(name=name, file="pass/%s.spm" % name, twin="pass/%s.txt" % name, what=title)
         manifest.append(dict(entry, **{"class": "well-formed", "exit_code": 0}))
-    for source in (failing_headers(), failing_streams(), failing_attributes(), failing_constrained(), failing_weights()):
+    for source in (failing_headers(), failing_streams(), failing_attributes(), failing_constrained(), failing_weights(), failing_parts()):
         for name, words, vector in source:
             who = " by a reader with memory of cells and vertices" if name in NEED_MEMORY else ""
             too_new = name in TOO_NEW
@@ -1655,6 +1961,13 @@ def files():
             kind = {"class": "too new" if too_new else "malformed", "exit_code": 6 if too_new else 3}
             entry = dict(name=name, file="fail/%s.spm" % name, what=words, **kind)
             manifest.append(dict(entry, needs_memory=name in NEED_MEMORY, **place_of(name, vector.bytes())))
+    for name, vector in two_parts().items():
+        yield "joined/%s.spm" % name, vector.bytes()
+    for name, found, expected, code in joined():
+        head = json.dumps(dict(found, parts=[]), separators=(",", ":"))
+        entries = ",\n".join(json.dumps(entry, separators=(",", ":")) for entry in found["parts"])
+        yield "joined/%s.json" % name, head.replace('"parts":[]', '"parts":[\n%s\n]' % entries) + "\n"
+        yield "joined/%s.%s" % (name, "err" if code else "txt"), "%s\nexit code %d\n" % (expected, code) if code else expected
     lines = ",\n".join("  " + json.dumps(entry, ensure_ascii=False) for entry in manifest)
     yield "manifest.json", '{"format": "spmesh", "version": 2, "vectors": [\n%s\n]}\n' % lines
 

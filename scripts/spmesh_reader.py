@@ -3,8 +3,10 @@
 
     python3 spmesh_reader.py FILE      (- for stdin; -q prints nothing)
 
-A second reader, laid out like formats/spmesh.md and formats/text.md and written from them alone, with only
-the standard library. It checks every rule of the text except the orientation of simplices, including the
+FILE may also be the manifest of a mesh in parts; the text twin is then that of the mesh that the parts join to.
+
+A second reader, laid out like formats/spmesh.md, formats/text.md and formats/parts.md and written from them alone, with
+only the standard library. It checks every rule of the text except the orientation of simplices, including the
 rules that need to remember cells and vertices. Exit 0: well-formed. Exit 3: malformed, with a message. Exit
 6: the stream needs what this reader does not know. Exit 1: the input cannot be read.
 
@@ -12,6 +14,7 @@ Compressed streams need Python 3.14, or the package zstandard.
 """
 
 import bisect
+import copy
 import json
 import math
 import os
@@ -103,16 +106,21 @@ assert crc32c(b"123456789") == 0xE3069283
 MAGIC = b"\x89SPM\r\n\x1a\n"
 KINDS = {
     1: ("points", (2, 3), ((b"PNTS", b"CELL"),)),
-    2: ("triangle mesh", (2,), ((b"segm", b"side", b"PTCH"), (b"open",))),
+    2: ("triangle mesh", (2,), ((b"segm", b"side", b"from", b"kept", b"PTCH"), (b"open",))),
     3: ("partial triangle mesh", (2,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
-    4: ("tetrahedral mesh", (3,), ((b"PTCH", b"LABL"),)),
+    4: ("tetrahedral mesh", (3,), ((b"from", b"kept", b"PTCH", b"LABL"),)),
     5: ("points in 4 dimensions", (4,), ((b"PNT4",),)),
     6: ("cells in 4 dimensions", (4,), ((b"PNT4",), (b"CEL4",))),
     7: ("simplices in 4 dimensions", (4,), ((b"PNT4",), (b"SIM4",))),
     8: ("configurations", (2,), ((b"PNTS",), (b"CONF",), (b"FUNC",))),
     9: ("splines", (2,), ((b"PNTS",), (b"CONF",), (b"FUNC",), (b"COEF",))),
     10: ("partial tetrahedral mesh", (3,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
+    11: ("residual of a triangle mesh", (2,), ((b"RPNT",), (b"WALL",))),
+    12: ("residual of a tetrahedral mesh", (3,), ((b"RPNT",), (b"WALL",))),
 }
+
+# Bits of a global id: those of the part, and of the number of the vertex.
+PART_BITS, NUMBER_BITS = 22, 40
 
 # Kinds of functions of splines, with their numbers of knots.
 FUNCTIONS = (("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4))
@@ -150,9 +158,10 @@ class Header:
         self.axes = self.dims + elevation
         self.record = struct.Struct("<%d%s" % (self.axes, "i" if self.is_integer else "d"))
         self.has_knots = self.kind in ("configurations", "splines")
+        self.is_residual = self.kind.startswith("residual of ")
         self.is_mesh = self.kind not in ("points", "points in 4 dimensions") and not self.has_knots
         self.scale = self.offset = self.tree = self.bounds = self.region = self.wkt = self.geokeys = None
-        self.producer, self.attributes, self.constrained, self.weighted = "", [], None, None
+        self.producer, self.attributes, self.constrained, self.weighted, self.part = "", [], None, None, None
         for tag, payload in records.items():
             RECORDS[tag](self, payload)
         require(self.scale or not self.is_integer, 'no header record "GRID", which i32 coordinates need')
@@ -167,6 +176,7 @@ class Header:
         self.check_bounds()
         self.check_region()
         self.check_weights()
+        self.check_part()
         require(
             not self.chunked or (self.tree and not self.is_mesh),
             "only points with a finalization tree can be chunked",
@@ -211,7 +221,7 @@ class Header:
 
     def read_tree(self, payload):
         require(
-            not (self.is_4d or self.has_knots or self.kind == "partial tetrahedral mesh"),
+            not (self.is_4d or self.has_knots or self.is_residual or self.kind == "partial tetrahedral mesh"),
             "a stream of kind %s has no finalization tree" % self.kind,
         )
         *origin, side, depth = self.fields("TREE", "%ddI" % (self.dims + 1), payload)
@@ -237,7 +247,7 @@ class Header:
         self.attributes = attributes_of(Fields(payload))
         with_attributes = ("points", "triangle mesh", "tetrahedral mesh")
         require(
-            self.kind in with_attributes or self.kind.startswith("partial "),
+            self.kind in with_attributes or self.kind.startswith("partial ") or self.is_residual,
             "a stream of kind %s has no attributes" % self.kind,
         )
 
@@ -278,6 +288,19 @@ class Header:
             (weight,) = struct.unpack_from("<d", rows, at)
             is_sound = math.isfinite(weight) and weight <= self.weighted
             require(is_sound, "weight %r, expected a finite number up to %r" % (weight, self.weighted))
+
+    def read_part(self, payload):
+        self.part = self.fields("part", "QI", payload)
+
+    def check_part(self):
+        if self.part is None:
+            require(not self.is_residual, "a residual without the part that it is of")
+            return
+        is_mesh = self.kind in ("triangle mesh", "tetrahedral mesh")
+        require(is_mesh or self.is_residual, "a stream of kind %s is no part of a mesh" % self.kind)
+        is_plain = self.constrained is None and self.weighted is None
+        require(is_plain, "a part of a mesh is neither constrained nor weighted")
+        require(self.part[1] < 2**PART_BITS, "part %d, expected less than %d" % (self.part[1], 2**PART_BITS))
 
     def row_length(self):
         return sum(attribute.row.size for attribute in self.attributes)
@@ -322,8 +345,8 @@ class Header:
 
     def check_region(self):
         require(
-            (self.region is not None) == self.kind.startswith("partial "),
-            "a region goes with a partial mesh, and only with one",
+            (self.region is not None) == (self.kind.startswith("partial ") or self.is_residual),
+            "a region goes with a partial mesh or a residual, and only with one",
         )
         if self.region:
             low, high = self.region[: self.dims], self.region[self.dims :]
@@ -368,6 +391,7 @@ RECORDS = {
     b"attr": Header.read_attributes,
     b"cons": Header.read_constrained,
     b"wght": Header.read_weighted,
+    b"part": Header.read_part,
     b"prod": Header.read_producer,
 }
 
@@ -938,7 +962,9 @@ class Stream:
         self.degree = self.group = self.boundary = self.function = None
         self.has_pairs = False
         self.finalized = self.named = self.labels = self.phase = 0
-        self.segments, self.sides, self.open = 0, None, -1
+        self.segments, self.open = 0, -1
+        # What blocks before the next patch say about it, by their tags.
+        self.more = {}
 
     def take(self, length):
         data = self.source.read(length)
@@ -998,6 +1024,8 @@ class Stream:
             b"segm": self.segment,
             b"side": self.side,
             b"open": self.open_segment,
+            b"from": self.origins,
+            b"kept": self.keep,
             b"LABL": self.label,
             b"RPNT": self.residual,
             b"WALL": self.walls,
@@ -1014,9 +1042,9 @@ class Stream:
             return tag
         if tag == b"attp" or self.waiting:
             return self.attributes(tag, payload, is_compressed, readers)
-        require(
-            self.sides is None or tag == b"PTCH", 'block "%s", expected the patch of the sides' % escaped(tag)
-        )
+        is_next = not self.more or tag == b"PTCH" or list(self.more) == [b"from"] and tag == b"kept"
+        of = "sides" if b"side" in self.more else "vertices of other parts"
+        require(is_next, 'block "%s", expected the patch of the %s' % (escaped(tag), of))
         if tag != b"END ":
             phase = next((i for i, tags in enumerate(self.header.phases) if tag in tags), -1)
             require(
@@ -1027,6 +1055,10 @@ class Stream:
         require(
             tag not in (b"segm", b"side", b"open") or self.header.constrained,
             'block "%s" in a stream that is not constrained' % escaped(tag),
+        )
+        require(
+            tag not in (b"from", b"kept") or self.header.part,
+            'block "%s" in a stream that is no part of a mesh' % escaped(tag),
         )
         if is_compressed:
             require(tag != b"END ", "END is compressed: it must not be")
@@ -1111,6 +1143,9 @@ class Stream:
             "finalized vertices are not increasing indices of the patch",
         )
         require(s == 0 or max(simplices) < n + m, "simplex uses a vertex that its patch does not have")
+        more, self.more = self.more, {}
+        origins, kept = dict(more.get(b"from", [])), more.get(b"kept", ())
+        self.check_shared(more.get(b"from", []), kept, n, finalized)
         for vertex in imported:
             require(vertex in self.live, "vertex %d referenced after finalization" % vertex)
         ids = list(range(first, first + n)) + list(imported)
@@ -1124,7 +1159,7 @@ class Stream:
         self.total["simplices"] += s
         self.finalized += f
         simplices = [[ids[local] for local in simplex] for simplex in simplices]
-        sides, self.sides = self.sides or [], None
+        sides = more.get(b"side", [])
         for triangle, place, segment in sides:
             require(triangle < s, "a side of triangle %d of %d in its patch" % (triangle, s))
             require(place < 3, "side %d of a triangle, expected 0, 1 or 2" % place)
@@ -1132,7 +1167,9 @@ class Stream:
         require(is_increasing([side[:2] for side in sides]), "sides are not increasing by triangle and place")
         before = self.total["simplices"] - s
         sides = [(before + triangle, place, segment) for triangle, place, segment in sides]
-        self.text.patch(new, simplices, sides, [ids[local] for local in finalized])
+        origins = {ids[local]: vertex for local, vertex in origins.items()}
+        finalized, kept = [[ids[local] for local in locals] for locals in (finalized, kept)]
+        self.text.patch(first, new, simplices, sides, finalized, origins, kept)
 
     # --- 4.17 segm, side, open
 
@@ -1151,7 +1188,7 @@ class Stream:
 
     def side(self, payload):
         require(len(payload) % 12 == 0, "%d bytes are not a whole number of records of 12" % len(payload))
-        self.sides = list(struct.iter_unpack("<3I", payload))
+        self.more[b"side"] = list(struct.iter_unpack("<3I", payload))
 
     def open_segment(self, payload):
         require(len(payload) % 4 == 0, "%d bytes are not a whole number of records of 4" % len(payload))
@@ -1160,6 +1197,33 @@ class Stream:
             require(segment > self.open, "open segments are not increasing")
             self.open = segment
             self.text.line("open %d" % (segment + 1))
+
+    # --- 4.18 from, kept
+
+    def origins(self, payload):
+        require(len(payload) % 12 == 0, "%d bytes are not a whole number of records of 12" % len(payload))
+        self.more[b"from"] = list(struct.iter_unpack("<IQ", payload))
+
+    def keep(self, payload):
+        require(len(payload) % 4 == 0, "%d bytes are not a whole number of records of 4" % len(payload))
+        self.more[b"kept"] = struct.unpack("<%dI" % (len(payload) // 4), payload)
+
+    def check_shared(self, origins, kept, new, finalized):
+        """What blocks before a patch say about vertices of other parts."""
+        locals = [local for local, _ in origins]
+        require(
+            is_increasing(locals) and (not locals or locals[-1] < new),
+            "vertices of other parts are not increasing numbers of new vertices",
+        )
+        for _, vertex in origins:
+            part, own = vertex >> NUMBER_BITS, self.header.part[1]
+            require(part < own, "a vertex of part %d, expected one before part %d" % (part, own))
+        final = set(finalized)
+        for before, local in zip((-1,) + tuple(kept), kept):
+            require(
+                before < local and local in final,
+                "vertex %d of the patch is kept for other parts, but not finalized here, or not in order" % local,
+            )
 
     def label(self, payload):
         require(len(payload) % 8 == 0, "%d bytes are not a whole number of records of 8" % len(payload))
@@ -1175,7 +1239,10 @@ class Stream:
         for at in range(0, len(payload), size):
             (vertex,) = struct.unpack_from("<Q", payload, at)
             point = self.header.point(self.header.record.unpack_from(payload, at + 8))
-            if vertex != UNKNOWN:
+            if vertex != UNKNOWN and self.header.is_residual:
+                is_known = vertex >> NUMBER_BITS <= self.header.part[1]
+                require(is_known, "residual point has the id %d of no vertex" % vertex)
+            elif vertex != UNKNOWN:
                 require(vertex < self.total["vertices"], "residual point has the id %d of no vertex" % vertex)
                 require(vertex in self.live, "residual point names vertex %d, which is not live" % vertex)
                 require(
@@ -1394,7 +1461,10 @@ class Stream:
         counted = dict(self.total)
         for name, total in stated.items():
             require(total < UNKNOWN, "END: %d %s are beyond counting" % (total, name))
-        if self.header.is_mesh:
+        if self.header.is_residual:
+            # The points are those of the region, which are vertices of other streams.
+            counted["points"], counted["merged"] = stated["points"], stated["merged"]
+        elif self.header.is_mesh:
             counted["merged"] = stated["merged"]
             counted["points"] = counted["vertices"] + counted["merged"] + counted["residual"] - self.named
             retired = self.finalized + self.named
@@ -1423,6 +1493,7 @@ class Stream:
         require(self.neighbour < cells, "END: a cell has the neighbour %d of %d cells" % (self.neighbour, cells))
         if self.chunks:
             self.chunks.end()
+        self.end_total = stated
         self.where = "byte %d" % self.offset
         require(not self.source.read(1), "the input goes on after END")
         self.text.line("# end " + " ".join("%s %d" % total for total in stated.items()))
@@ -1497,6 +1568,8 @@ class Text:
             lines.append("constrained %s %s" % (yes[is_cut], decimal(kill)))
         if header.weighted is not None:
             lines.append("weighted " + decimal(header.weighted))
+        if header.part:
+            lines.append("part %d %d" % header.part)
         self.plane = self.plane_grid(header) if header.is_integer else decimals
         lines.append("producer " + json.dumps(header.producer, ensure_ascii=False))
         for line in lines:
@@ -1535,14 +1608,16 @@ class Text:
 
         return world
 
-    def patch(self, new, simplices, sides, finalized):
+    def patch(self, first, new, simplices, sides, finalized, origins, kept):
         self.line("# patch")
         self.vertices(new)
+        self.write("".join(["from %d %d\n" % (vertex + 1, origins[vertex] + 1) for vertex in sorted(origins)]))
         for simplex in simplices:
             letter = "c" if len(simplex) == 4 else "f"
             self.line(letter + "".join([" %d" % (vertex + 1) for vertex in simplex]))
         self.write("".join(["side %d %d %d\n" % (t + 1, place + 1, s + 1) for t, place, s in sides]))
         self.write("".join(["x %d\n" % (vertex + 1) for vertex in finalized]))
+        self.write("".join(["kept %d\n" % (vertex + 1) for vertex in kept]))
 
     def numbers(self, word, numbers):
         """Numbers counted from 1, at most 4096 per line."""
@@ -1551,6 +1626,192 @@ class Text:
 
     def residual(self, vertex, point):
         self.write("r %s %s\n%s" % ("-" if vertex is None else vertex + 1, self.world(point), self.row()))
+
+
+# --- Meshes in parts (formats/parts.md) ----------------------------------------------------------------------
+
+
+MANIFEST = {"format": str, "version": int, "plan": str, "bounds": (list, type(None)), "points": int, "merged": int, "parts": list}
+MANIFEST_PART = {"number": int, "file": str, "bytes": int, "vertices": int, "simplices": int}
+
+
+NO_MANIFEST = "this is JSON, but no manifest of a mesh in parts"
+
+
+def is_manifest(path):
+    """Whether a regular file starts as a manifest does."""
+    if not os.path.isfile(path):
+        return False
+    with open(path, "rb") as file:
+        return b"".join(file.read(256).split()).startswith(b'{"format":"spmeshmeshinparts"')
+
+
+def fields_of(found, expected, what):
+    """Checks the names of the fields of an object, and their types."""
+    message = NO_MANIFEST + ": the fields of %s" % what
+    require(type(found) is dict and set(found) == set(expected), message)
+    for name, types in expected.items():
+        value = found[name]
+        require(isinstance(value, types) and not isinstance(value, bool), message)
+        require(not isinstance(value, int) or 0 <= value < 2**64, message)
+
+
+class Manifest:
+    def __init__(self, path):
+        with open(path, "rb") as file:
+            data = file.read(2**28 + 1)
+        require(len(data) <= 2**28, "a manifest of more than 2^28 bytes")
+        try:
+            found = json.loads(data)
+        except ValueError:
+            raise Malformed(NO_MANIFEST) from None
+        require(type(found) is dict, NO_MANIFEST)
+        require(
+            found.get("format") == "spmesh mesh in parts",
+            "this is %r, expected a mesh in parts" % found.get("format"),
+        )
+        if found.get("version") != 1:
+            raise TooNew("version %r of a manifest; this program reads 1" % found.get("version"))
+        fields_of(found, MANIFEST, "the manifest")
+        require(len(found["plan"]) == 16 and set(found["plan"]) <= set("0123456789abcdef"), "%r is no hash of a plan" % found["plan"])
+        self.plan, self.parts = int(found["plan"], 16), found["parts"]
+        self.points, self.merged, self.bounds = found["points"], found["merged"], None
+        require(self.parts, "a mesh without parts")
+        if found["bounds"] is not None:
+            corners = [side if type(side) is list else [] for side in found["bounds"]]
+            is_box = [len(side) for side in corners] == [3, 3]
+            is_box = is_box and all(type(x) in (int, float) for side in corners for x in side)
+            require(is_box, NO_MANIFEST + ": the bounding box")
+            self.bounds = tuple(float(x) for side in corners for x in side)
+        folder = os.path.dirname(path)
+        # For each part the id of its first vertex in the joined mesh.
+        self.first, self.vertices, vertices = {}, {}, 0
+        for part in self.parts:
+            fields_of(part, MANIFEST_PART, "a part")
+            number = part["number"]
+            require(
+                number < len(self.parts) and number not in self.first,
+                "part %d of %d comes twice, or is none" % (number, len(self.parts)),
+            )
+            self.first[number] = vertices
+            self.vertices[number] = part["vertices"]
+            vertices += part["vertices"]
+            part["path"] = os.path.join(folder, part["file"])
+
+
+class Joined(Text):
+    """Takes the parts of a mesh as a text takes a stream, and prints the text twin of the joined mesh."""
+
+    def __init__(self, write, manifest):
+        Text.__init__(self, write)
+        self.manifest, self.common = manifest, None
+        # Lines of the vertices that parts still share, by their ids in the joined mesh.
+        self.shared = {}
+        self.total = dict.fromkeys("points cells vertices simplices merged residual walls".split(), 0)
+
+    def start(self, part):
+        """The next part follows."""
+        self.part, self.before = part, dict(self.total)
+        # Ids in the joined mesh, and lines, of the vertices of the part that are not final in it.
+        self.ids, self.places = {}, {}
+
+    def header(self, header):
+        require(
+            header.part == (self.manifest.plan, self.part["number"]) and not header.is_residual,
+            "this is not part %d of the plan" % self.part["number"],
+        )
+        attributes = [vars(attribute) for attribute in header.attributes]
+        attributes = [{name: value for name, value in all.items() if name not in ("number", "row")} for all in attributes]
+        common = (header.kind, header.scale, header.offset, header.has_elevation, attributes)
+        require(self.common in (None, common), "its grid or its attributes are not those of the other parts")
+        if self.common is None:
+            header = copy.copy(header)
+            header.part, header.points, header.bounds, header.tree = None, UNKNOWN, self.manifest.bounds, None
+            header.check_bounds()
+            self.first_header = header
+            Text.header(self, header)
+        self.common = common
+
+    def line(self, line):
+        """Lines of labels and of the end are none of the joined mesh."""
+        if line.startswith("#spmesh ") or line == "# patch":
+            self.write(line + "\n")
+
+    def id_of(self, vertex):
+        """The id of a vertex in the joined mesh."""
+        part, number = vertex >> NUMBER_BITS, vertex % 2**NUMBER_BITS
+        require(number < self.manifest.vertices.get(part, 0), "a vertex of no part")
+        return self.manifest.first[part] + number
+
+    def patch(self, first, new, simplices, sides, finalized, origins, kept):
+        start, lines = self.total["vertices"], []
+        for vertex, point in enumerate(new, first):
+            line = "v %s\n%s" % (self.world(point), self.row())
+            if vertex in origins:
+                joined = self.id_of(origins[vertex])
+                require(joined in self.shared, "a vertex that no part before this one has kept")
+                require(self.shared[joined] == line, "a vertex that is another point in another part")
+            else:
+                joined = start + len(lines)
+                lines.append(line)
+                self.first_header.point(point)
+            self.ids[vertex], self.places[vertex] = joined, line
+        for vertex in kept:
+            self.shared[self.ids[vertex]] = self.places[vertex]
+        final = [self.ids[vertex] for vertex in set(finalized) - set(kept)]
+        for vertex in final:
+            self.shared.pop(vertex, None)
+        simplices = [[self.ids[vertex] for vertex in simplex] for simplex in simplices]
+        for vertex in finalized:
+            del self.ids[vertex], self.places[vertex]
+        self.total["vertices"] += len(lines)
+        self.total["simplices"] += len(simplices)
+        if lines or simplices or final:
+            self.line("# patch")
+            self.write("".join(lines))
+            for simplex in simplices:
+                self.write("%s %s\n" % ("fc"[len(simplex) - 3], " ".join(str(vertex + 1) for vertex in simplex)))
+            final.sort(key=lambda vertex: (vertex < start, vertex))
+            self.write("".join(["x %d\n" % (vertex + 1) for vertex in final]))
+
+    def finish(self, totals):
+        """The part has ended with these totals."""
+        self.total["merged"] += totals["merged"]
+        for name in ("vertices", "simplices"):
+            found, stated = self.total[name] - self.before[name], self.part[name]
+            require(found == stated, "%d %s of its own, expected %d" % (found, name, stated))
+
+    def end(self):
+        require(not self.shared, "%d vertices are kept for parts that do not come" % len(self.shared))
+        self.total["points"] = self.total["vertices"] + self.total["merged"]
+        stated = self.manifest.points, self.manifest.merged
+        found = self.total["points"], self.total["merged"]
+        require(found == stated, "the parts have %d points, %d of them merged, expected %d and %d" % (found + stated))
+        self.write("# end %s\n" % " ".join("%s %d" % total for total in self.total.items()))
+
+
+class Join:
+    """Reads a mesh in parts."""
+
+    def __init__(self, path, write):
+        self.path, self.write, self.where = path, write, "manifest"
+
+    def read(self):
+        manifest = Manifest(self.path)
+        joined = Joined(self.write, manifest)
+        for part in manifest.parts:
+            self.where = part["path"]
+            with open(part["path"], "rb") as source:
+                stream = Stream(source, joined)
+                joined.start(part)
+                try:
+                    stream.read()
+                    joined.finish(stream.end_total)
+                except REFUSED:
+                    self.where = "%s: %s" % (part["path"], stream.where)
+                    raise
+        self.where = "manifest"
+        joined.end()
 
 
 def main(arguments):
@@ -1563,9 +1824,15 @@ def main(arguments):
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(encoding="utf-8", newline="\n")
     stream = None
+    write = (lambda text: None) if quiet else sys.stdout.write
     try:
+        if names[0] != "-" and is_manifest(name):
+            stream = Join(name, write)
+            stream.read()
+            sys.stdout.flush()
+            return 0
         with sys.stdin.buffer if names[0] == "-" else open(name, "rb") as source:
-            stream = Stream(source, Text((lambda text: None) if quiet else sys.stdout.write))
+            stream = Stream(source, Text(write))
             stream.read()
             sys.stdout.flush()
         return 0

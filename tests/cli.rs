@@ -5,13 +5,14 @@ use std::path::Path;
 
 use crate::programs::{Folder, outcome, run, sample};
 
-const TOOLS: [&str; 14] = [
+const TOOLS: [&str; 15] = [
     "spfinalize",
     "spdelaunay2d",
     "spdelaunay3d",
     "spdem",
     "spconstrain",
     "spheight",
+    "spnode",
     "spcanopy",
     "spview",
     "tess3",
@@ -150,7 +151,7 @@ fn each_failure_has_its_exit_code() {
 #[test]
 fn names_of_other_formats_are_refused() {
     let folder = Folder::new();
-    let tools: [(&str, &[&str]); 14] = [
+    let tools: [(&str, &[&str]); 15] = [
         ("spfinalize", &["-"]),
         ("spdelaunay2d", &[]),
         ("spdelaunay3d", &[]),
@@ -158,6 +159,7 @@ fn names_of_other_formats_are_refused() {
         ("spdem", &["--contours", "1"]),
         ("spconstrain", &["--kill", "1"]),
         ("spheight", &["--ground", "none", "none.las"]),
+        ("spnode", &["collect", "none.json", "-d", "."]),
         ("spcanopy", &["--ground", "none", "none.las"]),
         ("spview", &[]),
         ("tess3", &["none.pdb"]),

@@ -8,6 +8,7 @@ mod banks;
 mod canopy;
 mod cell_grid;
 mod cli;
+mod cluster;
 mod configgen;
 mod contours;
 mod convert;

@@ -4,8 +4,11 @@ mod columns;
 mod damage;
 mod filters;
 mod grids;
+mod index_copc;
+mod index_lax;
 mod las;
 pub mod las_file;
+mod lax_writer;
 mod raw;
 mod salvage;
 mod sp;
@@ -36,6 +39,20 @@ fn flat() -> SourceOptions {
 /// A bundled sample.
 fn sample(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+/// The points of one pass, the number of records that were decoded, and notices.
+fn decoded(path: &Path, options: &SourceOptions) -> Result<(Vec<Point>, u64, Vec<String>)> {
+    let input = Input::open(&[path.to_path_buf()], options)?;
+    let mut reader = input.read()?;
+    let (mut points, mut batch) = (Vec::new(), Vec::new());
+    loop {
+        reader.next_batch(&mut batch)?;
+        if batch.is_empty() {
+            return Ok((points, reader.records(), input.notices().to_vec()));
+        }
+        points.extend_from_slice(&batch);
+    }
 }
 
 /// All points of one pass.

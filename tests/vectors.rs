@@ -128,6 +128,33 @@ fn vectors_that_must_fail_do_with_their_words_and_a_position() {
     }
 }
 
+/// Manifests of meshes in parts: programs read them as one stream, or say what is wrong.
+#[test]
+fn meshes_in_parts_are_joined_or_refused() {
+    let folder = repository("formats/vectors/joined");
+    let mut seen = 0;
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "json") {
+            continue;
+        }
+        seen += 1;
+        let name = path.to_str().unwrap();
+        let output = run("spconvert", &[name, "--to", "text"], &[]);
+        let (code, message) = (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned());
+        if let Ok(twin) = std::fs::read(path.with_extension("txt")) {
+            assert_eq!(code, Some(0), "{name}: {message}");
+            assert!(output.stdout == twin, "{name}");
+            continue;
+        }
+        let expected = std::fs::read_to_string(path.with_extension("err")).unwrap();
+        let (words, exit_code) = expected.split_once("\nexit code ").unwrap();
+        assert_eq!(code, exit_code.trim_end().parse().ok(), "{name}: {message}");
+        assert!(message.contains(words), "{name}: {message}");
+    }
+    assert!(seen > 20);
+}
+
 #[test]
 fn the_python_reader_gives_the_same_twins_and_the_same_errors() {
     let Some(output) = run_python("scripts/check_vectors.py", &[], &[]) else { return };

@@ -7,7 +7,7 @@ use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use spmesh_cli::{
     configgen, dd4, spcanopy, spconstrain, spconvert, spdelaunay2d, spdelaunay3d, spdem, spfinalize,
-    spheight, spinfo, splinefit, spview, tess3,
+    spheight, spinfo, splinefit, spnode, spview, tess3,
 };
 
 fn main() -> std::io::Result<()> {
@@ -30,7 +30,7 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-fn tools() -> [Command; 14] {
+fn tools() -> [Command; 15] {
     [
         spfinalize::Flags::command(),
         spdelaunay2d::Flags::command(),
@@ -38,6 +38,7 @@ fn tools() -> [Command; 14] {
         spdem::Flags::command(),
         spconstrain::Flags::command(),
         spheight::Flags::command(),
+        spnode::Flags::command(),
         spcanopy::Flags::command(),
         spview::Flags::command(),
         tess3::Flags::command(),

@@ -124,6 +124,11 @@ impl Audit {
     /// # Errors
     /// Usage, if there is no audit of the kind.
     pub fn new(header: &Header, standard: Standard, given: Option<PointSet>) -> Result<Self, Error> {
+        if header.part.is_some() {
+            return Err(Error::usage(
+                "a part of a mesh proves nothing alone: audit the manifest that spnode collect writes",
+            ));
+        }
         let (state, mut checks) = match header.kind {
             Kind::Points => (State::Points(PointsAudit::new(header)), points_checks(header)),
             Kind::TriangleMesh => (State::Mesh(MeshAudit::new(header, standard)), mesh_checks(header)),
@@ -138,7 +143,13 @@ impl Audit {
             Kind::TetrahedralMesh => {
                 (State::Tetrahedra(TetrahedraAudit::new(header, standard)), TETRAHEDRA_CHECKS.to_vec())
             }
-            Kind::Points4 | Kind::Cells4 | Kind::Simplices4 | Kind::Configurations | Kind::Splines => {
+            Kind::Points4
+            | Kind::Cells4
+            | Kind::Simplices4
+            | Kind::Configurations
+            | Kind::Splines
+            | Kind::TriangleResidual
+            | Kind::TetrahedralResidual => {
                 let kind = header.kind.name();
                 let message =
                     format!("streams of kind {kind} have an audit of their own, or nothing to prove");

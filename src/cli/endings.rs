@@ -9,6 +9,8 @@ use spmesh_core::error::{Error, Result};
 
 /// Streams of spmesh.
 pub(super) const STREAM: &[&str] = &["spm"];
+/// Plans, and manifests of meshes in parts.
+pub(super) const JSON: &[&str] = &["json"];
 /// Rasters.
 pub(super) const RASTER: &[&str] = &["tif", "tiff", "asc"];
 /// Lines.

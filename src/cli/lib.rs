@@ -25,6 +25,7 @@ pub mod spheight;
 pub mod spinfo;
 #[cfg(feature = "splines")]
 pub mod splinefit;
+pub mod spnode;
 #[cfg(feature = "view")]
 pub mod spview;
 pub mod tess3;
@@ -47,7 +48,7 @@ use spmesh_core::parallel::available_threads;
 use spmesh_core::system;
 use spmesh_core::temporary::remove_names_at_signals;
 use spmesh_io::detect::BYTE_ORDER_MARK;
-use spmesh_io::source::{Plain, name_of, open_file, open_stdin};
+use spmesh_io::source::{Plain, is_manifest, name_of, open_file, open_manifest, open_stdin};
 use spmesh_model::bounds::Bounds;
 
 /// Runs a tool: parses its flags, calls `run`, and turns the result into an exit code and a message.
@@ -173,7 +174,7 @@ pub fn peak_memory() -> u64 {
 }
 
 /// Opens an input that is read in order: stdin for `-`, a file otherwise; with the name that messages use.
-/// gzip data is decompressed.
+/// gzip data is decompressed, and the manifest of a mesh in parts is opened as the mesh.
 ///
 /// # Errors
 /// If the file cannot be opened, or stdin is a terminal.
@@ -185,6 +186,9 @@ pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Sen
         return Ok((plain(open_stdin()?).map_err(reading)?, name));
     }
     let (file, _) = open_file(path).map_err(|e| e.of_input(&name))?;
+    if is_manifest(&file) {
+        return Ok((Box::new(open_manifest(path)?), name));
+    }
     Ok((plain(file).map_err(reading)?, name))
 }
 

@@ -2,6 +2,8 @@
 
 mod areas;
 mod figures;
+pub(crate) mod leaf;
+mod planning;
 mod water;
 mod weights;
 
@@ -20,6 +22,7 @@ use super::{Common, StatsFormat, notice, parse_numbers, parse_size, read_list};
 use crate::endings;
 use areas::AreaFlags;
 use figures::{Drops, LineStats, stats_json, stats_text};
+use planning::PlanFlags;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
@@ -73,6 +76,8 @@ Examples:
       spfinalize --clip district.shp --drop-inside buildings.gpkg tiles/*.laz -o district.spm
   Flat lakes and rivers that fall; the same file makes their shores edges of the mesh:
       spfinalize --flatten water.gpkg tile.laz | spdelaunay2d | spconstrain --lines water.gpkg -o flat.spm
+  A plan for many jobs on a cluster, from the headers of tiles alone (see spnode):
+      spfinalize --plan plan.json --keep-class 2 tiles/*.laz
   Points for another machine, at a quarter of the bytes:
       spfinalize --compress tile.laz | ssh host spdelaunay2d -o tile.spm
   Particles as floats without a header, the files of two processes as one input:
@@ -118,6 +123,9 @@ pub struct Flags {
     /// File for the stream; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
+
+    #[command(flatten)]
+    plan: PlanFlags,
 
     /// Take all occupied cells of this level as leaves; with --cell-points, the deepest level of leaves. 0 is
     /// a single cell
@@ -212,6 +220,9 @@ enum Spool {
 /// Everything that reading, finalizing and writing fail with.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    if let Some(plan) = &flags.plan.plan {
+        return planning::make(&flags, plan);
+    }
     let mut options = flags.options()?;
     let weighing = flags.weights.load()?;
     flags.lines.check(!flags.water.files().is_empty())?;
@@ -352,6 +363,7 @@ impl Flags {
             radii: weighing.and_then(|weighing| weighing.radii.clone()),
             filters: self.points.filters(),
             bounds: self.points.bounds,
+            reach: None,
             skip_invalid: self.points.skip_invalid,
             invalid_advice: InvalidAdvice::SkipInvalid,
             dims: if self.octree { 3 } else { 2 },
@@ -361,6 +373,7 @@ impl Flags {
             salvage: self.salvage,
             temp_dir: self.temp_dir.clone(),
             threads: NonZeroUsize::new(self.threads()),
+            ..SourceOptions::default()
         })
     }
 

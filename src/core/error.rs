@@ -81,8 +81,13 @@ impl Error {
     /// A failure of the operating system during `what` ("reading", "creating the temporary file").
     ///
     /// A broken pipe becomes [`ErrorKind::ClosedPipe`]; an unexpected end of file and invalid data become
-    /// [`ErrorKind::Malformed`].
+    /// [`ErrorKind::Malformed`]. An error of this type inside of `cause`, such as that of a part of a mesh that is read
+    /// as one stream, is returned as it is.
     pub fn io(what: impl Into<String>, cause: io::Error) -> Self {
+        let cause = match cause.downcast::<Error>() {
+            Ok(inner) => return inner,
+            Err(cause) => cause,
+        };
         let kind = match cause.kind() {
             io::ErrorKind::BrokenPipe => ErrorKind::ClosedPipe,
             io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidData => ErrorKind::Malformed,

@@ -24,6 +24,9 @@ pub const CONFIGURATION_DEGREE_MAX: u32 = 1 << 12;
 /// Most segments of a constrained mesh: sides of triangles name them in 32 bits.
 pub const SEGMENTS_MAX: u64 = 1 << 32;
 
+/// Longest manifest of a mesh in parts, in bytes: a million parts.
+pub const MANIFEST_LEN_MAX: u64 = 1 << 28;
+
 /// Longest line of a text input, in bytes.
 pub const TEXT_LINE_MAX: usize = 1 << 16;
 
@@ -119,3 +122,9 @@ pub const CONDITION_DEPTH_MAX: usize = 32;
 /// Most vertices of a link that is not triangulated by circles: the search for its diagonals takes cubic
 /// time.
 pub const LINK_VERTICES_MAX: usize = 512;
+
+/// Most entries of the hierarchy of a COPC file: 200 MB. A file of 10^11 points has fewer.
+pub const COPC_ENTRIES_MAX: u64 = 1 << 22;
+
+/// Longest index of LAStools, in bytes: it takes five times as much while it is checked.
+pub const LAX_LEN_MAX: u64 = 1 << 25;

@@ -168,6 +168,24 @@ pub(crate) fn start_write_back(file: &impl AsFd, offset: u64, len: u64) {
 #[cfg(not(target_os = "linux"))]
 pub(crate) fn start_write_back(_file: &impl AsFd, _offset: u64, _len: u64) {}
 
+/// Processor time of all threads of this process so far, in seconds.
+#[must_use]
+pub fn cpu_seconds() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+}
+
+/// The name of this machine.
+#[must_use]
+pub fn host_name() -> String {
+    rustix::system::uname().nodename().to_string_lossy().into_owned()
+}
+
+/// Lets the peak memory of this process start again from what it uses now, where the system can do that.
+pub fn reset_peak_memory() {
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+}
+
 /// Bytes that can still be written below `folder`; `None` if the system does not tell.
 #[must_use]
 pub fn free_bytes(folder: &Path) -> Option<u64> {

@@ -30,10 +30,12 @@ pub(super) enum Tag {
     Segments,
     Sides,
     OpenSegments,
+    Origins,
+    Kept,
     End,
 }
 
-const NAMES: [(Tag, TagBytes); 17] = [
+const NAMES: [(Tag, TagBytes); 19] = [
     (Tag::Points, *b"PNTS"),
     (Tag::Cells, *b"CELL"),
     (Tag::Patch, *b"PTCH"),
@@ -50,6 +52,8 @@ const NAMES: [(Tag, TagBytes); 17] = [
     (Tag::Segments, *b"segm"),
     (Tag::Sides, *b"side"),
     (Tag::OpenSegments, *b"open"),
+    (Tag::Origins, *b"from"),
+    (Tag::Kept, *b"kept"),
     (Tag::End, *b"END "),
 ];
 
@@ -57,6 +61,24 @@ impl Tag {
     /// Whether only a constrained mesh has such blocks.
     pub(super) fn is_of_constraints(self) -> bool {
         matches!(self, Tag::Segments | Tag::Sides | Tag::OpenSegments)
+    }
+
+    /// Whether only a part of a mesh has such blocks.
+    pub(super) fn is_of_parts(self) -> bool {
+        matches!(self, Tag::Origins | Tag::Kept)
+    }
+
+    /// What such a block says about the patch behind it, for messages.
+    pub(super) fn of_patch(self) -> &'static str {
+        match self {
+            Tag::Origins | Tag::Kept => "vertices of other parts",
+            _ => "sides",
+        }
+    }
+
+    /// Whether such a block says more about the patch that it precedes.
+    pub(super) fn is_of_patch(self) -> bool {
+        matches!(self, Tag::Sides | Tag::Origins | Tag::Kept)
     }
 
     pub(super) fn bytes(self) -> TagBytes {

@@ -2,6 +2,7 @@
 
 use super::configurations::ConfigurationBlock;
 use super::constraints::Segment;
+use super::part::Origin;
 use super::points4::Points4;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
@@ -66,6 +67,10 @@ pub struct Patch {
     /// in the patch, its corner (0, 1 or 2) opposite to the side, and the number of the segment. Both
     /// triangles at an edge state it. Empty in all other meshes.
     pub sides: Vec<[u32; 3]>,
+    /// In a part of a mesh, the new vertices that are vertices of other parts, increasing.
+    pub origins: Vec<Origin>,
+    /// In a part of a mesh, those of the finalized vertices that later parts may use, increasing.
+    pub kept: Vec<u32>,
 }
 
 impl Patch {

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use super::constraints::Constrained;
 use super::coordinates::{Coordinates, is_grid};
 use super::kind::Kind;
+use super::part::PartName;
 use super::weights::Weighted;
 use spmesh_core::limits::PRODUCER_LEN_MAX;
 use spmesh_model::attributes::Attributes;
@@ -70,6 +71,9 @@ pub struct Header {
     /// Whether points of space are weighted: a mesh is then the regular one. A program that makes a stream
     /// from another either passes weights on or states none.
     pub weighted: Option<Weighted>,
+    /// Which part of a mesh in parts the stream is; `None` if it is none. A program that makes a stream from
+    /// another either passes on what vertices parts share or states none.
+    pub part: Option<PartName>,
     /// Program and version that wrote the stream.
     pub producer: String,
 }
@@ -93,6 +97,7 @@ impl Header {
             attributes: Attributes::default(),
             constrained: None,
             weighted: None,
+            part: None,
             producer: concat!("spmesh ", env!("CARGO_PKG_VERSION")).to_string(),
         }
     }
@@ -151,6 +156,11 @@ impl Header {
         if let Some(weighted) = self.weighted {
             weighted.check(self)?;
         }
+        match self.part {
+            Some(part) => part.check(self)?,
+            None if self.kind.is_residual() => return Err("a residual without the part that it is of".into()),
+            None => {}
+        }
         if self.chunked && (self.kind != Kind::Points || self.tree.is_none()) {
             return Err("only points with a finalization tree can be chunked".into());
         }
@@ -207,8 +217,8 @@ impl Header {
     }
 
     fn check_region(&self) -> std::result::Result<(), String> {
-        if self.kind.is_partial() != self.region.is_some() {
-            return Err("a region goes with a partial mesh, and only with one".into());
+        if self.kind.has_region() != self.region.is_some() {
+            return Err("a region goes with a partial mesh or a residual, and only with one".into());
         }
         let Some(Region { min, max }) = &self.region else { return Ok(()) };
         if (0..3).any(|axis| min[axis].partial_cmp(&max[axis]) != Some(Ordering::Less)) {

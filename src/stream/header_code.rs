@@ -9,6 +9,7 @@ use super::constraints::Constrained;
 use super::coordinates::Coordinates;
 use super::header::{COUNT_UNKNOWN, Crs, Header, check_tree};
 use super::kind::Kind;
+use super::part::PartName;
 use super::tag_rules::{TagBytes, check_tag, may_be_skipped, needs_newer};
 use super::weights::Weighted;
 use spmesh_core::error::{Error, Result};
@@ -52,7 +53,7 @@ struct Row {
 const GRID: TagBytes = *b"GRID";
 
 /// All records that this version knows, in the order in which they are written.
-const ROWS: [Row; 10] = [
+const ROWS: [Row; 11] = [
     Row { tag: GRID, encode: encode_grid, decode: decode_grid },
     Row { tag: *b"BBOX", encode: encode_bounds, decode: decode_bounds },
     Row { tag: *b"TREE", encode: encode_tree, decode: decode_tree },
@@ -62,6 +63,7 @@ const ROWS: [Row; 10] = [
     Row { tag: *b"attr", encode: encode_attributes, decode: decode_attributes },
     Row { tag: *b"cons", encode: Constrained::encode, decode: Constrained::decode },
     Row { tag: *b"wght", encode: Weighted::encode, decode: Weighted::decode },
+    Row { tag: *b"part", encode: PartName::encode, decode: PartName::decode },
     Row { tag: *b"prod", encode: encode_producer, decode: decode_producer },
 ];
 

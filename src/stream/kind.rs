@@ -27,6 +27,10 @@ pub enum Kind {
     Splines,
     /// The final tetrahedra of a region and its residual, to be merged with those of other regions.
     PartialTetrahedralMesh,
+    /// The residual of a part of a triangle mesh, whose final triangles are in a stream of their own.
+    TriangleResidual,
+    /// The residual of a part of a tetrahedral mesh, whose final tetrahedra are in a stream of their own.
+    TetrahedralResidual,
 }
 
 struct Row {
@@ -39,7 +43,7 @@ struct Row {
     blocks: &'static [&'static [Tag]],
 }
 
-const ROWS: [Row; 10] = [
+const ROWS: [Row; 12] = [
     Row {
         kind: Kind::Points,
         code: 1,
@@ -54,7 +58,7 @@ const ROWS: [Row; 10] = [
         name: "triangle mesh",
         dims: &[2],
         vertices_per_simplex: 3,
-        blocks: &[&[Tag::Segments, Tag::Sides, Tag::Patch], &[Tag::OpenSegments]],
+        blocks: &[&[Tag::Segments, Tag::Sides, Tag::Origins, Tag::Kept, Tag::Patch], &[Tag::OpenSegments]],
     },
     Row {
         kind: Kind::PartialTriangleMesh,
@@ -70,7 +74,7 @@ const ROWS: [Row; 10] = [
         name: "tetrahedral mesh",
         dims: &[3],
         vertices_per_simplex: 4,
-        blocks: &[&[Tag::Patch, Tag::Labels]],
+        blocks: &[&[Tag::Origins, Tag::Kept, Tag::Patch, Tag::Labels]],
     },
     Row {
         kind: Kind::Points4,
@@ -119,6 +123,22 @@ const ROWS: [Row; 10] = [
         dims: &[3],
         vertices_per_simplex: 4,
         blocks: &[&[Tag::Patch], &[Tag::ResidualPoints], &[Tag::Walls]],
+    },
+    Row {
+        kind: Kind::TriangleResidual,
+        code: 11,
+        name: "residual of a triangle mesh",
+        dims: &[2],
+        vertices_per_simplex: 3,
+        blocks: &[&[Tag::ResidualPoints], &[Tag::Walls]],
+    },
+    Row {
+        kind: Kind::TetrahedralResidual,
+        code: 12,
+        name: "residual of a tetrahedral mesh",
+        dims: &[3],
+        vertices_per_simplex: 4,
+        blocks: &[&[Tag::ResidualPoints], &[Tag::Walls]],
     },
 ];
 
@@ -178,13 +198,25 @@ impl Kind {
     /// Whether the stream is the mesh of a region, with a residual that is merged with others.
     #[must_use]
     pub fn is_partial(self) -> bool {
-        self.row().blocks.contains(&&[Tag::Walls][..])
+        matches!(self, Kind::PartialTriangleMesh | Kind::PartialTetrahedralMesh)
+    }
+
+    /// Whether the stream is the residual of a part, and nothing else.
+    #[must_use]
+    pub fn is_residual(self) -> bool {
+        matches!(self, Kind::TriangleResidual | Kind::TetrahedralResidual)
+    }
+
+    /// Whether the header states a region.
+    #[must_use]
+    pub fn has_region(self) -> bool {
+        self.is_partial() || self.is_residual()
     }
 
     /// Whether the header may have a finalization tree.
     #[must_use]
     pub fn may_have_tree(self) -> bool {
-        !self.is_4d() && !self.has_knots() && self != Kind::PartialTetrahedralMesh
+        !self.is_4d() && !self.has_knots() && !self.is_residual() && self != Kind::PartialTetrahedralMesh
     }
 
     /// Vertices of a simplex of a patch; 0 where the kind holds no patches.

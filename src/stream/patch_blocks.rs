@@ -7,6 +7,7 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 use super::block::{FRAME_LEN, Frame, Tag};
 use super::coordinates::Coordinates;
 use super::header::Header;
+use super::part::{GlobalId, Origin};
 use super::payload::PATCH_FIXED_LEN;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
@@ -53,6 +54,9 @@ pub struct PatchBlocks {
     finalized: Vec<u8>,
     /// Attributes of the new vertices of all patches.
     rows: Vec<u8>,
+    /// New vertices of all patches that are those of other parts, with their numbers among the new vertices of
+    /// their node.
+    origins: Vec<(Origin, u32)>,
     patches: Vec<Place>,
 }
 
@@ -69,6 +73,8 @@ struct Place {
     finalized_end: usize,
     /// One past the last byte of the rows of its new vertices.
     rows_end: usize,
+    /// One past the last of its origins.
+    origins_end: usize,
 }
 
 impl PatchBlocks {
@@ -77,6 +83,7 @@ impl PatchBlocks {
         self.used = 0;
         self.finalized.clear();
         self.rows.clear();
+        self.origins.clear();
         self.patches.clear();
     }
 
@@ -128,7 +135,15 @@ impl PatchBlocks {
             rows.for_each(|row| self.rows.extend_from_slice(row));
         }
         let rows_end = self.rows.len();
-        self.patches.push(Place { start, end: start + len, imported, imports, finalized_end: 0, rows_end });
+        self.patches.push(Place {
+            start,
+            end: start + len,
+            imported,
+            imports,
+            finalized_end: 0,
+            rows_end,
+            origins_end: self.origins.len(),
+        });
         Ok(())
     }
 
@@ -143,6 +158,27 @@ impl PatchBlocks {
         LE::write_u32(count, ((place.finalized_end - before) / 4) as u32);
     }
 
+    /// Names the next new vertex of the patch that was pushed last that is a vertex of another part: its local
+    /// index, its number among the new vertices of its node, and its id. Call it for increasing vertices.
+    pub fn origin(&mut self, local: u32, own: u32, id: GlobalId) {
+        self.origins.push((Origin { local, id }, own));
+        if let Some(place) = self.patches.last_mut() {
+            place.origins_end = self.origins.len();
+        }
+    }
+
+    /// The new vertices of all patches that are those of other parts: number among the new vertices of the
+    /// node, and id.
+    pub fn shared(&self) -> impl Iterator<Item = (u32, GlobalId)> + '_ {
+        self.origins.iter().map(|&(origin, own)| (own, origin.id))
+    }
+
+    /// The new vertices of patch number `patch` that are those of other parts.
+    pub(super) fn origins(&self, patch: usize) -> impl Iterator<Item = Origin> + use<'_> {
+        let start = patch.checked_sub(1).map_or(0, |before| self.patches[before].origins_end);
+        self.origins[start..self.patches[patch].origins_end].iter().map(|&(origin, _)| origin)
+    }
+
     /// Completes the payload of patch number `patch`; `id_of` maps references to ids.
     pub(super) fn complete(
         &mut self,
@@ -152,7 +188,7 @@ impl PatchBlocks {
     ) -> EncodedPatch<'_> {
         let before = patch.checked_sub(1).map(|before| self.patches[before]);
         let (finalized_start, rows_start) = before.map_or((0, 0), |it| (it.finalized_end, it.rows_end));
-        let Place { start, end, imported, imports, finalized_end, rows_end } = self.patches[patch];
+        let Place { start, end, imported, imports, finalized_end, rows_end, .. } = self.patches[patch];
         for bytes in self.bytes[imported..imported + 8 * imports].chunks_exact_mut(8) {
             LE::write_u64(bytes, id_of(LE::read_u64(bytes)));
         }

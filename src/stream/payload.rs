@@ -6,6 +6,7 @@ use super::block::whole_records;
 use super::coordinates::Coordinates;
 use super::event::{Patch, Totals};
 use super::header::Header;
+use super::part::check_residual_id;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::cells::CellCode;
@@ -112,7 +113,7 @@ pub(super) fn patch(header: &Header, vertices_before: u64, bytes: &[u8]) -> Resu
         imported: imported.chunks_exact(8).map(LE::read_u64).collect(),
         simplices: locals(simplices),
         finalized: locals(finalized),
-        sides: Vec::new(),
+        ..Patch::default()
     };
     patch.check(vertices_before, per_simplex)?;
     Ok(patch)
@@ -123,7 +124,8 @@ pub(super) fn labels(bytes: &[u8]) -> Result<Vec<u64>> {
     Ok(whole_records(bytes, 8)?.map(LE::read_u64).collect())
 }
 
-/// Decodes residual points; their ids must be among the `vertices` earlier vertices.
+/// Decodes residual points; their ids must be among the `vertices` earlier vertices, or, in a residual of its
+/// own, those of parts up to this one.
 pub(super) fn residual_points(
     header: &Header,
     vertices: u64,
@@ -132,8 +134,8 @@ pub(super) fn residual_points(
     whole_records(bytes, 8 + header.point_len())?
         .map(|record| {
             let id = LE::read_u64(record);
-            if id != NO_VERTEX && id >= vertices {
-                return Err(Error::malformed(format!("residual point has the id {id} of no vertex")));
+            if id != NO_VERTEX {
+                check_residual_id(header, vertices, id)?;
             }
             Ok(((id != NO_VERTEX).then_some(id), point(header, &record[8..])?))
         })

@@ -14,6 +14,7 @@ use super::event::{Event, Patch, Totals};
 use super::functions;
 use super::header::Header;
 use super::header_code::{MAGIC, PREAMBLE_LEN, decode_preamble};
+use super::part;
 use super::payload;
 use super::points4::{self, Points4};
 use super::tally::Tally;
@@ -29,7 +30,7 @@ enum Wanted {
     Event,
     /// As many rows.
     Rows(usize),
-    /// The patch of the sides before.
+    /// The patch of the block before, which says more about it, or another block of that patch.
     Patch,
 }
 
@@ -164,12 +165,12 @@ impl<R: Read> StreamReader<R> {
         }
         self.rows.clear();
         let mut tag = self.next_block(Wanted::Event)?;
-        let mut sides = Vec::new();
-        if tag == Tag::Sides {
-            sides = constraints::decode_sides(&self.payload).map_err(|error| self.locate(error))?;
+        let mut more = Patch::default();
+        while tag.is_of_patch() {
+            self.decode_more(tag, &mut more).map_err(|error| self.locate(error))?;
             tag = self.next_block(Wanted::Patch)?;
         }
-        let event = self.decode(tag, sides).map_err(|error| self.locate(error))?;
+        let event = self.decode(tag, more).map_err(|error| self.locate(error))?;
         let rows = if self.header.attributes.is_empty() { 0 } else { rows_behind(&event) };
         if rows > 0 {
             let place = self.event_place;
@@ -242,8 +243,12 @@ impl<R: Read> StreamReader<R> {
                 )));
             }
             (Tag::Patch, Wanted::Patch) | (_, Wanted::Event) => {}
+            (Tag::Kept, Wanted::Patch) if self.last_tag == Some(Tag::Origins) => {}
             (_, Wanted::Patch) => {
-                return Err(Error::malformed(format!("block \"{name}\", expected the patch of the sides")));
+                let before = self.last_tag.map_or("sides", Tag::of_patch);
+                return Err(Error::malformed(format!(
+                    "block \"{name}\", expected the patch of the {before}"
+                )));
             }
         }
         if !self.header.kind.allows(self.last_tag, tag) {
@@ -254,6 +259,9 @@ impl<R: Read> StreamReader<R> {
         }
         if tag.is_of_constraints() && self.header.constrained.is_none() {
             return Err(Error::malformed(format!("block \"{name}\" in a stream that is not constrained")));
+        }
+        if tag.is_of_parts() && self.header.part.is_none() {
+            return Err(Error::malformed(format!("block \"{name}\" in a stream that is no part of a mesh")));
         }
         self.last_tag = Some(tag);
         Ok(())
@@ -312,8 +320,18 @@ impl<R: Read> StreamReader<R> {
         Ok(())
     }
 
-    /// The event of the block that was read. A patch gets its sides.
-    fn decode(&mut self, tag: Tag, sides: Vec<[u32; 3]>) -> Result<Event> {
+    /// Decodes a block that says more about the patch behind it.
+    fn decode_more(&self, tag: Tag, more: &mut Patch) -> Result<()> {
+        match tag {
+            Tag::Sides => more.sides = constraints::decode_sides(&self.payload)?,
+            Tag::Origins => more.origins = part::decode_origins(&self.payload)?,
+            _ => more.kept = part::decode_kept(&self.payload)?,
+        }
+        Ok(())
+    }
+
+    /// The event of the block that was read. A patch gets what the blocks before it say about it.
+    fn decode(&mut self, tag: Tag, more: Patch) -> Result<Event> {
         let (header, payload, totals) = (&self.header, &self.payload[..], self.tally.totals());
         let event = match tag {
             Tag::Points => {
@@ -323,7 +341,12 @@ impl<R: Read> StreamReader<R> {
                 return Ok(Event::Points(points));
             }
             Tag::Cells => Event::Cells(payload::cells(header, payload)?),
-            Tag::Patch => Event::Patch(Patch { sides, ..payload::patch(header, totals.vertices, payload)? }),
+            Tag::Patch => {
+                let Patch { sides, origins, kept, .. } = more;
+                let patch = payload::patch(header, totals.vertices, payload)?;
+                let patch = Patch { sides, origins, kept, ..patch };
+                Event::Patch(patch)
+            }
             Tag::Labels => Event::Labels(payload::labels(payload)?),
             Tag::ResidualPoints => {
                 Event::ResidualPoints(payload::residual_points(header, totals.vertices, payload)?)
@@ -341,7 +364,9 @@ impl<R: Read> StreamReader<R> {
             Tag::End => Event::End(payload::totals(payload)?),
             Tag::Segments => Event::Segments(constraints::decode_segments(header, payload)?),
             Tag::OpenSegments => Event::OpenSegments(constraints::decode_open_segments(payload)?),
-            Tag::Rows | Tag::Sides => unreachable!("read with their points, or with their patch"),
+            Tag::Rows | Tag::Sides | Tag::Origins | Tag::Kept => {
+                unreachable!("read with their points, or with their patch")
+            }
         };
         self.tally.count(&event)?;
         if let Event::End(stated) = &event {

@@ -7,6 +7,7 @@ use super::event::{Event, Totals};
 use super::functions::{self, FunctionRules};
 use super::header::Header;
 use super::kind::Kind;
+use super::part::{PartName, check_shared};
 use super::rules4::Rules4;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Bounds;
@@ -19,6 +20,7 @@ pub struct Tally {
     labels: u64,
     finalized: u64,
     named_residual_points: u64,
+    part: Option<PartName>,
     per_simplex: usize,
     per_wall: usize,
     has_vertices: bool,
@@ -41,6 +43,7 @@ impl Tally {
             labels: 0,
             finalized: 0,
             named_residual_points: 0,
+            part: header.part,
             per_simplex,
             per_wall: header.kind.vertices_per_wall(),
             has_vertices: header.kind.has_vertices(),
@@ -77,6 +80,7 @@ impl Tally {
             }
             Event::Patch(patch) => {
                 self.constraint_rules.sides(patch)?;
+                check_shared(self.part, patch)?;
                 self.totals.vertices += patch.new.len() as u64;
                 self.totals.simplices += (patch.simplices.len() / self.per_simplex) as u64;
                 self.finalized += patch.finalized.len() as u64;
@@ -145,7 +149,10 @@ impl Tally {
     pub fn check_end(&self, header: &Header, stated: &Totals) -> Result<()> {
         stated.check_range()?;
         let mut counted = self.totals;
-        if self.has_vertices {
+        if header.kind.is_residual() {
+            // The points are those of the region, most of which are vertices in other streams.
+            (counted.points, counted.merged) = (stated.points, stated.merged);
+        } else if self.has_vertices {
             counted.merged = stated.merged;
             let waiting = counted.residual_points - self.named_residual_points;
             let points = counted.vertices.checked_add(waiting).and_then(|n| n.checked_add(stated.merged));

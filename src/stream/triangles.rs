@@ -74,6 +74,6 @@ fn patch(
         imported: imported.into_iter().map(|(id, _)| id).collect(),
         simplices,
         finalized,
-        sides: Vec::new(),
+        ..Patch::default()
     }
 }

@@ -233,6 +233,7 @@ impl ConstrainedMesh {
                             [(t - number * patch_len) as u32, place as u32, segment]
                         })
                         .collect(),
+                    ..Patch::default()
                 })
                 .unwrap();
         }

@@ -4,6 +4,7 @@ mod attributes;
 mod audited_parts;
 mod equality;
 mod failures;
+mod parts;
 mod policies;
 mod shapes;
 mod space;

@@ -10,7 +10,9 @@ use spmesh_core::error::Result;
 use spmesh_model::attributes::{Attribute, Attributes};
 use spmesh_model::bounds::Point;
 use spmesh_model::decimal::Decimal;
-use spmesh_stream::{Constrained, Coordinates, Crs, Event, Header, Patch, Totals, VERSION, Weighted};
+use spmesh_stream::{
+    Constrained, Coordinates, Crs, Event, Header, PartName, Patch, Totals, VERSION, Weighted,
+};
 
 /// Writes the text twin.
 pub struct TwinSink<W> {
@@ -56,6 +58,10 @@ impl<W: Write> TwinSink<W> {
     fn patch(&mut self, patch: &Patch, rows: &[u8]) -> Result<()> {
         self.line(format_args!("# patch"))?;
         self.vertices(&patch.new, rows)?;
+        for origin in &patch.origins {
+            let (vertex, id) = (patch.id(origin.local) + 1, origin.id.0 + 1);
+            self.line(format_args!("from {vertex} {id}"))?;
+        }
         if self.header.kind.vertices_per_simplex() == 4 {
             for tetrahedron in patch.tetrahedra() {
                 let [a, b, c, d] = tetrahedron.map(|local| patch.id(local) + 1);
@@ -69,7 +75,8 @@ impl<W: Write> TwinSink<W> {
         }
         twin_constraints::sides(&mut self.output, self.simplices, &patch.sides)?;
         self.simplices += (patch.simplices.len() / self.header.kind.vertices_per_simplex()) as u64;
-        patch.finalized.iter().try_for_each(|&local| self.line(format_args!("x {}", patch.id(local) + 1)))
+        patch.finalized.iter().try_for_each(|&local| self.line(format_args!("x {}", patch.id(local) + 1)))?;
+        patch.kept.iter().try_for_each(|&local| self.line(format_args!("kept {}", patch.id(local) + 1)))
     }
 
     fn walls(&mut self, walls: &[u32]) -> Result<()> {
@@ -167,6 +174,9 @@ fn write_header(output: &mut impl Write, header: &Header) -> Result<()> {
     }
     if let Some(Weighted { greatest }) = header.weighted {
         line(format_args!("weighted {}", Decimal(greatest)))?;
+    }
+    if let Some(PartName { plan, number }) = header.part {
+        line(format_args!("part {plan} {number}"))?;
     }
     line(format_args!("producer {}", string(&header.producer)))
 }

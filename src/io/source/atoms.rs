@@ -57,10 +57,10 @@ pub(super) fn read(
     let stated = Stated {
         coordinates: structure.coordinates,
         has_z: Some(true),
-        crs: Crs::Unknown,
+        crs: Crs::Unknown.into(),
         bounds: Bounds::of_points(&points),
         points: Some(points.len() as u64),
-        offers: offers_of(radii.map(|_| radius()).as_slice()),
+        offers: offers_of(radii.map(|_| radius()).as_slice()).into(),
     };
     Ok((Atoms { points, radii: found.into() }, stated))
 }

@@ -27,9 +27,10 @@ pub(super) fn describe(
     options: &SourceOptions,
     notices: &mut Vec<String>,
 ) -> Result<(Description, Vec<RowPlan>)> {
-    let coordinates = match options.grid {
-        Some((scale, offset)) => Coordinates::I32 { scale, offset },
-        None => {
+    let coordinates = match (options.encoding, options.grid) {
+        (Some(encoding), _) => encoding,
+        (None, Some((scale, offset))) => Coordinates::I32 { scale, offset },
+        (None, None) => {
             let member = |file: &File| -> Member {
                 let Stated { coordinates, bounds, .. } = *file.stated;
                 Member { name: file.name.to_string(), coordinates, bounds }
@@ -45,7 +46,7 @@ pub(super) fn describe(
         has_elevation: has_z(files)? && options.dims == 2,
         crs: match &options.crs {
             Some(crs) => crs.clone(),
-            None => crs::common(files.iter().map(|file| (file.name, &file.stated.crs)), notices)?,
+            None => crs::common(files.iter().map(|file| (file.name, &*file.stated.crs)), notices)?,
         },
         stated_bounds: stated_bounds(files, &coordinates),
         stated_points: files.iter().map(|file| file.stated.points).sum(),

@@ -180,6 +180,12 @@ impl Dropped {
         self.0[reason as usize]
     }
 
+    /// The number of points dropped for any reason.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.0.iter().sum()
+    }
+
     /// Counts a point.
     pub(super) fn count(&mut self, reason: DropReason) {
         self.0[reason as usize] += 1;

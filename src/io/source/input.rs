@@ -9,7 +9,8 @@ use super::crs;
 use super::cut::Cut;
 use super::describe::{File, describe};
 use super::filters::{DropReason, Dropped};
-use super::input_reader::InputReader;
+use super::index;
+use super::input_reader::{InputReader, Passed};
 use super::las_header::LasHeader;
 use super::npy::{NpyArray, NpyPass};
 use super::options::SourceOptions;
@@ -64,15 +65,15 @@ pub struct Input {
     /// How the rows of each file are made.
     plans: Arc<[RowPlan]>,
     notices: Vec<String>,
-    /// What the first whole pass dropped: by filters, and not finite.
-    passed: Arc<OnceLock<(Dropped, u64)>>,
+    /// What the first whole pass has seen.
+    passed: Arc<OnceLock<Passed>>,
 }
 
 impl Input {
     /// Opens `paths` ("-" is standard input), recognizes each file by its content, reads its header, and
     /// finds the encoding that all points share.
     ///
-    /// Cost: the headers. Inputs that cannot be read twice, and compressed files of formats that are not read
+    /// Cost: the headers, and with a reach the indices. Inputs that cannot be read twice, and compressed files of formats that are not read
     /// sequentially, are copied to unlinked temporary files.
     ///
     /// # Errors
@@ -129,7 +130,13 @@ impl Input {
     /// How many points the filters dropped; none before the end of the first pass.
     #[must_use]
     pub fn dropped(&self) -> Dropped {
-        self.passed.get().copied().unwrap_or_default().0
+        self.passed.get().map_or_else(Dropped::default, |passed| passed.dropped)
+    }
+
+    /// After a pass: the points of each file in the window of the options, with those that were dropped.
+    #[must_use]
+    pub fn counts(&self) -> &[u64] {
+        self.passed.get().map_or(&[], |passed| &passed.counts)
     }
 
     /// After a pass: for each file that was cut off, what is left of it.
@@ -154,7 +161,7 @@ impl Input {
     /// After a pass: a notice if points with a coordinate that is not finite were dropped.
     #[must_use]
     pub fn invalid_notice(&self) -> Option<String> {
-        let count = self.passed.get().map_or(0, |(_, invalid)| *invalid);
+        let count = self.passed.get().map_or(0, |passed| passed.invalid);
         let points = if count == 1 { "point" } else { "points" };
         let what = format!("{}: {count} {points} with a coordinate that is not finite dropped", self.name());
         (count > 0).then_some(what)
@@ -228,7 +235,7 @@ impl Source {
         {
             cut = Some(Cut { read: header.points, lost: Some(header.lost) });
         }
-        stated.crs = crs::fitting(stated.crs, &mut own_notices);
+        stated.crs = Arc::new(crs::fitting(Arc::unwrap_or_clone(stated.crs), &mut own_notices));
         notices.extend(own_notices.into_iter().map(|notice| format!("{name}: {notice}")));
         // Atoms are decompressed once.
         let is_compressed = is_compressed && !matches!(content, Content::Atoms(_));
@@ -337,14 +344,17 @@ impl Content {
         }
         Ok(match format {
             Format::Las => {
-                let header = LasHeader::read(&origin.view()?, options.salvage, notices)?;
+                let mut header = LasHeader::read(&origin.view()?, options.salvage, notices)?;
+                if let Some(reach) = &options.reach {
+                    header.parts = index::find_parts(origin, &header, reach, notices)?;
+                }
                 let stated = Stated {
                     coordinates: header.coordinates,
                     has_z: Some(true),
-                    crs: header.crs.clone(),
+                    crs: Arc::new(header.crs.clone()),
                     bounds: header.bounds,
                     points: Some(header.points),
-                    offers: header.offers.clone(),
+                    offers: Arc::new(header.offers.clone()),
                 };
                 (Content::Las(Box::new(header)), stated)
             }
@@ -389,7 +399,15 @@ impl Content {
     }
 }
 
-fn check_options(paths: &[PathBuf], options: &SourceOptions) -> Result<()> {
+/// What the header of a file states.
+///
+/// # Errors
+/// As [`Input::open`].
+pub(super) fn stated_of(path: &Path, options: &SourceOptions, notices: &mut Vec<String>) -> Result<Stated> {
+    Source::open(path, options, notices).map(|source| source.stated)
+}
+
+pub(super) fn check_options(paths: &[PathBuf], options: &SourceOptions) -> Result<()> {
     if paths.is_empty() {
         return Err(Error::usage("no input"));
     }
@@ -399,12 +417,12 @@ fn check_options(paths: &[PathBuf], options: &SourceOptions) -> Result<()> {
     if !matches!(options.dims, 2 | 3) {
         return Err(Error::usage(format!("{} dimensions, expected 2 or 3", options.dims)));
     }
-    if let Some(Bounds { min, max }) = options.bounds
-        && !(0..3).all(|axis| min[axis] <= max[axis])
-    {
-        return Err(Error::usage(format!(
-            "the box from {min:?} to {max:?} is empty, expected the least coordinates first"
-        )));
+    for Bounds { min, max } in [options.bounds, options.reach].into_iter().flatten() {
+        if !(0..3).all(|axis| min[axis] <= max[axis]) {
+            return Err(Error::usage(format!(
+                "the box from {min:?} to {max:?} is empty, expected the least coordinates first"
+            )));
+        }
     }
     if let Some((scale, offset)) = options.grid {
         if !scale.iter().all(|&scale| scale > 0.0 && scale.is_finite())

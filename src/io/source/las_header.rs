@@ -1,11 +1,14 @@
 //! The header and variable length records of a LAS file, each length checked against the file before use.
 
 use std::io::BufReader;
+use std::ops::Range;
+use std::sync::Arc;
 
 use las::raw;
 use laz::LazVlr;
 
 use super::crs;
+use super::index::Part;
 use super::las_fields;
 use super::laz_salvage;
 use super::laz_table;
@@ -23,6 +26,9 @@ pub(crate) const VLR_HEADER_LEN: u64 = 54;
 pub(crate) const EVLR_HEADER_LEN: u64 = 60;
 /// User and number of the records that describe extra bytes.
 const EXTRA_BYTES: (&[u8], u16) = (b"LASF_Spec", 4);
+/// User and number of the records with an index: COPC, and LAStools.
+const COPC: (&[u8], u16) = (b"copc", 1);
+pub(super) const LAX: (&[u8], u16) = (b"LAStools", 30);
 const GLOBAL_ENCODING_WKT: u16 = 1 << 4;
 
 /// Length of the shortest header, that of LAS 1.0 to 1.2.
@@ -54,6 +60,17 @@ pub(crate) struct LasHeader {
     pub(crate) lost: u64,
     /// Fields of the records beside the coordinates.
     pub(super) offers: Vec<Offer>,
+    /// Where the file has an index.
+    pub(super) indices: Indices,
+    /// The records to read, in the order of the file; `None` for all of them.
+    pub(super) parts: Option<Arc<[Part]>>,
+}
+
+/// Bytes of the records that hold an index, without their heads.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Indices {
+    pub(super) copc: Option<Range<u64>>,
+    pub(super) lax: Option<Range<u64>>,
 }
 
 /// The laszip record.
@@ -63,6 +80,8 @@ pub(crate) struct Laszip {
     pub(crate) vlr: LazVlr,
     /// Whether the points are in chunks. Old files have them in one piece, without a chunk table.
     pub(super) is_chunked: bool,
+    /// Byte of the extended record that LAStools appends to files whose header has no place for it.
+    pub(super) appended: Option<u64>,
 }
 
 impl LasHeader {
@@ -116,6 +135,8 @@ impl LasHeader {
                 raw.global_encoding & GLOBAL_ENCODING_WKT != 0,
                 notices,
             ),
+            indices: records.indices,
+            parts: None,
         };
         header.check_len(file, notices)?;
         if let Some(laszip) = header.laz.as_ref().filter(|_| is_salvaged) {
@@ -266,6 +287,7 @@ struct Records {
     wkt: Option<Vec<u8>>,
     geo_keys: [Option<Vec<u8>>; 3],
     extra_bytes: Option<Vec<u8>>,
+    indices: Indices,
 }
 
 impl Records {
@@ -326,6 +348,11 @@ impl Records {
         let Some(after) = data.checked_add(len).filter(|&after| after <= end) else { return Ok(None) };
         let user = header[2..18].split(|&byte| byte == 0).next().unwrap_or_default();
         let number = u16::from_le_bytes([header[18], header[19]]);
+        match (user, number) {
+            COPC => _ = self.indices.copc.get_or_insert(data..after),
+            LAX => _ = self.indices.lax.get_or_insert(data..after),
+            _ => {}
+        }
         let Some(slot) = self.slot(user, number) else { return Ok(Some(after)) };
         if len > HEADER_BODY_MAX as u64 {
             notices.push(format!(
@@ -364,10 +391,18 @@ impl Records {
             Error::malformed("points are marked as compressed, but the laszip record is missing")
         })?;
         let vlr = LazVlr::from_buffer(bytes).map_err(|e| Error::malformed(format!("laszip record: {e}")))?;
+        let appended = appended(bytes);
         match bytes[..] {
-            [1, 0, ..] => Ok(Some(Laszip { vlr, is_chunked: false })),
-            [2 | 3, 0, ..] => Ok(Some(Laszip { vlr, is_chunked: true })),
+            [1, 0, ..] => Ok(Some(Laszip { vlr, is_chunked: false, appended })),
+            [2 | 3, 0, ..] => Ok(Some(Laszip { vlr, is_chunked: true, appended })),
             _ => Err(Error::malformed(format!("laszip record: compressor {}, expected 1, 2 or 3", bytes[0]))),
         }
     }
+}
+
+/// Byte of the first appended record that a laszip record states, if it states any.
+fn appended(laszip: &[u8]) -> Option<u64> {
+    let number = |at: usize| Some(i64::from_le_bytes(laszip.get(at..at + 8)?.try_into().ok()?));
+    let (count, at) = (number(16)?, number(24)?);
+    u64::try_from(at).ok().filter(|_| count > 0)
 }

@@ -5,6 +5,7 @@ use std::io::{BufReader, Seek};
 
 use laz::DecompressionSelection;
 
+use super::index;
 use super::las_header::{LasHeader, Laszip};
 use super::laz_chunks::{Chunk, Chunks, PointsPerChunk};
 use super::laz_codec::{Codec, Decompressor, decompression};
@@ -13,6 +14,7 @@ use super::panic_guard::guarded;
 use super::record_reader::RecordReader;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::parallel::OrderedPool;
+use spmesh_model::bounds::Bounds;
 
 /// Greatest number of record bytes that the chunks under way decompress to, per thread and in total.
 const AHEAD_LEN_PER_THREAD: u64 = 2 << 20;
@@ -30,9 +32,8 @@ const STREAMED_LEN: usize = 1 << 20;
 /// Chunks to be decompressed one after the other, and buffers for them.
 #[derive(Default)]
 struct Job {
+    /// Of consecutive records.
     chunks: Vec<Chunk>,
-    /// Index in the file of the first record.
-    first: u64,
     compressed: Vec<u8>,
     records: Vec<u8>,
 }
@@ -47,17 +48,25 @@ impl Job {
         let points: u64 = self.chunks.iter().map(|chunk| chunk.points).sum();
         self.records.resize(points as usize * codec.record_len, 0);
         let mut rest = &mut self.records[..];
-        let mut first = self.first;
         for chunk in &self.chunks {
             let (records, later) = rest.split_at_mut(chunk.points as usize * codec.record_len);
             rest = later;
             self.compressed.resize(chunk.len as usize, 0);
             let read = file.read_at(chunk.start, &mut self.compressed);
-            read.map_err(|e| Error::io("reading compressed points", e).at(chunk.describe(first)))?;
-            codec.decompress(&self.compressed, records).map_err(|e| e.at(chunk.describe(first)))?;
-            first += chunk.points;
+            read.map_err(|e| Error::io("reading compressed points", e).at(chunk.describe()))?;
+            codec.decompress(&self.compressed, records).map_err(|e| e.at(chunk.describe()))?;
+            index::check_records(records, codec.record_len, chunk.first, chunk.within.as_ref())?;
         }
         Ok(())
+    }
+
+    fn first(&self) -> u64 {
+        self.chunks.first().map_or(0, |chunk| chunk.first)
+    }
+
+    /// Whether the records of `chunk` follow those of the job.
+    fn continues_with(&self, chunk: &Chunk) -> bool {
+        self.chunks.last().is_none_or(|last| last.after() == chunk.first)
     }
 }
 
@@ -71,12 +80,13 @@ pub(crate) struct LazRecords {
     /// Finished jobs, whose buffers are reused.
     spare: Vec<Job>,
     streamed: Option<Streamed>,
-    /// Records returned or passed to decoders so far.
-    done: u64,
+    /// Number of the first of the last records, and the one after them.
+    first: u64,
+    after: u64,
 }
 
 impl LazRecords {
-    /// Records of which the fields of `selection` are decompressed.
+    /// The records of the parts of `header`, of which the fields of `selection` are decompressed.
     pub(crate) fn new(
         file: FileView,
         header: &LasHeader,
@@ -86,17 +96,17 @@ impl LazRecords {
     ) -> Result<LazRecords> {
         let codec = Codec::new(laszip.vlr.clone(), header, selection)?;
         let (chunks, streamed) = match Chunks::find(&file, header, laszip)? {
-            Chunks::Table(chunks) => (chunks, None),
+            Chunks::Table(chunks) => (index::chunks_of_parts(chunks, header.parts.as_deref()), None),
             Chunks::Unknown { start, points_per_chunk } => {
                 let len = header.points_end.saturating_sub(start);
-                let chunk = Chunk { start, len, points: header.points };
+                let chunk = Chunk { start, len, points: header.points, first: 0, within: None };
                 let per_chunk = laszip.is_chunked.then_some(points_per_chunk);
                 (Vec::new(), Some(Streamed::new(&file, &codec, &chunk, per_chunk)?))
             }
         };
         let chunks = chunks.into_iter().peekable();
         let (decoders, spare) = (None, Vec::new());
-        Ok(LazRecords { file, codec, threads, chunks, decoders, spare, streamed, done: 0 })
+        Ok(LazRecords { file, codec, threads, chunks, decoders, spare, streamed, first: 0, after: 0 })
     }
 
     /// Whether the next chunk must be decompressed as it is read; `None` at the end.
@@ -105,21 +115,19 @@ impl LazRecords {
         let Some(chunk) = self.chunks.peek() else { return Ok(None) };
         let records_len = chunk.points.checked_mul(record_len).ok_or_else(|| {
             Error::malformed(format!("more points of {record_len} bytes than any file can hold"))
-                .at(chunk.describe(self.done))
+                .at(chunk.describe())
         })?;
         Ok(Some(records_len > CHUNK_LEN_MAX || chunk.len > 2 * CHUNK_LEN_MAX))
     }
 
     /// Takes chunks from the table until they make up a job; `None` if the next chunk is too long for a job,
-    /// or none is left.
+    /// none is left, or records between are left out.
     fn next_job(&mut self) -> Result<Option<Job>> {
         let record_len = self.codec.record_len as u64;
         let mut job = self.spare.pop().unwrap_or_default();
         job.chunks.clear();
-        job.first = self.done;
         while job.len(record_len) < JOB_LEN && self.next_is_long()? == Some(false) {
-            let chunk = self.chunks.next().expect("it was peeked at");
-            self.done += chunk.points;
+            let Some(chunk) = self.chunks.next_if(|chunk| job.continues_with(chunk)) else { break };
             job.chunks.push(chunk);
         }
         Ok((!job.chunks.is_empty()).then_some(job))
@@ -152,7 +160,9 @@ impl RecordReader for LazRecords {
         loop {
             if let Some(streamed) = &mut self.streamed {
                 let count = streamed.next_records(&self.file, &self.codec, records);
-                self.done += count.map_err(|e| e.at(format!("after record {}", self.done)))?;
+                let count = count.map_err(|e| e.at(format!("after record {}", self.after)))?;
+                (self.first, self.after) = (self.after, self.after + count);
+                index::check_records(records, self.codec.record_len, self.first, streamed.within.as_ref())?;
                 if !records.is_empty() {
                     return Ok(());
                 }
@@ -162,6 +172,7 @@ impl RecordReader for LazRecords {
             if let Some(decoded) = self.decoders.as_mut().and_then(OrderedPool::take) {
                 let mut job = decoded?;
                 std::mem::swap(records, &mut job.records);
+                self.first = job.first();
                 self.spare.push(job);
                 return Ok(());
             }
@@ -169,8 +180,13 @@ impl RecordReader for LazRecords {
                 return Ok(());
             }
             let chunk = self.chunks.next().expect("it is long");
+            self.after = chunk.first;
             self.streamed = Some(Streamed::new(&self.file, &self.codec, &chunk, None)?);
         }
+    }
+
+    fn first(&self) -> u64 {
+        self.first
     }
 }
 
@@ -184,6 +200,8 @@ pub(super) struct Streamed {
     points_per_chunk: PointsPerChunk,
     /// Byte at which the records must end; `None` without a table, as other data may follow.
     end: Option<u64>,
+    /// A box that an index promises for the records.
+    within: Option<Bounds>,
 }
 
 impl Streamed {
@@ -201,6 +219,7 @@ impl Streamed {
             left_in_chunk: 0,
             points_per_chunk: per_chunk.unwrap_or(PointsPerChunk::Fixed(chunk.points)),
             end: per_chunk.is_none().then_some(chunk.start + chunk.len),
+            within: chunk.within,
         })
     }
 

@@ -9,6 +9,7 @@ use super::laz_table::{TABLE_POSITION_LEN, table_position};
 use super::origin::FileView;
 use super::panic_guard::guarded;
 use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Bounds;
 
 /// Records that are compressed together.
 #[derive(Debug, Clone, Copy)]
@@ -19,12 +20,22 @@ pub(super) struct Chunk {
     pub(super) len: u64,
     /// Number of records.
     pub(super) points: u64,
+    /// Number of the first record in the file.
+    pub(super) first: u64,
+    /// A box that an index promises for the records, in stored coordinates.
+    pub(super) within: Option<Bounds>,
 }
 
 impl Chunk {
-    /// Where the chunk is, for messages, if its first record is number `first` of the file.
-    pub(super) fn describe(&self, first: u64) -> String {
-        format!("records {first} to {} at byte {}", first + self.points.saturating_sub(1), self.start)
+    /// Number of the first record after the chunk.
+    pub(super) fn after(&self) -> u64 {
+        self.first.saturating_add(self.points)
+    }
+
+    /// Where the chunk is, for messages.
+    pub(super) fn describe(&self) -> String {
+        let last = self.after().saturating_sub(1);
+        format!("records {} to {last} at byte {}", self.first, self.start)
     }
 }
 
@@ -118,7 +129,8 @@ fn read_table(file: &FileView, header: &LasHeader, laszip: &Laszip, table: u64) 
             )));
         }
         if points > 0 {
-            chunks.push(Chunk { start: at, len: entry.byte_count, points });
+            let first = header.points - left;
+            chunks.push(Chunk { start: at, len: entry.byte_count, points, first, within: None });
         }
         at += entry.byte_count;
         left -= points;

@@ -20,7 +20,7 @@ pub(super) fn whole_points(file: &FileView, header: &LasHeader, laszip: &Laszip)
         return Ok(header.points);
     };
     let len = header.points_end.saturating_sub(start);
-    let chunk = Chunk { start, len, points: header.points };
+    let chunk = Chunk { start, len, points: header.points, first: 0, within: None };
     let per_chunk = laszip.is_chunked.then_some(points_per_chunk);
     let mut records = Vec::new();
     let (mut whole, mut done) = (0, 0);

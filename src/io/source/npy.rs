@@ -68,10 +68,10 @@ impl NpyArray {
         Stated {
             coordinates: Coordinates::F64,
             has_z: Some(self.columns == 3),
-            crs: Crs::Unknown,
+            crs: Crs::Unknown.into(),
             bounds: None,
             points: Some(self.rows),
-            offers: Vec::new(),
+            offers: Vec::new().into(),
         }
     }
 

@@ -12,8 +12,8 @@ use super::structure::Radii;
 use super::text_options::TextOptions;
 use crate::detect::Reader;
 use spmesh_core::parallel::available_threads;
-use spmesh_model::bounds::Bounds;
-use spmesh_stream::Crs;
+use spmesh_model::bounds::{Bounds, Region};
+use spmesh_stream::{Coordinates, Crs};
 
 /// What to do about a point with a coordinate that is not finite.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -49,6 +49,10 @@ pub struct SourceOptions {
     pub filters: Filters,
     /// Keep only points that lie in this closed box of the world; sides may be infinite.
     pub bounds: Option<Bounds>,
+    /// Points outside of this closed box of the world may be left out where an index of a LAS or LAZ file
+    /// tells where they are; sides may be infinite. This is a permission and no filter: other points may
+    /// still come. It holds for points as the file stores them, before they move to a common grid.
+    pub reach: Option<Bounds>,
     /// Drop and count points with a coordinate that is not finite, instead of failing.
     pub skip_invalid: bool,
     /// What the error for such a point advises.
@@ -59,6 +63,12 @@ pub struct SourceOptions {
     pub dims: u8,
     /// Grid for integer coordinates: scale and offset per axis, instead of the files' own.
     pub grid: Option<([f64; 3], [f64; 3])>,
+    /// The encoding of all points, instead of one that suits the files: that of a larger input, of which they are a
+    /// part.
+    pub encoding: Option<Coordinates>,
+    /// Keep only points in this half-open box, in stored coordinates of `encoding`. Points outside of it are those of
+    /// other parts: nothing counts them as dropped.
+    pub window: Option<Region<3>>,
     /// Type of the numbers if the files hold only x, y and z of one point after the other, without a header.
     /// Such files cannot be recognized by content.
     pub raw: Option<RawType>,

@@ -140,6 +140,14 @@ impl Origin {
         spool(input, temp_dir).map(|(file, _)| file)
     }
 
+    /// The path of a regular file, beside which others may belong to it.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        match self {
+            Origin::Path(path) => Some(path),
+            Origin::Open(_) => None,
+        }
+    }
+
     /// A view of all bytes as stored, positioned at their start.
     pub(crate) fn view(&self) -> Result<FileView> {
         let file = match self {

@@ -1,5 +1,7 @@
 //! The interface of all formats of an input: what a file states, and a pass over its points.
 
+use std::sync::Arc;
+
 use super::cut::Cut;
 use super::placement::Placement;
 use super::row_plan::Offer;
@@ -21,6 +23,11 @@ pub(super) trait Pass: Send {
         rows: &mut Vec<u8>,
     ) -> Result<bool>;
 
+    /// Records decoded so far, before any filter; 0 for formats without records.
+    fn records(&self) -> u64 {
+        0
+    }
+
     /// At the end: what is left of the file, if the pass found that it was cut off.
     fn cut(&self) -> Option<Cut> {
         None
@@ -33,10 +40,10 @@ pub(super) struct Stated {
     pub(super) coordinates: Coordinates,
     /// Whether points have a third coordinate; `None` if the file has no point to show it.
     pub(super) has_z: Option<bool>,
-    pub(super) crs: Crs,
+    pub(super) crs: Arc<Crs>,
     /// Bounding box, in stored coordinates.
     pub(super) bounds: Option<Bounds>,
     pub(super) points: Option<u64>,
     /// What points can carry beside their coordinates.
-    pub(super) offers: Vec<Offer>,
+    pub(super) offers: Arc<Vec<Offer>>,
 }

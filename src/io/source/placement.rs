@@ -3,7 +3,7 @@
 use super::filters::{DropReason, Dropped};
 use super::options::{InvalidAdvice, SourceOptions};
 use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_model::bounds::{Bounds, Point, Region};
 use spmesh_stream::Coordinates;
 
 /// Greatest relative deviation of a ratio of scales from the fraction that it stands for: 2^-40. Division and
@@ -24,6 +24,8 @@ pub(super) struct Placement {
     step: Step,
     /// Boxes that keep points, in the file's stored coordinates, and why they drop others.
     windows: Vec<(DropReason, Bounds)>,
+    /// The part of the input that is wanted, in its coordinates; `None` if it has all points of the file.
+    window: Option<Region<3>>,
     skip_invalid: bool,
     advice: InvalidAdvice,
     /// Points that filters dropped so far.
@@ -64,12 +66,47 @@ impl Placement {
         let stored = |&(reason, bounds): &(_, Bounds)| (reason, stored_bounds(from, bounds));
         let windows = options.windows().iter().map(stored).collect();
         let (skip_invalid, advice) = (options.skip_invalid, options.invalid_advice);
-        Placement { step, windows, skip_invalid, advice, dropped: Dropped::default(), invalid: 0 }
+        let window = options.window;
+        Placement { step, windows, window, skip_invalid, advice, dropped: Dropped::default(), invalid: 0 }
+    }
+
+    /// Says that all points of the file are in this box of its stored coordinates, so that none may have to be
+    /// looked at.
+    pub(super) fn within(self, stated: Option<Bounds>) -> Self {
+        let contains = |window: &Region<3>, bounds: &Bounds| {
+            [bounds.min, bounds.max].iter().all(|&corner| window.contains(self.place(corner)))
+        };
+        let is_inside = self.window.zip(stated).is_some_and(|(window, bounds)| contains(&window, &bounds));
+        Placement { window: self.window.filter(|_| !is_inside), ..self }
+    }
+
+    /// A point of the file in the coordinates of the input.
+    #[inline]
+    fn place(&self, stored: Point) -> Point {
+        match &self.step {
+            Step::Same => stored,
+            Step::Integers { factor, shift } => {
+                std::array::from_fn(|axis| stored[axis] * factor[axis] + shift[axis])
+            }
+            Step::ToWorld(from) => from.to_world(stored),
+            Step::ToGrid { from, to } => to.to_stored(from.to_world(stored)),
+        }
+    }
+
+    /// Whether a point of the file is one of another part of the input.
+    #[inline]
+    pub(super) fn is_elsewhere(&self, stored: Point) -> bool {
+        self.window.is_some_and(|window| !window.contains(self.place(stored)))
+    }
+
+    /// Points that filters dropped so far, and those that are not finite.
+    pub(super) fn left_out(&self) -> u64 {
+        self.dropped.total() + self.invalid
     }
 
     /// Whether all points with integer coordinates stay unchanged. Integer coordinates are finite.
     pub(super) fn keeps_integers(&self) -> bool {
-        matches!(self.step, Step::Same) && self.windows.is_empty()
+        matches!(self.step, Step::Same) && self.windows.is_empty() && self.window.is_none()
     }
 
     /// Appends `stored`, a point in the coordinates of its file, to `batch`, unless filters drop it. Returns
@@ -80,20 +117,16 @@ impl Placement {
     /// caller adds the record's position.
     #[inline]
     pub(super) fn put(&mut self, stored: Point, batch: &mut Vec<Point>) -> Result<bool> {
+        if self.is_elsewhere(stored) {
+            return Ok(false);
+        }
         if let Some((reason, _)) = self.windows.iter().find(|(_, bounds)| !bounds.contains(stored))
             && stored.iter().all(|value| value.is_finite())
         {
             self.dropped.count(*reason);
             return Ok(false);
         }
-        let placed = match &self.step {
-            Step::Same => stored,
-            Step::Integers { factor, shift } => {
-                std::array::from_fn(|axis| stored[axis] * factor[axis] + shift[axis])
-            }
-            Step::ToWorld(from) => from.to_world(stored),
-            Step::ToGrid { from, to } => to.to_stored(from.to_world(stored)),
-        };
+        let placed = self.place(stored);
         if !placed.iter().all(|value| value.is_finite()) {
             return self.refuse(stored);
         }

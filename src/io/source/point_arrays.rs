@@ -100,10 +100,10 @@ pub(super) fn state(arrays: &[PointArray]) -> Stated {
     Stated {
         coordinates: Coordinates::F64,
         has_z: Some(true),
-        crs: Crs::Unknown,
+        crs: Crs::Unknown.into(),
         bounds: None,
         points: arrays.iter().try_fold(0u64, |sum, array| sum.checked_add(array.points)),
-        offers: offers_of(&attributes_of(arrays)),
+        offers: offers_of(&attributes_of(arrays)).into(),
     }
 }
 

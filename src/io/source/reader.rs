@@ -40,4 +40,14 @@ pub trait PointReader: Send {
 
     /// Points dropped so far because a coordinate is not finite.
     fn invalid(&self) -> u64;
+
+    /// Records of LAS files decoded so far, before any filter; 0 for inputs of other formats.
+    fn records(&self) -> u64 {
+        0
+    }
+
+    /// The file that the last batch is from: its number in the order of the input, from 0 on.
+    fn file(&self) -> usize {
+        0
+    }
 }

@@ -9,4 +9,8 @@ pub(crate) trait RecordReader: Send {
     /// # Errors
     /// If reading fails, or compressed records are damaged; the byte is named.
     fn next_records(&mut self, records: &mut Vec<u8>) -> Result<()>;
+
+    /// Number in the file of the first of the last records. They are consecutive, but the next ones need not
+    /// follow them.
+    fn first(&self) -> u64;
 }

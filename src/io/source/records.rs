@@ -1,7 +1,10 @@
 //! Points from the records of LAS files, compressed or not.
 
+use std::ops::Range;
+
 use laz::DecompressionSelection;
 
+use super::index;
 use super::las_header::LasHeader;
 use super::laz::LazRecords;
 use super::options::SourceOptions;
@@ -24,9 +27,10 @@ pub(super) struct RecordPass {
     plan: RowPlan,
     record_len: usize,
     records: Vec<u8>,
-    /// Bytes of `records` already used, and number of records in the file before `records`.
+    /// Bytes of `records` already used.
     used: usize,
-    before: u64,
+    /// Records decoded so far.
+    decoded: u64,
 }
 
 impl RecordPass {
@@ -52,7 +56,7 @@ impl RecordPass {
             record_len: header.record_len,
             records: Vec::new(),
             used: 0,
-            before: 0,
+            decoded: 0,
         })
     }
 }
@@ -65,9 +69,9 @@ impl Pass for RecordPass {
         rows: &mut Vec<u8>,
     ) -> Result<bool> {
         if self.used == self.records.len() {
-            self.before += (self.records.len() / self.record_len) as u64;
             self.used = 0;
             self.reader.next_records(&mut self.records)?;
+            self.decoded += (self.records.len() / self.record_len) as u64;
             if self.records.is_empty() {
                 return Ok(false);
             }
@@ -89,8 +93,11 @@ impl Pass for RecordPass {
             }
             batch.truncate(before);
         }
-        let first = self.before + (self.used / self.record_len) as u64;
+        let first = self.reader.first() + (self.used / self.record_len) as u64;
         for (record, index) in self.records[self.used..end].chunks_exact(self.record_len).zip(first..) {
+            if placement.is_elsewhere(raw_point(record)) {
+                continue;
+            }
             if let Some(reason) = self.filter.reason(record) {
                 placement.dropped.count(reason);
             } else if placement.put(raw_point(record), batch).map_err(|e| e.at(format!("record {index}")))? {
@@ -100,10 +107,14 @@ impl Pass for RecordPass {
         self.used = end;
         Ok(true)
     }
+
+    fn records(&self) -> u64 {
+        self.decoded
+    }
 }
 
-/// The stored integers of a record.
-fn raw_point(record: &[u8]) -> Point {
+/// The stored integers of a record, of which the first 12 bytes are enough.
+pub(super) fn raw_point(record: &[u8]) -> Point {
     let value = |at: usize| {
         f64::from(i32::from_le_bytes(
             record[at..at + 4].try_into().expect("records are longer than 12 bytes"),
@@ -115,26 +126,41 @@ fn raw_point(record: &[u8]) -> Point {
 /// Records of an uncompressed file.
 pub(crate) struct PlainRecords {
     file: FileView,
-    at: u64,
-    left: u64,
+    points_start: u64,
     record_len: usize,
+    /// Numbers of the records to read.
+    ranges: std::vec::IntoIter<Range<u64>>,
+    /// The records of the current range that are left, and the first of the last ones.
+    left: Range<u64>,
+    first: u64,
 }
 
 impl PlainRecords {
     pub(crate) fn new(file: FileView, header: &LasHeader) -> Self {
-        PlainRecords { file, at: header.points_start, left: header.points, record_len: header.record_len }
+        let ranges = index::ranges_of_parts(header.points, header.parts.as_deref()).into_iter();
+        let (points_start, record_len) = (header.points_start, header.record_len);
+        PlainRecords { file, points_start, record_len, ranges, left: 0..0, first: 0 }
     }
 }
 
 impl RecordReader for PlainRecords {
     fn next_records(&mut self, records: &mut Vec<u8>) -> Result<()> {
-        let count = self.left.min((READ_LEN / self.record_len).max(1) as u64);
+        if self.left.is_empty() {
+            self.left = self.ranges.next().unwrap_or(self.left.end..self.left.end);
+        }
+        self.first = self.left.start;
+        let left = self.left.end - self.left.start;
+        let count = left.min((READ_LEN / self.record_len).max(1) as u64);
         records.resize(count as usize * self.record_len, 0);
+        let at = self.points_start + self.first * self.record_len as u64;
         self.file
-            .read_at(self.at, records)
-            .map_err(|e| Error::io("reading point records", e).at(format!("byte {}", self.at)))?;
-        self.at += records.len() as u64;
-        self.left -= count;
+            .read_at(at, records)
+            .map_err(|e| Error::io("reading point records", e).at(format!("byte {at}")))?;
+        self.left.start += count;
         Ok(())
+    }
+
+    fn first(&self) -> u64 {
+        self.first
     }
 }

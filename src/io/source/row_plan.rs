@@ -13,7 +13,7 @@ pub(super) enum Field {
 }
 
 /// An attribute that a file has.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Offer {
     pub(super) attribute: Attribute,
     pub(super) field: Field,

@@ -89,10 +89,10 @@ impl SpHeader {
         Stated {
             coordinates: Coordinates::F64,
             has_z: Some(true),
-            crs: Crs::Unknown,
+            crs: Crs::Unknown.into(),
             bounds: bounds.filter(finite),
             points: self.points,
-            offers: Vec::new(),
+            offers: Vec::new().into(),
         }
     }
 }

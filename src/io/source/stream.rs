@@ -46,10 +46,10 @@ fn state_of(source: &impl EventSource) -> Result<Stated> {
     Ok(Stated {
         coordinates: header.coordinates,
         has_z: Some(header.dims == 3 || header.has_elevation),
-        crs: header.crs.clone(),
+        crs: header.crs.clone().into(),
         bounds: header.bounds,
         points: header.points,
-        offers: offers_of(&attributes_of(header)),
+        offers: offers_of(&attributes_of(header)).into(),
     })
 }
 

@@ -106,7 +106,8 @@ pub(super) fn state(
     let attributes = if has_columns { attributes_of(&columns, names) } else { Vec::new() };
     let offers = offers_of(&attributes);
     let (coordinates, crs) = (Coordinates::F64, Crs::Unknown);
-    let stated = Stated { coordinates, has_z, crs, bounds: None, points: None, offers };
+    let stated =
+        Stated { coordinates, has_z, crs: crs.into(), bounds: None, points: None, offers: offers.into() };
     Ok((columns, stated))
 }
 

@@ -14,7 +14,10 @@ use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_model::bounds::Point;
 use spmesh_model::cells::CellCode;
-use spmesh_stream::{ConfigurationBlock, Event, Header, Kind, Patch, Segment, Tally, Totals};
+use spmesh_stream::{
+    ConfigurationBlock, Event, GlobalId, Header, Kind, Origin, Patch, Segment, Tally, Totals,
+    check_residual_id,
+};
 
 /// Greatest number of lines that become one event.
 const BATCH_MAX: usize = 4096;
@@ -28,6 +31,10 @@ struct PatchLines {
     finalized: Vec<u64>,
     /// Triangle, corner and segment of each side.
     sides: Vec<[u64; 3]>,
+    /// New vertices that other parts have, and their ids in all parts.
+    origins: Vec<[u64; 2]>,
+    /// Finalized vertices that other parts use.
+    kept: Vec<u64>,
 }
 
 impl PatchLines {
@@ -176,10 +183,10 @@ impl<R: Read> TwinSource<R> {
             return self.push_row(row);
         }
         self.check_rows()?;
-        let is_mesh = self.header.kind.vertices_per_simplex() > 0;
+        let is_mesh = self.header.kind.vertices_per_simplex() > 0 && !self.header.kind.is_residual();
         let is_points = self.header.kind == Kind::Points
             || self.header.kind.has_knots() && !self.open.is_begun() && !self.has_functions();
-        let is_partial = self.header.kind.is_partial();
+        let is_partial = self.header.kind.has_region();
         let is_tetrahedral = self.header.kind == Kind::TetrahedralMesh;
         let Totals { residual_points, walls, simplices, vertices, .. } = *self.tally.totals();
         let kind = self.header.kind.name();
@@ -192,6 +199,8 @@ impl<R: Read> TwinSource<R> {
                 patch.simplices.extend_from_slice(&ids[..self.header.kind.vertices_per_simplex()]);
             }
             (Group::Patch(patch), Statement::Final(id)) => patch.finalized.push(id),
+            (Group::Patch(patch), Statement::Origin(vertex, id)) => patch.origins.push([vertex, id]),
+            (Group::Patch(patch), Statement::Kept(id)) => patch.kept.push(id),
             (Group::Labels(labels), Statement::Label(label)) => labels.push(label),
             (Group::Segments(segments), Statement::Segment(segment)) => segments.push(segment),
             (Group::Patch(patch), Statement::Side(side)) => patch.sides.push(side),
@@ -260,11 +269,9 @@ impl<R: Read> TwinSource<R> {
             Group::OpenSegments(open) => Event::OpenSegments(open),
             Group::Residual(points) => {
                 let mut named = points.iter().filter_map(|&(id, _)| id);
-                if let Some(id) = named.find(|&id| id >= vertices) {
-                    return Err(Error::malformed(format!(
-                        "residual point is vertex {}, which is none",
-                        id + 1
-                    )));
+                if let Some(id) = named.find(|&id| check_residual_id(&self.header, vertices, id).is_err()) {
+                    let message = format!("residual point is vertex {}, which is none", id + 1);
+                    return Err(Error::malformed(message));
                 }
                 Event::ResidualPoints(points)
             }
@@ -285,13 +292,14 @@ impl<R: Read> TwinSource<R> {
 
     fn patch_of(&self, first_id: u64, lines: PatchLines) -> Result<Patch> {
         let len_min = lines.len_min(&self.header);
-        let PatchLines { new, simplices, finalized, sides } = lines;
+        let PatchLines { new, simplices, finalized, sides, origins, kept } = lines;
         let end = first_id + new.len() as u64;
         if let Some(id) = simplices.iter().chain(&finalized).find(|&&id| id >= end) {
             return Err(Error::malformed(format!("vertex {} of {end}", id + 1)));
         }
         let mut patch = patch_of_ids(first_id, new, &simplices, &finalized);
         patch.sides = self.sides_of(sides)?;
+        name_shared(&mut patch, &origins, &kept)?;
         if len_min + patch.imported.len() * 8 > BLOCK_PAYLOAD_MAX {
             return Err(too_long());
         }
@@ -376,7 +384,12 @@ impl Group {
             (Group::Cells(cells), Statement::Cell(_)) => cells.len() < BATCH_MAX,
             (
                 Group::Patch(_),
-                Statement::Vertex(_) | Statement::Simplex(_) | Statement::Final(_) | Statement::Side(_),
+                Statement::Vertex(_)
+                | Statement::Simplex(_)
+                | Statement::Final(_)
+                | Statement::Side(_)
+                | Statement::Origin(..)
+                | Statement::Kept(_),
             ) => true,
             (Group::Labels(labels), Statement::Label(_)) => labels.len() < BATCH_MAX,
             (Group::Segments(segments), Statement::Segment(_)) => segments.len() < BATCH_MAX,
@@ -401,6 +414,25 @@ fn check_wall(wall: &[u64], residual_points: u64) -> Result<Vec<u32>> {
     corners
         .filter(is_sound)
         .ok_or_else(|| Error::malformed(format!("wall between no {} residual points", wall.len())))
+}
+
+/// Says of a patch which of its vertices other parts have, as `[vertex, id]`, and which ones they use.
+fn name_shared(patch: &mut Patch, origins: &[[u64; 2]], kept: &[u64]) -> Result<()> {
+    let none = |id: u64| Error::malformed(format!("vertex {} is not one of the patch", id + 1));
+    for &[vertex, id] in origins {
+        let local = vertex.checked_sub(patch.first_id).filter(|&local| local < patch.new.len() as u64);
+        let local = local.ok_or_else(|| none(vertex))? as u32;
+        patch.origins.push(Origin { local, id: GlobalId(id) });
+    }
+    for &id in kept {
+        let local = match id.checked_sub(patch.first_id) {
+            Some(local) if local < patch.new.len() as u64 => local as usize,
+            Some(_) => return Err(none(id)),
+            None => patch.new.len() + patch.imported.binary_search(&id).map_err(|_| none(id))?,
+        };
+        patch.kept.push(local as u32);
+    }
+    Ok(())
 }
 
 fn too_long() -> Error {

@@ -6,7 +6,9 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::attributes::{Attribute, Attributes};
 use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
-use spmesh_stream::{Constrained, Coordinates, Crs, Header, Kind, VERSION, Weighted, check_version};
+use spmesh_stream::{
+    Constrained, Coordinates, Crs, Header, Kind, PartName, VERSION, Weighted, check_version,
+};
 
 /// The header as stated by the lines so far.
 #[derive(Default)]
@@ -27,6 +29,7 @@ pub(super) struct TwinHeader {
     attributes: Vec<Attribute>,
     constrained: Option<Constrained>,
     weighted: Option<Weighted>,
+    part: Option<PartName>,
     producer: String,
 }
 
@@ -75,6 +78,13 @@ impl TwinHeader {
                 let [greatest] = only(parse_decimals(&mut values)?, values)?;
                 self.weighted = Some(Weighted { greatest });
             }
+            b"part" => {
+                let plan = parse_integer(next_field(&mut values)?)?;
+                let number = parse_integer(next_field(&mut values)?)?;
+                let number = u32::try_from(number)
+                    .map_err(|_| Error::malformed("the part has no number of 32 bits"))?;
+                self.part = Some(only(PartName { plan, number }, values)?);
+            }
             b"producer" => self.producer = parse_string(rest)?,
             _ => return Err(unexpected(&key, "a statement of the header")),
         }
@@ -116,6 +126,7 @@ impl TwinHeader {
             attributes: Attributes::new(self.attributes).map_err(Error::malformed)?,
             constrained: self.constrained,
             weighted: self.weighted,
+            part: self.part,
             producer: self.producer,
         };
         header.check().map_err(Error::malformed)?;

@@ -18,6 +18,10 @@ pub(super) enum Statement {
     /// A triangle uses the first three.
     Simplex([u64; 4]),
     Final(u64),
+    /// A new vertex, and its id in all parts.
+    Origin(u64, u64),
+    /// A finalized vertex that other parts use.
+    Kept(u64),
     Label(u64),
     Segment(Segment),
     /// Triangle, corner and segment.
@@ -95,7 +99,11 @@ pub(super) fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Sta
             let vertex = (vertex != b"-").then(|| parse_number(vertex)).transpose()?;
             Statement::Residual(vertex, parse_point(fields, header)?)
         }
-        b"w" if header.kind.is_partial() => {
+        b"from" if header.part.is_some() => {
+            Statement::Origin(parse_number(next_field(fields)?)?, parse_number(next_field(fields)?)?)
+        }
+        b"kept" if header.part.is_some() => Statement::Kept(parse_number(next_field(fields)?)?),
+        b"w" if header.kind.has_region() => {
             let mut wall = [0; 3];
             for corner in &mut wall[..header.kind.vertices_per_wall()] {
                 *corner = parse_number(next_field(fields)?)?;
@@ -123,6 +131,7 @@ fn statements_of(kind: Kind) -> &'static str {
         Kind::PartialTriangleMesh => "v, f, x, r, w or a comment",
         Kind::TetrahedralMesh => "v, c, x, label or a comment",
         Kind::PartialTetrahedralMesh => "v, c, x, r, w or a comment",
+        Kind::TriangleResidual | Kind::TetrahedralResidual => "r, w or a comment",
         Kind::Configurations => "v, degree, in, on, line, function, term or a comment",
         Kind::Splines => "v, degree, in, on, line, function, term, coefficient or a comment",
         Kind::Points4 | Kind::Cells4 | Kind::Simplices4 => "an end or a comment",

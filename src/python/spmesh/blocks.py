@@ -8,6 +8,7 @@ import numpy as np
 
 NOT_A_VERTEX = 2**64 - 1
 FARAWAY = 2**32 - 1
+ORIGIN = np.dtype([("local", "<u4"), ("id", "<u8")])
 TOTALS = ("points", "cells", "vertices", "simplices", "merged", "residual", "walls")
 
 
@@ -38,6 +39,10 @@ class Patch:
     rows: np.ndarray | None = None
     # Of a constrained mesh, (n, 3) uint32: triangle, the corner opposite to the side, segment.
     sides: np.ndarray = field(default_factory=lambda: np.empty((0, 3), np.uint32))
+    # Of a part of a mesh, structured (n,): new vertices that other parts have, as `local` index and global `id`.
+    origins: np.ndarray = field(default_factory=lambda: np.empty(0, ORIGIN))
+    # Of a part of a mesh, (n,) uint32: finalized local vertices that later parts may use.
+    kept: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
 
     @property
     def ids(self) -> np.ndarray:
@@ -75,7 +80,10 @@ class Labels:
 
 @dataclass
 class ResidualPoints:
-    """`ids` (n,) uint64, 2^64 - 1 for points that are no vertices yet; `xyz` (n, axes)."""
+    """`ids` (n,) uint64, 2^64 - 1 for points that are no vertices yet; `xyz` (n, axes).
+
+    In a residual of its own, ids are global ids.
+    """
 
     ids: np.ndarray
     xyz: np.ndarray

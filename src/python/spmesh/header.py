@@ -17,17 +17,20 @@ UNKNOWN = 2**64 - 1
 # Name, dimensions, and tags of blocks in their order.
 KINDS = {
     1: ("points", (2, 3), ((b"PNTS", b"CELL"),)),
-    2: ("triangle mesh", (2,), ((b"segm", b"side", b"PTCH"), (b"open",))),
+    2: ("triangle mesh", (2,), ((b"segm", b"side", b"from", b"kept", b"PTCH"), (b"open",))),
     3: ("partial triangle mesh", (2,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
-    4: ("tetrahedral mesh", (3,), ((b"PTCH", b"LABL"),)),
+    4: ("tetrahedral mesh", (3,), ((b"from", b"kept", b"PTCH", b"LABL"),)),
     5: ("points in 4 dimensions", (4,), ((b"PNT4",),)),
     6: ("cells in 4 dimensions", (4,), ((b"PNT4",), (b"CEL4",))),
     7: ("simplices in 4 dimensions", (4,), ((b"PNT4",), (b"SIM4",))),
     8: ("configurations", (2,), ((b"PNTS",), (b"CONF",), (b"FUNC",))),
     9: ("splines", (2,), ((b"PNTS",), (b"CONF",), (b"FUNC",), (b"COEF",))),
     10: ("partial tetrahedral mesh", (3,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
+    11: ("residual of a triangle mesh", (2,), ((b"RPNT",), (b"WALL",))),
+    12: ("residual of a tetrahedral mesh", (3,), ((b"RPNT",), (b"WALL",))),
 }
 CODES = {name: code for code, (name, _, _) in KINDS.items()}
+PART_BITS, NUMBER_BITS = 22, 40
 TYPES = ("u1", "i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f4", "<f8")
 
 
@@ -171,6 +174,8 @@ class Header:
     constrained: tuple[bool, float] | None = None
     # Of weighted points of space: no weight is greater.
     weighted: float | None = None
+    # Of a part of a mesh, or of its residual: plan and number.
+    part: tuple[int, int] | None = None
     producer: str = "spmesh (Python)"
 
     @property
@@ -192,6 +197,16 @@ class Header:
     def corners(self) -> int:
         """Vertices of a simplex of a patch."""
         return self.dims + 1
+
+    @property
+    def is_residual(self) -> bool:
+        """Whether the stream is the residual of a part."""
+        return self.kind.startswith("residual of ")
+
+    @property
+    def has_patches(self) -> bool:
+        """Whether the stream is a mesh in patches."""
+        return self.kind.endswith("mesh") and not self.is_residual
 
     def world(self, stored: np.ndarray) -> np.ndarray:
         """World coordinates (n, axes) of stored points (n, axes)."""
@@ -235,11 +250,13 @@ class Header:
             require(free or len(set(self.scale[: self.dims])) == 1, "the axes of the geometry have several scales")
         if self.tree:
             without = self.kind in ("configurations", "splines", "partial tetrahedral mesh")
+            without = without or self.is_residual
             require(not without, f"a stream of kind {self.kind} has no finalization tree")
             self.tree.check()
         self._check_bounds()
-        partial = self.kind.startswith("partial ")
-        require((self.region is not None) == partial, "a region goes with a partial mesh, and only with one")
+        partial = self.kind.startswith("partial ") or self.is_residual
+        wrong = "a region goes with a partial mesh or a residual, and only with one"
+        require((self.region is not None) == partial, wrong)
         if self.region is not None:
             ordered = all(a < b for a, b in zip(self.region[: self.dims], self.region[self.dims :]))
             require(ordered, "the region is empty or not a number")
@@ -256,6 +273,19 @@ class Header:
             require(math.isfinite(self.weighted), f"the greatest weight {self.weighted}, expected a finite number")
             plain = [attribute for attribute in self.attributes if attribute.is_weight()]
             require(plain, 'weights need an attribute "weight": one f64 without scale and unknown number')
+        self._check_part()
+
+    def _check_part(self) -> None:
+        require(self.part is not None or not self.is_residual, "a residual without the part that it is of")
+        if self.part is None:
+            return
+        meshes = self.kind in ("triangle mesh", "tetrahedral mesh") or self.is_residual
+        require(meshes, f"a stream of kind {self.kind} is no part of a mesh")
+        plain = self.constrained is None and self.weighted is None
+        require(plain, "a part of a mesh is neither constrained nor weighted")
+        plan, number = self.part
+        require(0 <= plan < 2**64, f"plan {plan}, expected 64 bits")
+        require(0 <= number < 2**PART_BITS, f"part {number}, expected less than {2**PART_BITS}")
 
     def check_rows(self, rows: np.ndarray) -> None:
         """Checks the weights of points."""
@@ -281,7 +311,7 @@ class Header:
         if not self.attributes:
             return
         meshes = self.kind in ("points", "triangle mesh", "tetrahedral mesh") or self.kind.startswith("partial ")
-        require(meshes, f"a stream of kind {self.kind} has no attributes")
+        require(meshes or self.is_residual, f"a stream of kind {self.kind} has no attributes")
         for attribute in self.attributes:
             attribute.check()
         names = [attribute.name for attribute in self.attributes]
@@ -352,6 +382,7 @@ class Header:
             (b"attr", b"".join(attribute.encode() for attribute in self.attributes)),
             (b"cons", self.constrained is not None and struct.pack("<?d", *self.constrained)),
             (b"wght", self.weighted is not None and struct.pack("<d", self.weighted)),
+            (b"part", self.part is not None and struct.pack("<QI", *self.part)),
             (b"prod", self.producer.encode()),
         ]
         for tag, payload in records:
@@ -416,6 +447,11 @@ def _constrained(header, payload):
     header.constrained = bool(payload[0]), kill
 
 
+def _part(header, payload):
+    require(len(payload) == 12, f'header record "part" of {len(payload)} bytes, expected 12')
+    header.part = struct.unpack("<QI", payload)
+
+
 def _producer(header, payload):
     header.producer = _text(payload, "producer")
 
@@ -430,5 +466,6 @@ _RECORDS = {
     b"attr": lambda header, payload: setattr(header, "attributes", _attributes(payload)),
     b"cons": _constrained,
     b"wght": lambda header, payload: setattr(header, "weighted", _floats(payload, 1)[0]),
+    b"part": _part,
     b"prod": _producer,
 }

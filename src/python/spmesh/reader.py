@@ -13,7 +13,8 @@ from . import blocks as b
 from .compression import decompress
 from .constraints import Constraints, sides_of
 from .errors import SpmeshError, needs, require
-from .header import CODES, KINDS, UNKNOWN, Header, check_tag
+from .header import CODES, KINDS, NUMBER_BITS, UNKNOWN, Header, check_tag
+from .parts import check_shared, shared_of
 from .rules import Chunks, FinalCells, LiveVertices
 
 KNOTS_OF = (("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4))
@@ -43,12 +44,13 @@ class Reader:
         self._finalized = self._named = self._labels = 0
         self._cells = FinalCells(header.tree) if header.tree and memory else None
         self._chunks = Chunks(header.tree) if header.chunked else None
-        self._live = LiveVertices(header) if memory and header.kind.endswith("mesh") else None
+        self._live = LiveVertices(header) if memory and header.has_patches else None
         self._words, self._neighbour, self._last = np.empty(0, "<u4"), -1, None
         self._degree = self._group = self._boundary = self._function = None
         self._has_pairs = False
         self._point_size = header.axes * header.dtype.itemsize
-        self._constraints, self._sides = Constraints(header), None
+        # What blocks before the next patch say about it, by their tags.
+        self._constraints, self._more = Constraints(header), {}
         self._row = header.row_dtype if header.attributes else None
 
     def close(self) -> None:
@@ -84,8 +86,8 @@ class Reader:
             return None
         try:
             tag, payload = self._known_block()
-            if tag == b"side":
-                self._sides = sides_of(payload)
+            while tag in (b"side", b"from", b"kept"):
+                self._more[tag] = sides_of(payload) if tag == b"side" else shared_of(tag, payload)
                 tag, payload = self._known_block()
             place = self.place
             block = self._decode(tag, payload)
@@ -121,7 +123,7 @@ class Reader:
             require(sequence == self._number % 2**32, "a block is missing or repeated")
             self._number += 1
             check_tag(tag, "block")
-            if tag in _DECODERS or tag in (b"attp", b"side"):
+            if tag in _DECODERS or tag in (b"attp", b"side", b"from", b"kept"):
                 break
             if not tag[0] & 0x20:
                 needs(f"block tag {tag!r}")
@@ -129,13 +131,16 @@ class Reader:
             require(self._row is not None, "attributes in a stream without them")
             require(expects_rows, "attributes behind no points")
             require(tag == b"attp", f"block {tag!r}, expected the attributes of the points before it")
-        require(self._sides is None or tag == b"PTCH", f"block {tag!r}, expected the patch of the sides")
+        follows = not self._more or tag == b"PTCH" or (list(self._more) == [b"from"] and tag == b"kept")
+        require(follows, f"block {tag!r}, expected the patch of the blocks before it")
         if tag not in (b"attp", b"END "):
             phase = next((i for i, tags in enumerate(self._phases) if tag in tags), -1)
             require(phase >= self._phase, f"no block {tag!r} may stand here in a stream of kind {self.header.kind}")
             self._phase = phase
             constrained = self.header.constrained is not None or tag not in (b"segm", b"side", b"open")
             require(constrained, f"block {tag!r} in a stream that is not constrained")
+            part = self.header.part is not None or tag not in (b"from", b"kept")
+            require(part, f"block {tag!r} in a stream that is no part of a mesh")
         if compressed:
             require(tag != b"END ", "END is compressed")
             payload = decompress(payload)
@@ -213,9 +218,12 @@ class Reader:
             for other in range(one):
                 require((simplices[:, one] != simplices[:, other]).all(), "simplex uses a vertex twice")
         patch = b.Patch(first, new, imported, simplices, finalized)
-        if self._sides is not None:
-            patch.sides, self._sides = self._sides, None
+        more, self._more = self._more, {}
+        if b"side" in more:
+            patch.sides = more[b"side"]
             self._constraints.check_sides(patch)
+        patch.origins, patch.kept = more.get(b"from", patch.origins), more.get(b"kept", patch.kept)
+        check_shared(self.header, patch)
         if self._live:
             self._live.patch(patch)
         self.totals["vertices"] += n
@@ -235,7 +243,11 @@ class Reader:
         ids = np.ascontiguousarray(records["id"])
         xyz = self._xyz(np.ascontiguousarray(records["xyz"]).tobytes())
         named = ids[ids != np.uint64(b.NOT_A_VERTEX)]
-        require(not len(named) or named.max() < self.totals["vertices"], "residual point has the id of no vertex")
+        if header.is_residual:
+            known = (named >> np.uint64(NUMBER_BITS)) <= header.part[1]
+        else:
+            known = named < self.totals["vertices"]
+        require(known.all(), "residual point has the id of no vertex")
         points = b.ResidualPoints(ids, xyz)
         if self._live:
             self._live.residual(points)
@@ -400,10 +412,12 @@ class Reader:
         stated = dict(zip(b.TOTALS, struct.unpack("<7Q", payload)))
         require(max(stated.values()) < UNKNOWN, "END: a total is beyond counting")
         header, counted = self.header, dict(self.totals)
-        if header.kind.endswith("mesh") or header.kind in ("cells in 4 dimensions", "simplices in 4 dimensions"):
+        if header.is_residual:
+            counted["points"], counted["merged"] = stated["points"], stated["merged"]
+        elif header.has_patches or header.kind in ("cells in 4 dimensions", "simplices in 4 dimensions"):
             counted["merged"] = stated["merged"]
             counted["points"] = counted["vertices"] + counted["merged"] + counted["residual"] - self._named
-        if header.kind.endswith("mesh"):
+        if header.has_patches:
             require(self._finalized + self._named == counted["vertices"], "END: vertices were not finalized")
             require(self._live is None or not self._live.live, "END: vertices are neither final nor in the residual")
         require(self._labels in (0, counted["vertices"]), "END: labels of some vertices only")

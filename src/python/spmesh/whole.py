@@ -8,6 +8,7 @@ import numpy as np
 
 from . import blocks as b
 from .header import TYPES, Attribute, Header
+from .joined import Join, is_manifest
 from .reader import Reader
 from .writer import Writer
 
@@ -55,7 +56,13 @@ class Stream:
 
 
 def read(file, memory: bool = True) -> Stream:
-    """Reads a whole stream from a path or a binary file, with all checks (see `Reader`)."""
+    """Reads a whole stream from a path or a binary file, with all checks (see `Reader`).
+
+    The path may be that of the manifest of a mesh in parts: the result is then the joined mesh.
+    """
+    if is_manifest(file):
+        whole = Join(file).read(memory)
+        return Stream(whole.header, whole.stored, whole.simplices, whole.rows, totals=whole.totals)
     with Reader(file, memory) as reader:
         header, parts = reader.header, {}
         configurations, functions, totals = [], [], {}
@@ -94,7 +101,7 @@ def read(file, memory: bool = True) -> Stream:
     stored = np.empty((0, axes), header.dtype) if stored is None else stored
     if header.attributes and arrays["rows"] is None:
         arrays["rows"] = np.empty(0, header.row_dtype)
-    if arrays["simplices"] is None and header.kind.endswith("mesh"):
+    if arrays["simplices"] is None and header.has_patches:
         arrays["simplices"] = np.empty((0, header.corners), np.uint64)
     residual, cells4 = parts.get("residual"), parts.get("cells4")
     return Stream(

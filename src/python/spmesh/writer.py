@@ -12,6 +12,7 @@ from crc32c import crc32c
 from .blocks import NOT_A_VERTEX, TOTALS, OpenSegments, Patch, Segments
 from .constraints import Constraints, segment_dtype
 from .header import KINDS, CODES, Header
+from .parts import check_shared, origins_of
 from .reader import KNOTS_OF
 
 PAYLOAD_MAX = 2**20
@@ -115,11 +116,13 @@ class Writer:
         self.totals["cells"] += len(codes)
 
     def patch(
-        self, new, imported, simplices, finalized, attributes=None, stored: bool = False, sides=()
+        self, new, imported, simplices, finalized, attributes=None, stored: bool = False, sides=(),
+        origins=(), kept=(),
     ) -> None:
         """New vertices (n, axes), ids (m,) of imported ones, simplices (s, corners) and finalized vertices as local
         indices, which count the new vertices first. Of a constrained mesh also `sides` (n, 3): triangle, the corner
-        opposite to the side, segment."""
+        opposite to the side, segment. Of a part of a mesh also `origins`, pairs of the local index of a new vertex that other
+        parts have and its global id, and `kept`, finalized local indices that later parts may use."""
         points = self._stored(np.asarray(new).reshape(-1, self.header.axes), stored)
         imported = np.ascontiguousarray(imported, "<u8")
         simplices = np.ascontiguousarray(simplices, "<u4").reshape(-1, self.header.corners)
@@ -134,6 +137,14 @@ class Writer:
             sides = np.ascontiguousarray(sides, "<u4").reshape(-1, 3)
             self._constraints.check_sides(Patch(0, points, imported, simplices, finalized, sides=sides))
             self._block(b"side", sides.tobytes())
+        if len(origins) or len(kept):
+            if self.header.part is None:
+                raise ValueError("vertices of other parts in a stream that is no part of a mesh")
+            origins, kept = origins_of(origins), np.ascontiguousarray(kept, "<u4")
+            check_shared(self.header, Patch(0, points, imported, simplices, finalized, origins=origins, kept=kept))
+            for tag, records in ((b"from", origins), (b"kept", kept)):
+                if len(records):
+                    self._block(tag, records.tobytes())
         self._block(b"PTCH", head + b"".join(part.tobytes() for part in parts))
         if rows:
             self._block(b"attp", rows)
@@ -240,13 +251,16 @@ class Writer:
             self._block(b"COEF", values[at : at + PAYLOAD_MAX // 8].tobytes())
         self.totals["residual"] += len(values)
 
-    def end(self, merged: int = 0) -> None:
-        """Writes END. `merged` points of the input of a mesh coincide with others."""
+    def end(self, merged: int = 0, points: int = 0) -> None:
+        """Writes END. `merged` points of the input of a mesh coincide with others. `points`: of a residual, those of
+        its region."""
         totals, kind = dict(self.totals), self.header.kind
-        if kind.endswith("mesh") or kind in ("cells in 4 dimensions", "simplices in 4 dimensions"):
+        if self.header.is_residual:
+            totals["merged"], totals["points"] = merged, points
+        elif self.header.has_patches or kind in ("cells in 4 dimensions", "simplices in 4 dimensions"):
             totals["merged"] = merged
             totals["points"] = totals["vertices"] + merged + totals["residual"] - getattr(self, "_named", 0)
-        if kind.endswith("mesh") and self._finalized + getattr(self, "_named", 0) != totals["vertices"]:
+        if self.header.has_patches and self._finalized + getattr(self, "_named", 0) != totals["vertices"]:
             raise ValueError(f"{self._finalized} of {totals['vertices']} vertices are finalized")
         self._block(b"END ", struct.pack("<7Q", *totals.values()))
         self._file.flush()

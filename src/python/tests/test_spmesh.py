@@ -52,7 +52,8 @@ def copied(data):
             writer.cells(block.codes)
         elif isinstance(block, spmesh.Patch):
             parts = block.new, block.imported, block.simplices, block.finalized
-            writer.patch(*parts, rows, stored=True, sides=block.sides)
+            shared = dict(origins=block.origins, kept=block.kept)
+            writer.patch(*parts, rows, stored=True, sides=block.sides, **shared)
         elif isinstance(block, spmesh.Segments):
             writer.segments(block.lines, block.ends, stored=True)
         elif isinstance(block, spmesh.OpenSegments):
@@ -76,7 +77,7 @@ def copied(data):
         elif isinstance(block, spmesh.Coefficients):
             writer.coefficients(block.values)
         else:
-            writer.end(block.totals["merged"])
+            writer.end(block.totals["merged"], block.totals["points"])
     return file.getvalue()
 
 
@@ -104,6 +105,22 @@ class Vectors(unittest.TestCase):
                     again = run("spconvert", "--to", "text", data=copied((VECTORS / vector["file"]).read_bytes()))
                     twin = run("spconvert", "--to", "text", data=(VECTORS / vector["file"]).read_bytes())
                     self.assertEqual(again, twin)
+
+    def test_meshes_in_parts_are_joined_or_refused(self):
+        for path in sorted((VECTORS / "joined").glob("*.json")):
+            with self.subTest(path.stem):
+                if path.with_suffix(".txt").exists():
+                    mesh, whole = spmesh.read(path), spmesh.read(io.BytesIO(run("spconvert", "--to", "spm", path)))
+                    self.assertEqual(mesh.totals, whole.totals)
+                    self.assertEqual(mesh.header, whole.header)
+                    for ours, theirs in ((mesh.stored, whole.stored), (mesh.simplices, whole.simplices)):
+                        np.testing.assert_array_equal(ours, theirs)
+                    if mesh.header.attributes:
+                        np.testing.assert_array_equal(mesh.rows, whole.rows)
+                    continue
+                code = int(path.with_suffix(".err").read_text().split()[-1])
+                with self.assertRaises(spmesh.TooNewError if code == 6 else spmesh.MalformedError):
+                    spmesh.read(path)
 
     def test_cut_and_changed_streams_are_refused(self):
         for name in ("pass/mesh-two-patches.spm", "pass/attributes-partial.spm", "pass/points-tagged.spm"):

@@ -73,8 +73,8 @@ fn shape_of(header: &Header, tag: Tag) -> Shape {
         Tag::Simplices4 => (20, Words::U32),
         Tag::Rows => (header.attributes.row_len(), Words::Kept),
         Tag::Segments => (segment_len(header), Words::Kept),
-        Tag::Sides => (SIDE_LEN, Words::U32),
-        Tag::Cells4 | Tag::OpenSegments | Tag::Configurations | Tag::Functions => (4, Words::U32),
+        Tag::Sides | Tag::Origins => (SIDE_LEN, Words::U32),
+        Tag::Kept | Tag::Cells4 | Tag::OpenSegments | Tag::Configurations | Tag::Functions => (4, Words::U32),
     };
     Shape { record_len: record_len as u16, words }
 }

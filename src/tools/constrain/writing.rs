@@ -214,8 +214,10 @@ impl<W: Write> Writing<W> {
             sides.filter_map(move |(place, on)| Some([number, place, on?]))
         });
         let sides = sides.collect();
-        let patch = Patch { first_id, new: new.to_vec(), imported, simplices, finalized: locals, sides };
-        self.writer.patch_with_rows(&patch, &self.row.repeat(new.len()))
+        let new = new.to_vec();
+        let patch =
+            Patch { first_id, new, imported, simplices, finalized: locals, sides, ..Patch::default() };
+        self.writer.patch_with_rows(&patch, &self.row.repeat(patch.new.len()))
     }
 
     /// Writes the triangles that waited and were not cut off, and ends the stream. `open` are the segments

@@ -41,6 +41,7 @@ mod spool;
 mod stats;
 mod thin;
 mod weigh;
+mod windowed;
 mod work;
 
 pub use added::AddedPoints;
@@ -54,3 +55,4 @@ pub use spool::Spooling;
 pub use stats::Stats;
 pub use thin::{Thin, ThinBy};
 pub use weigh::{Weighed, WeightSource};
+pub use windowed::{PlannedBox, Windowed};

@@ -31,9 +31,10 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// A test of whether balls lie in a region.
     type Balls;
 
-    /// Kinds of a whole mesh and of the mesh of a region.
+    /// Kinds of a whole mesh, of the mesh of a region with its residual, and of a residual alone.
     const MESH: Kind;
     const PARTIAL_MESH: Kind;
+    const RESIDUAL: Kind;
 
     /// Names of a simplex, of its facets, and of a triangulation in messages.
     const SIMPLEX: &'static str;

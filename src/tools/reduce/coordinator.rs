@@ -23,7 +23,7 @@ use super::reader::{CellReader, InputSummary, Piece};
 use super::residual::Residual;
 use super::run_state::Run;
 use super::schedule::{Job, Output};
-use super::sequencer::Sequencer;
+use super::sequencer::{Outputs, Sequencer};
 use super::stats::Stats;
 use super::worker::Worker;
 use spmesh_core::error::{Error, ErrorKind, Result};
@@ -59,7 +59,7 @@ pub(super) fn run<B, R, W, const D: usize>(
     sequencer: Sequencer<W>,
     workers: usize,
     progress: impl FnMut(u64),
-) -> Result<(W, Stats)>
+) -> Result<(Outputs<W>, Stats)>
 where
     B: Bulk<D>,
     R: Read + Send + 'static,
@@ -218,7 +218,7 @@ impl<'scope, W: Write + Send + 'scope> WorkerPool<'scope, W> {
         pieces: &Receiver<Result<Piece<D>>>,
         workers: usize,
         progress: impl FnMut(u64),
-    ) -> Result<(W, Stats)> {
+    ) -> Result<(Outputs<W>, Stats)> {
         let rules = run.rules;
         let ended = dispatch(&mut run, &channels, pieces, workers, progress);
         drop(channels);

@@ -70,7 +70,7 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     let header = Header { compressed, ..merged_header::<B, R, D>(&readers, part)? };
     let region = region_of(&header);
     let rules = Rules::<D>::new(&header, Duplicates::Error, part.is_some());
-    let mut sequencer = Sequencer::new(StreamWriter::new(output, header)?);
+    let mut sequencer = Sequencer::new(StreamWriter::new(output, header)?, None);
     let mut stats = Stats { inner_nodes: 1, ..Stats::default() };
     let mut residual = Residual::<D>::default();
     let mut origins = Origins::default();
@@ -96,8 +96,8 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     }
     sequencer.add_to(&mut stats);
     stats.predicates = *solver.counts();
-    let output = sequencer.end(stats.points, stats.merged)?;
-    Ok((output, stats))
+    let outputs = sequencer.end(stats.points, stats.merged, stats.merged)?;
+    Ok((outputs.mesh, stats))
 }
 
 /// Header of the result, after a check that the inputs fit together.

@@ -11,6 +11,8 @@ use spmesh_stream::{Coordinates, Header};
 pub enum Part<const D: usize = 2> {
     /// A half-open box in world coordinates; sides may be infinite.
     Region(Region<D>),
+    /// A half-open box in stored coordinates; sides may be infinite.
+    Stored(Region<D>),
     /// A cell of the input's finalization tree.
     Cell {
         /// Level; the root has level 0.
@@ -28,6 +30,7 @@ impl<const D: usize> Part<D> {
     pub(super) fn region(&self, header: &Header) -> Result<Region<D>> {
         match *self {
             Part::Region(region) => stored_region(&region, &header.coordinates),
+            Part::Stored(region) => Ok(region),
             Part::Cell { level, at } => {
                 let tree = header.tree.ok_or_else(|| {
                     Error::usage("the input has no finalization tree: give a region instead of a cell")

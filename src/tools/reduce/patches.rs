@@ -6,7 +6,7 @@
 //! the vertices that the node writes itself, or the number of a point among the points that the nodes below
 //! have left.
 
-use super::residual::{Residual, UNWRITTEN};
+use super::residual::{Residual, UNWRITTEN, foreign_id};
 use spmesh_core::error::Result;
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_stream::{PatchBlocks, PointCode};
@@ -167,10 +167,12 @@ impl<const D: usize> PatchBuilder<D> {
         flush(blocks)
     }
 
-    /// A reference to a point that is a written vertex; [`UNWRITTEN`] for other points.
+    /// A reference to a point that is a written vertex; the key of a vertex that only other parts have;
+    /// [`UNWRITTEN`] for other points.
     pub(super) fn reference(&self, v: u32, points: &Residual<D>) -> u64 {
         match self.own[v as usize] {
             NO_VERTEX if points.key(v as usize) == UNWRITTEN => UNWRITTEN,
+            NO_VERTEX if foreign_id(points.key(v as usize)).is_some() => points.key(v as usize),
             NO_VERTEX => u64::from(v) - points.raw as u64,
             own => OWN | u64::from(own),
         }
@@ -195,8 +197,8 @@ impl<const D: usize> PatchBuilder<D> {
         *code - self.first_code
     }
 
-    /// Encodes the patch, unless it is empty. Unwritten points become new vertices in order of appearance,
-    /// the others are imported. Vertices that are in no later patch and not kept are finalized.
+    /// Encodes the patch, unless it is empty. Points that this stream does not have yet become new vertices in
+    /// order of appearance, the others are imported. Vertices that are in no later patch and not kept are finalized.
     ///
     /// # Errors
     /// As [`PatchBlocks::push`].
@@ -210,7 +212,7 @@ impl<const D: usize> PatchBuilder<D> {
         for (i, &v) in (0..).zip(&self.vertices) {
             let own = &mut self.own[v as usize];
             let key = if *own == NO_VERTEX { points.key(v as usize) } else { OWN | u64::from(*own) };
-            if key == UNWRITTEN {
+            if key == UNWRITTEN || foreign_id(key).is_some() {
                 *own = self.own_count;
                 self.own_count += 1;
                 self.locals.push(self.order.len() as u32);
@@ -231,6 +233,11 @@ impl<const D: usize> PatchBuilder<D> {
         let simplices = self.corners.iter().map(|&i| self.locals[i as usize]);
         let rows = self.order[..imported_start].iter().map(|&v| points.row(v as usize));
         blocks.push(code, new, imported, simplices, rows)?;
+        for (local, &v) in (0..).zip(&self.order[..imported_start]) {
+            if let Some(id) = foreign_id(points.key(v as usize)) {
+                blocks.origin(local, self.own[v as usize], id);
+            }
+        }
         let is_last = |v: u32| self.last[v as usize] == self.closed || self.last[v as usize] == UNUSED;
         let locals = (0..).zip(&self.order).filter(|&(_, &v)| is_last(v)).map(|(local, _)| local);
         blocks.finalize(blocks.count() - 1, locals);

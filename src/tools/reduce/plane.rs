@@ -23,6 +23,7 @@ impl Bulk<2> for Plane {
 
     const MESH: Kind = Kind::TriangleMesh;
     const PARTIAL_MESH: Kind = Kind::PartialTriangleMesh;
+    const RESIDUAL: Kind = Kind::TriangleResidual;
     const SIMPLEX: &'static str = "triangle";
     const FACET: &'static str = "edge";
     const TRIANGULATION: &'static str = "triangulation";

@@ -2,9 +2,24 @@
 //! the node above.
 
 use spmesh_model::bounds::Point;
+use spmesh_stream::GlobalId;
 
 /// Key of a point that is not a vertex yet.
 pub(super) const UNWRITTEN: u64 = u64::MAX;
+
+/// The highest bits of the key of a vertex of another part, which this stream does not have yet.
+const FOREIGN: u64 = 1 << 62;
+
+/// The key of a vertex that other parts of the mesh have.
+pub(super) fn foreign_key(id: GlobalId) -> u64 {
+    FOREIGN | id.0
+}
+
+/// The vertex of other parts that a key stands for, if it does.
+#[inline]
+pub(super) fn foreign_id(key: u64) -> Option<GlobalId> {
+    (key >> 62 == 1).then_some(GlobalId(key & !FOREIGN))
+}
 
 /// Points of D dimensions that a node has to triangulate, with walls around the simplices that are final
 /// already.

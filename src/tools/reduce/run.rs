@@ -16,7 +16,7 @@ use super::reader::CellReader;
 use super::residual::Residual;
 use super::run_state::Run;
 use super::schedule::Schedule;
-use super::sequencer::Sequencer;
+use super::sequencer::{Outputs, Sequencer};
 use super::sides::Sides;
 use super::space::Space;
 use super::stats::Stats;
@@ -24,7 +24,7 @@ use super::worker::Worker;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
-use spmesh_stream::{Coordinates, Header, Kind, PatchBlocks, StreamReader, StreamWriter};
+use spmesh_stream::{Coordinates, Header, Kind, PartName, PatchBlocks, StreamReader, StreamWriter};
 
 /// How a run triangulates. Fields will be added: end the expression with `..Options::default()`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -36,6 +36,8 @@ pub struct Options<const D: usize = 2> {
     pub threads: usize,
     /// For a partial run, the part of the plane or of space to triangulate.
     pub part: Option<Part<D>>,
+    /// For a part of a mesh in parts, its name.
+    pub name: Option<PartName>,
     /// Whether every node is triangulated, including those in space that would leave most of their points to
     /// the node above. The set of simplices does not depend on it.
     pub every_node: bool,
@@ -75,7 +77,9 @@ where
     R: Read + Send + 'static,
     W: Write + Send,
 {
-    reduce::<Plane, R, W, 2>(reader, output, options, progress)
+    let outputs = Outputs { mesh: output, residual: None };
+    let (outputs, stats) = reduce::<Plane, R, W, 2>(reader, outputs, options, progress)?;
+    Ok((outputs.mesh, stats))
 }
 
 /// Tetrahedralizes a stream of three-dimensional points and writes the mesh to `output`, as [`triangulate`]
@@ -96,7 +100,45 @@ where
     R: Read + Send + 'static,
     W: Write + Send,
 {
-    reduce::<Space, R, W, 3>(reader, output, options, progress)
+    let outputs = Outputs { mesh: output, residual: None };
+    let (outputs, stats) = reduce::<Space, R, W, 3>(reader, outputs, options, progress)?;
+    Ok((outputs.mesh, stats))
+}
+
+/// Triangulates a part of a mesh in parts: the points of `options.part`. Writes the triangles that are final
+/// there, and the residual, which [`super::join_triangles`] triangulates with those of other parts.
+/// `options.name` is the name of the part. Without an output for the residual, the part is the whole mesh.
+///
+/// # Errors
+/// As [`triangulate`].
+pub fn triangulate_part<R, W>(
+    reader: StreamReader<R>,
+    outputs: Outputs<W>,
+    options: &Options,
+    progress: impl FnMut(u64),
+) -> Result<(Outputs<W>, Stats)>
+where
+    R: Read + Send + 'static,
+    W: Write + Send,
+{
+    reduce::<Plane, R, W, 2>(reader, outputs, options, progress)
+}
+
+/// Tetrahedralizes a part of a mesh in parts, as [`triangulate_part`] does in the plane.
+///
+/// # Errors
+/// As [`triangulate`].
+pub fn tetrahedralize_part<R, W>(
+    reader: StreamReader<R>,
+    outputs: Outputs<W>,
+    options: &Options<3>,
+    progress: impl FnMut(u64),
+) -> Result<(Outputs<W>, Stats)>
+where
+    R: Read + Send + 'static,
+    W: Write + Send,
+{
+    reduce::<Space, R, W, 3>(reader, outputs, options, progress)
 }
 
 /// Reduces points to a mesh.
@@ -105,10 +147,10 @@ where
 /// As [`triangulate`].
 fn reduce<B, R, W, const D: usize>(
     reader: StreamReader<R>,
-    output: W,
+    outputs: Outputs<W>,
     options: &Options<D>,
     progress: impl FnMut(u64),
-) -> Result<(W, Stats)>
+) -> Result<(Outputs<W>, Stats)>
 where
     B: Bulk<D>,
     R: Read + Send + 'static,
@@ -122,10 +164,11 @@ where
     let mesh = Header {
         compressed: options.compress,
         weighted: header.weighted.filter(|_| options.weighted),
-        ..mesh_header::<B, D>(header, part)
+        ..mesh_header::<B, D>(header, part, options.name)
     };
-    let stream = StreamWriter::new(output, mesh)?;
-    let mut rules = Rules::new(stream.header(), options.duplicates, options.part.is_some());
+    let leaves = options.part.is_some() && (options.name.is_none() || outputs.residual.is_some());
+    let sequencer = begin::<B, W, D>(outputs, mesh, outer)?;
+    let mut rules = Rules::new(sequencer.header(), options.duplicates, leaves);
     rules.every_node = options.every_node;
     // The parts of other runs may reach beyond the box of this input.
     if let (Some(bounds), None) = (header.bounds, part) {
@@ -140,7 +183,7 @@ where
         budget: Budget::new::<B, D>(options.memory, options.threads, header.attributes.row_len()),
     };
     let merging = Merging::new(options.duplicates, header.coordinates, rules.weights);
-    let (cells, sequencer) = (CellReader::new(reader, outer, merging), Sequencer::new(stream));
+    let cells = CellReader::new(reader, outer, merging);
     if options.threads <= 1 {
         alone::<B, R, W, D>(run, cells, sequencer, progress)
     } else {
@@ -185,15 +228,37 @@ fn check_weights<const D: usize>(header: &Header, options: &Options<D>) -> Resul
     }
 }
 
-fn mesh_header<B: Bulk<D>, const D: usize>(points: &Header, part: Option<Region<D>>) -> Header {
-    let kind = if part.is_some() { B::PARTIAL_MESH } else { B::MESH };
+/// Writes the headers of the mesh, and of the residual of `region` if it has an output of its own.
+///
+/// # Errors
+/// If writing fails.
+pub(super) fn begin<B: Bulk<D>, W: Write, const D: usize>(
+    outputs: Outputs<W>,
+    mesh: Header,
+    region: Region<D>,
+) -> Result<Sequencer<W>> {
+    // Residuals cross the network, and are small beside what is triangulated meanwhile.
+    let left =
+        Header { kind: B::RESIDUAL, region: Some(region.in_space()), compressed: true, ..mesh.clone() };
+    let residual = outputs.residual.map(|output| StreamWriter::new(output, left)).transpose()?;
+    Ok(Sequencer::new(StreamWriter::new(outputs.mesh, mesh)?, residual))
+}
+
+fn mesh_header<B: Bulk<D>, const D: usize>(
+    points: &Header,
+    part: Option<Region<D>>,
+    name: Option<PartName>,
+) -> Header {
+    let is_partial = part.is_some() && name.is_none();
+    let kind = if is_partial { B::PARTIAL_MESH } else { B::MESH };
     let mut header = Header::new(kind, points.coordinates, points.dims, points.has_elevation);
     let are_whole = matches!(points.coordinates, Coordinates::I32 { .. });
     let outer = part.unwrap_or(Region::EVERYTHING);
     header.bounds = points.bounds.and_then(|bounds| bounds.within(&outer, are_whole));
     // Readers of an empty mesh need not ask for what its points would have.
     header.points = points.points.filter(|&count| count == 0 && part.is_none());
-    header.region = part.map(|region| region.in_space());
+    header.region = part.filter(|_| is_partial).map(|region| region.in_space());
+    header.part = name;
     header.crs = points.crs.clone();
     header.attributes = points.attributes.clone();
     header
@@ -208,7 +273,7 @@ fn alone<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     mut cells: CellReader<R, D>,
     mut sequencer: Sequencer<W>,
     mut progress: impl FnMut(u64),
-) -> Result<(W, Stats)> {
+) -> Result<(Outputs<W>, Stats)> {
     let mut worker = Worker::<B, D>::new(run.rules);
     let (mut fresh, mut blocks) = (Residual::default(), PatchBlocks::default());
     let ended = loop {

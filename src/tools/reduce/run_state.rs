@@ -8,7 +8,7 @@ use super::node::Rules;
 use super::reader::{InputSummary, Piece};
 use super::residual::union;
 use super::schedule::{Job, Schedule};
-use super::sequencer::Sequencer;
+use super::sequencer::{Outputs, Sequencer};
 use super::stats::Stats;
 use super::worker::Worker;
 use spmesh_core::error::{Error, ErrorKind, Result};
@@ -115,7 +115,7 @@ impl<const D: usize> Run<D> {
         mut sequencer: Sequencer<W>,
         mut worker: Worker<B, D>,
         counts: &PredicateCounts,
-    ) -> Result<(W, Stats)> {
+    ) -> Result<(Outputs<W>, Stats)> {
         self.write_root(&mut sequencer, &mut worker)?;
         let mut predicates = worker.counts();
         predicates.merge(counts);
@@ -135,7 +135,7 @@ impl<const D: usize> Run<D> {
         stats.cells = ended.cells;
         stats.input_bytes = ended.input_bytes;
         stats.predicates = predicates;
-        let output = sequencer.end(stats.points, stats.merged)?;
-        Ok((output, stats))
+        let outputs = sequencer.end(stats.points, stats.merged, stats.merged)?;
+        Ok((outputs, stats))
     }
 }

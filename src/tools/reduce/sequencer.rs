@@ -5,12 +5,22 @@ use std::io::Write;
 
 use super::node::Solved;
 use super::patches::OWN;
-use super::residual::{Residual, UNWRITTEN};
+use super::residual::{Residual, UNWRITTEN, foreign_id};
 use super::schedule::Output;
+use super::shared::Shared;
 use super::stats::Stats;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
-use spmesh_stream::{Patch, PatchBlocks, StreamWriter};
+use spmesh_stream::{Header, Patch, PatchBlocks, StreamWriter};
+
+/// What a run writes: the mesh, and the residual if it goes elsewhere.
+#[derive(Debug)]
+pub struct Outputs<W> {
+    /// The mesh.
+    pub mesh: W,
+    /// The residual of a part, unless the part is the root.
+    pub residual: Option<W>,
+}
 
 /// Residual points per block.
 const RESIDUAL_CHUNK: usize = 1 << 14;
@@ -32,6 +42,10 @@ pub(super) struct Sequencer<W: Write> {
     ids: Vec<u64>,
     /// Id of the first vertex of the open node.
     first: u64,
+    /// Vertices of other parts.
+    shared: Shared,
+    /// Where the residual goes, if not into the stream itself.
+    residual: Option<StreamWriter<W>>,
     merged: u64,
     live: u64,
     live_max: u64,
@@ -42,9 +56,12 @@ pub(super) struct Sequencer<W: Write> {
 }
 
 impl<W: Write> Sequencer<W> {
-    pub(super) fn new(stream: StreamWriter<W>) -> Self {
+    /// Writes to `stream`, and what is left to `residual`, if it is given.
+    pub(super) fn new(stream: StreamWriter<W>, residual: Option<StreamWriter<W>>) -> Self {
         Sequencer {
             stream,
+            shared: Shared::default(),
+            residual,
             left: BTreeMap::new(),
             ids: Vec::new(),
             first: 0,
@@ -56,6 +73,11 @@ impl<W: Write> Sequencer<W> {
             active: 0,
             active_max: 0,
         }
+    }
+
+    /// The header of the mesh.
+    pub(super) fn header(&self) -> &Header {
+        self.stream.header()
     }
 
     /// Vertices written so far.
@@ -105,6 +127,7 @@ impl<W: Write> Sequencer<W> {
     /// If writing fails.
     pub(super) fn patches(&mut self, blocks: &mut PatchBlocks) -> Result<()> {
         let (ids, first) = (&self.ids, self.first);
+        self.shared.extend(blocks.shared(), first);
         let (live, live_max) = (&mut self.live, &mut self.live_max);
         self.stream.patches(
             blocks,
@@ -145,6 +168,14 @@ impl<W: Write> Sequencer<W> {
     ) -> Result<()> {
         self.take_left(children);
         debug_assert!(residual.raw == 0 && self.ids.len() == residual.len());
+        if self.stream.header().part.is_some() {
+            self.shared.keep(&mut self.stream, &self.ids)?;
+            let part = self.stream.header().part;
+            for id in &mut self.ids {
+                *id = self.shared.global(part, *id)?;
+            }
+        }
+        let stream = self.residual.as_mut().unwrap_or(&mut self.stream);
         let mut chunk: Vec<(Option<u64>, Point)> = Vec::with_capacity(RESIDUAL_CHUNK);
         for (number, ids) in self.ids.chunks(RESIDUAL_CHUNK).enumerate() {
             chunk.clear();
@@ -155,9 +186,9 @@ impl<W: Write> Sequencer<W> {
             );
             let row_len = residual.row_len();
             let rows = &residual.rows[number * RESIDUAL_CHUNK * row_len..][..chunk.len() * row_len];
-            self.stream.residual_points_with_rows(&chunk, rows)?;
+            stream.residual_points_with_rows(&chunk, rows)?;
         }
-        self.stream.walls(residual.walls.as_flattened())
+        stream.walls(residual.walls.as_flattened())
     }
 
     /// Adds the figures of the output to `stats`.
@@ -167,15 +198,23 @@ impl<W: Write> Sequencer<W> {
         stats.residual_max = self.points_max as u64;
         stats.active_max = self.active_max as u64;
         stats.vertices = self.stream.totals().vertices;
+        stats.shared = self.shared.len() as u64;
         stats.simplices = self.stream.totals().simplices;
     }
 
-    /// Writes END, for `points` of the input, of which `merged` were merged with others.
+    /// Writes END, for `points` of the input, of which `merged` were merged with others, `merged_here` of them in
+    /// this run.
     ///
     /// # Errors
     /// If writing fails.
-    pub(super) fn end(self, points: u64, merged: u64) -> Result<W> {
-        self.stream.end(points, merged)
+    pub(super) fn end(self, points: u64, merged: u64, merged_here: u64) -> Result<Outputs<W>> {
+        let residual = self.residual.map(|stream| stream.end(points, merged)).transpose()?;
+        // A part counts the vertices that it has from other parts, and not the points that it leaves.
+        let (points, merged) = match self.stream.header().part {
+            Some(_) => (self.stream.totals().vertices + merged_here, merged_here),
+            None => (points, merged),
+        };
+        Ok(Outputs { mesh: self.stream.end(points, merged)?, residual })
     }
 
     fn take_left(&mut self, children: &[u64]) {
@@ -197,6 +236,7 @@ fn id_of(reference: u64, first: u64, ids: &[u64]) -> u64 {
     match reference {
         UNWRITTEN => UNWRITTEN,
         own if own & OWN != 0 => first + (own & !OWN),
+        foreign if foreign_id(foreign).is_some() => foreign,
         index => ids[index as usize],
     }
 }

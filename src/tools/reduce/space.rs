@@ -91,6 +91,7 @@ impl Bulk<3> for Space {
 
     const MESH: Kind = Kind::TetrahedralMesh;
     const PARTIAL_MESH: Kind = Kind::PartialTetrahedralMesh;
+    const RESIDUAL: Kind = Kind::TetrahedralResidual;
     const SIMPLEX: &'static str = "tetrahedron";
     const FACET: &'static str = "facet";
     const TRIANGULATION: &'static str = "tetrahedralization";

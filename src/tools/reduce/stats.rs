@@ -14,6 +14,8 @@ pub struct Stats {
     pub outside: u64,
     /// Vertices written.
     pub vertices: u64,
+    /// Vertices written that other parts of the mesh have.
+    pub shared: u64,
     /// Triangles or tetrahedra written.
     pub simplices: u64,
     /// Cell tags read.

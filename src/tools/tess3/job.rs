@@ -17,7 +17,7 @@ use spmesh_io::sink::TableSink;
 use spmesh_io::source::structure::{Models, Selected, Structure};
 use spmesh_model::attributes::Attributes;
 use spmesh_model::bounds::Bounds;
-use spmesh_stream::{Coordinates, Crs, Header, Kind, StreamWriter, Weighted};
+use spmesh_stream::{Coordinates, Header, Kind, StreamWriter, Weighted};
 
 /// Triangulates the selected models of a structure one by one, and writes them to outputs that `open`
 /// creates: a mesh for each model, of which `open` gets the place in the file and the number, or one table
@@ -232,21 +232,11 @@ impl Job<'_> {
             producer += ", in floating-point arithmetic";
         }
         Header {
-            kind: Kind::TetrahedralMesh,
-            coordinates,
-            dims: 3,
-            has_elevation: false,
             bounds: bounds(mesh),
             points: Some(points),
-            tree: None,
-            region: None,
-            chunked: false,
             compressed: self.options.compress,
-            crs: Crs::Unknown,
-            attributes: Attributes::default(),
-            constrained: None,
-            weighted: None,
             producer,
+            ..Header::new(Kind::TetrahedralMesh, coordinates, 3, false)
         }
     }
 }

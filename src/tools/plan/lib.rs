@@ -1,0 +1,21 @@
+//! Plans of meshes that many jobs make, on one machine or on many.
+//!
+//! A [`Plan`] divides the box of all points into the boxes of leaves, and says which files reach into each of
+//! them; the nodes above join what their children left. It is made from the headers of files alone
+//! ([`plan_of`]). A node writes its part of the mesh, its residual, and a [`NodeReport`], which says that it is
+//! complete. [`check_sums`] compares the reports of all nodes with what the files state.
+
+mod align;
+mod crs;
+mod files;
+mod node;
+mod plan;
+mod report;
+mod sums;
+mod tree;
+
+pub use files::PlannedFile;
+pub use node::{Node, NodeBox, NodeKind};
+pub use plan::{Plan, Planning, plan_of};
+pub use report::{FileCount, FileSize, NodeReport};
+pub use sums::check_sums;

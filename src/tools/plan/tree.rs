@@ -1,0 +1,195 @@
+//! Divides the box of all points into leaves.
+
+use super::align::{Borders, borders_between};
+use super::node::{Node, NodeBox, reaches};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::{Bounds, Region};
+use spmesh_stream::PartName;
+
+/// Most halvings of the box of all points.
+const LEVELS_MAX: u32 = 40;
+
+/// A file: its number, its points and where they are.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Share {
+    pub(super) file: u32,
+    pub(super) points: u64,
+    pub(super) bounds: Bounds,
+}
+
+/// How a tree is divided.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Division {
+    /// Axes that are halved: 2 or 3.
+    pub(super) dims: usize,
+    /// A box is divided if more points than this are expected in it.
+    pub(super) leaf_points: u64,
+    /// Whether coordinates are integers; borders then are, too.
+    pub(super) are_whole: bool,
+}
+
+/// A box that is divided further, or a leaf: its part of the grid of borders, and its region, which at the
+/// outside is unbounded.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    min: [f64; 3],
+    max: [f64; 3],
+    region: Region<3>,
+}
+
+/// A node without its numbers.
+struct Branch {
+    region: Region<3>,
+    points: f64,
+    files: Vec<u32>,
+    children: Vec<Branch>,
+}
+
+impl Division {
+    /// The nodes for these files, by number: stage by stage, the root last.
+    ///
+    /// # Errors
+    /// Usage, if there are too many nodes.
+    pub(super) fn nodes(&self, shares: &[Share]) -> Result<Vec<Node>> {
+        let mut count = 0;
+        let root = match self.root(shares) {
+            Some(cell) => self.branch(cell, shares, 0, &mut count)?,
+            None => None,
+        };
+        let empty =
+            || Branch { region: Region::EVERYTHING, points: 0.0, files: Vec::new(), children: Vec::new() };
+        let mut root = root.unwrap_or_else(empty);
+        root.region = Region::EVERYTHING;
+        Ok(self.numbered(&root))
+    }
+
+    /// The box of all points, larger where that puts its halves on the borders of tiles.
+    fn root(&self, shares: &[Share]) -> Option<Cell> {
+        let all = shares.iter().map(|share| share.bounds).reduce(Bounds::union)?;
+        let (mut min, mut max) = (all.min, all.max);
+        let along = |axis: usize| -> Vec<(f64, f64)> {
+            shares.iter().map(|it| (it.bounds.min[axis], it.bounds.max[axis])).collect()
+        };
+        let borders: Vec<_> = (0..self.dims).map(|axis| borders_between(&along(axis))).collect();
+        // All axes are halved as often.
+        let columns = borders.iter().flatten().map(|borders| borders.columns).max().unwrap_or(1);
+        let halvings = f64::from(columns).log2().ceil();
+        for axis in 0..self.dims {
+            if let Some(Borders { origin, pitch, .. }) = borders[axis] {
+                (min[axis], max[axis]) = (origin, origin + pitch * halvings.exp2());
+            }
+        }
+        Some(Cell { min, max, region: Region::EVERYTHING })
+    }
+
+    /// The node of a cell, with those below it; `None` if no file reaches into the cell. A cell with one child only
+    /// is that child.
+    fn branch(&self, cell: Cell, shares: &[Share], level: u32, count: &mut u32) -> Result<Option<Branch>> {
+        let here: Vec<Share> =
+            shares.iter().filter(|it| reaches(&it.bounds, &cell.region)).copied().collect();
+        if here.is_empty() {
+            return Ok(None);
+        }
+        let points = here.iter().map(|share| self.expected(share, &cell.region)).sum();
+        let middle = self.middle(&cell).filter(|_| points > self.leaf_points as f64 && level < LEVELS_MAX);
+        let Some(middle) = middle else {
+            *count += 1;
+            if *count > PartName::PARTS_MAX / 2 {
+                return Err(Error::usage("the plan has too many leaves: give more --leaf-points"));
+            }
+            let files = here.iter().map(|share| share.file).collect();
+            return Ok(Some(Branch { region: cell.region, points, files, children: Vec::new() }));
+        };
+        let mut children = Vec::new();
+        for corner in 0..1 << self.dims {
+            children.extend(self.branch(self.child(&cell, middle, corner), &here, level + 1, count)?);
+        }
+        if let [_] = children[..] {
+            return Ok(children.pop().map(|only| Branch { region: cell.region, ..only }));
+        }
+        Ok(Some(Branch { region: cell.region, points, files: Vec::new(), children }))
+    }
+
+    /// Points of a file that are expected in a region, if they are spread evenly over its box.
+    fn expected(&self, share: &Share, region: &Region<3>) -> f64 {
+        let fraction: f64 = (0..self.dims)
+            .map(|axis| {
+                let (min, max) = (share.bounds.min[axis], share.bounds.max[axis]);
+                let inside = max.min(region.max[axis]) - min.max(region.min[axis]);
+                if max > min { (inside / (max - min)).clamp(0.0, 1.0) } else { 1.0 }
+            })
+            .product();
+        share.points as f64 * fraction
+    }
+
+    /// The border of boxes at a place: between integers no point lies, so borders are integers, too.
+    fn border(&self, at: f64) -> f64 {
+        if self.are_whole { at.ceil() } else { at }
+    }
+
+    /// The place at which a cell is divided; `None` if it is too small.
+    fn middle(&self, cell: &Cell) -> Option<[f64; 3]> {
+        let mut middle = cell.min;
+        for (axis, middle) in middle.iter_mut().enumerate().take(self.dims) {
+            *middle = cell.min[axis] / 2.0 + cell.max[axis] / 2.0;
+        }
+        let divides = |axis: usize| {
+            let [low, border, high] =
+                [cell.min[axis], middle[axis], cell.max[axis]].map(|at| self.border(at));
+            low < border && border < high
+        };
+        // An axis without extent has one half only.
+        (0..self.dims).any(divides).then_some(middle)
+    }
+
+    /// The child at a corner: bit k of `corner` says which half along axis k.
+    fn child(&self, cell: &Cell, middle: [f64; 3], corner: usize) -> Cell {
+        let mut child = *cell;
+        for (axis, &middle) in middle.iter().enumerate().take(self.dims) {
+            if corner >> axis & 1 == 0 {
+                (child.max[axis], child.region.max[axis]) = (middle, self.border(middle));
+            } else {
+                (child.min[axis], child.region.min[axis]) = (middle, self.border(middle));
+            }
+        }
+        child
+    }
+
+    /// The nodes with their numbers.
+    fn numbered(&self, root: &Branch) -> Vec<Node> {
+        let mut listed = Vec::new();
+        self.list(root, &mut listed);
+        // Within a stage nodes keep their order in the tree, in which neighbours are near.
+        let mut order: Vec<usize> = (0..listed.len()).collect();
+        order.sort_by_key(|&place| listed[place].stage);
+        let mut numbers = vec![0; listed.len()];
+        (0..).zip(&order).for_each(|(number, &place)| numbers[place] = number);
+        let mut nodes: Vec<Node> = order.iter().map(|&place| listed[place].clone()).collect();
+        for (node, number) in nodes.iter_mut().zip(0..) {
+            node.number = number;
+            node.children.iter_mut().for_each(|child| *child = numbers[*child as usize]);
+        }
+        for number in 0..nodes.len() {
+            for child in nodes[number].children.clone() {
+                nodes[child as usize].parent = Some(number as u32);
+            }
+        }
+        nodes
+    }
+
+    /// Adds a branch behind those below it; returns its place. Children are places in the list.
+    fn list(&self, branch: &Branch, listed: &mut Vec<Node>) -> u32 {
+        let children: Vec<u32> = branch.children.iter().map(|child| self.list(child, listed)).collect();
+        let stage = children.iter().map(|&child| listed[child as usize].stage + 1).max().unwrap_or(0);
+        listed.push(Node {
+            number: 0,
+            stage,
+            parent: None,
+            children,
+            region: NodeBox::of(&branch.region, self.dims as u8),
+            points: branch.points.round() as u64,
+            files: branch.files.clone(),
+        });
+        listed.len() as u32 - 1
+    }
+}
