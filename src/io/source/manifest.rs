@@ -137,7 +137,7 @@ fn joined(path: &Path) -> Result<JoinedMesh> {
     let manifest = Manifest::parse(&fs::read(path).map_err(|e| Error::io("reading", e))?)?;
     let plan = manifest.plan_number()?;
     let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-    let sizes: Vec<PartSize> = manifest.parts.iter().map(|part| size_of(part)).collect();
+    let sizes: Vec<PartSize> = manifest.parts.iter().map(size_of).collect();
     let mut files = vec![PathBuf::new(); manifest.parts.len()];
     for part in &manifest.parts {
         if let Some(file) = files.get_mut(part.number as usize) {

@@ -174,7 +174,7 @@ mod tests {
     /// Tiles of a survey whose outline is ragged, with borders that are no whole numbers.
     #[test]
     fn first_and_last_columns_may_be_ragged() {
-        let border = |i: usize| (50_000_000.0 + i as f64 * 18_487.8125f64).ceil();
+        let border = |i: usize| (50_000_000.0 + i as f64 * 18_487.812_5_f64).ceil();
         let mut tiles: Vec<(f64, f64)> = (0..16).map(|i| (border(i), border(i + 1) - 1.0)).collect();
         tiles.extend([
             (49_998_996.0, border(1) - 1.0),

@@ -193,3 +193,59 @@ impl Division {
         listed.len() as u32 - 1
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Files of random boxes, some of which overlap.
+    fn shares(count: u32) -> Vec<Share> {
+        let number = |i: u32, k: u32| f64::from((i * 7919 + k * 104_729) % 1009);
+        let share = |i: u32| {
+            let min: [f64; 3] = std::array::from_fn(|axis| number(i, axis as u32) * 10.0);
+            let max = std::array::from_fn(|axis| min[axis] + number(i, 3 + axis as u32));
+            Share { file: i, points: 1 + u64::from(i % 13) * 50, bounds: Bounds { min, max } }
+        };
+        (0..count).map(share).collect()
+    }
+
+    #[test]
+    fn nodes_are_numbered_from_the_leaves_up_and_boxes_do_not_overlap() {
+        for (count, dims, leaf_points) in [(0, 2, 5), (1, 2, 5), (40, 2, 90), (200, 3, 500), (50, 2, 30)] {
+            let shares = shares(count);
+            let nodes = Division { dims, leaf_points, are_whole: true }.nodes(&shares).unwrap();
+            let root = nodes.last().unwrap();
+            assert_eq!((root.parent, root.region.region()), (None, Region::EVERYTHING));
+            for (number, node) in (0..).zip(&nodes) {
+                assert_eq!(node.number, number);
+                assert!(node.children.iter().all(|&child| nodes[child as usize].parent == Some(number)));
+                let below = node.children.iter().map(|&child| nodes[child as usize].stage + 1);
+                assert_eq!(node.stage, below.max().unwrap_or(0));
+                assert!(number == 0 || nodes[number as usize - 1].stage <= node.stage);
+            }
+            let leaves: Vec<&Node> = nodes.iter().filter(|node| node.children.is_empty()).collect();
+            for (i, leaf) in leaves.iter().enumerate() {
+                let region = leaf.region.region();
+                assert!(leaves[..i].iter().all(|other| !other.region.region().overlaps(&region)));
+                let reaching = shares.iter().filter(|share| reaches(&share.bounds, &region));
+                assert_eq!(leaf.files, reaching.map(|share| share.file).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn every_corner_of_a_file_is_in_one_leaf_that_reads_it() {
+        let shares = shares(150);
+        for are_whole in [true, false] {
+            let nodes = Division { dims: 2, leaf_points: 60, are_whole }.nodes(&shares).unwrap();
+            for share in &shares {
+                for point in [share.bounds.min, share.bounds.max] {
+                    let holds =
+                        |node: &&Node| node.children.is_empty() && node.region.region().contains(point);
+                    let leaves: Vec<&Node> = nodes.iter().filter(holds).collect();
+                    assert!(leaves.len() == 1 && leaves[0].files.contains(&share.file));
+                }
+            }
+        }
+    }
+}
