@@ -328,3 +328,49 @@ fn plans_of_the_same_files_and_points_have_one_name() {
     assert_eq!(one, id("other.json", &["-q", "--threads=1", "--memory", "300M", "--keep-class", "2"]));
     assert_ne!(one, id("third.json", &["--keep-class", "5"]));
 }
+
+#[test]
+fn parts_of_other_nodes_and_plans_are_made_again() {
+    let cluster = Cluster::new(&[]);
+    let nodes = cluster.nodes();
+    succeed(&cluster.run(&nodes, &[]));
+    succeed(&cluster.collect(&[]));
+    let (mesh, files) = (cluster.mesh(), cluster.files());
+    let path = |name: &str| cluster.folder.path(&format!("parts/{name}"));
+    // A residual of another node, with the length that is expected.
+    fs::copy(path("000003.rest.spm"), path("000000.rest.spm")).unwrap();
+    succeed(&cluster.run(&nodes, &["--force"]));
+    fs::copy(path("000001.spm"), path("000000.spm")).unwrap();
+    succeed(&cluster.collect(&["--verify"]));
+    assert!(files == cluster.files() && mesh == cluster.mesh());
+    let (code, message) = {
+        let (plan, parts) = (cluster.plan_path(), cluster.folder.path("parts"));
+        outcome(&run("spnode", &["collect", &plan, "-d", &parts, "-o", &path("000000.json")], &[]))
+    };
+    assert_eq!((code, message.contains("the report of a node")), (Some(2), true), "{message}");
+}
+
+#[test]
+fn polygons_are_those_of_the_plan() {
+    let square = |side: i32| format!("POLYGON ((0 0, {side} 0, {side} {side}, 0 {side}, 0 0))\n");
+    let cluster = Cluster::new(&[]);
+    let wkt = cluster.folder.write("square.wkt", square(2));
+    let plan = cluster.plan_path();
+    let mut arguments = vec!["--plan", &plan, "--leaf-points", "300", "--clip", &wkt];
+    arguments.extend(cluster.tiles.iter().map(String::as_str));
+    succeed(&run("spfinalize", &arguments, &[]));
+    succeed(&cluster.run(&cluster.nodes()[..2], &[]));
+    cluster.folder.write("square.wkt", square(30));
+    let (code, message) = outcome(&cluster.run(&cluster.nodes(), &[]));
+    assert_eq!((code, message.contains("changed since the plan was made")), (Some(2), true), "{message}");
+    // A value of a flag that is the name of a file would be taken for the file.
+    let named = cluster.folder.write("2", fs::read(&cluster.tiles[0]).unwrap());
+    let output = crate::programs::tool("spfinalize")
+        .args(["--plan", &plan, "--keep-class", "2", "2"])
+        .current_dir(std::path::Path::new(&named).parent().unwrap())
+        .output()
+        .unwrap();
+    assert_eq!((outcome(&output).0, outcome(&output).1.contains("./NAME")), (Some(2), true));
+    let far = cluster.folder.write("far.txt", "-1e308 0 0\n1e308 0 0\n0 1 0\n");
+    assert_outcome("spfinalize", &["--plan", &plan, "--leaf-points", "1", &far], &[], 0, "read to plan");
+}

@@ -27,6 +27,12 @@ pub const SEGMENTS_MAX: u64 = 1 << 32;
 /// Longest manifest of a mesh in parts, in bytes: a million parts.
 pub const MANIFEST_LEN_MAX: u64 = 1 << 28;
 
+/// Longest plan of many jobs, in bytes: a few million files.
+pub const PLAN_LEN_MAX: u64 = 1 << 30;
+
+/// Longest report of a node, in bytes: a leaf that a million files reach into.
+pub const REPORT_LEN_MAX: u64 = 1 << 26;
+
 /// Longest line of a text input, in bytes.
 pub const TEXT_LINE_MAX: usize = 1 << 16;
 

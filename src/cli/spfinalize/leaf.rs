@@ -45,9 +45,10 @@ pub(crate) fn write_leaf(
     resources: &Resources,
     output: impl Write,
 ) -> anyhow::Result<LeafCounts> {
-    let flags = flags_of(plan)?;
+    let flags = flags_of(&plan.arguments)?;
     let files = plan.files_of(node);
     files.iter().try_for_each(|file| file.check())?;
+    check_beside(plan, &flags)?;
     let header = plan.header(Kind::Points)?;
     if files.is_empty() {
         StreamWriter::new(output, Header { points: Some(0), ..header })?.end(0, 0)?;
@@ -79,9 +80,23 @@ pub(crate) fn write_leaf(
     let stats = spmesh_finalize::run(points, &options, &mut watch, output)?;
     // A file that changed while it was read may look whole.
     files.iter().try_for_each(|file| file.check())?;
+    check_beside(plan, &flags)?;
     let in_box: u64 = input.counts().iter().sum();
     let files = node.files.iter().zip(input.counts()).map(|(&file, &points)| FileCount { file, points });
     Ok(LeafCounts { files: files.collect(), dropped: in_box - stats.points, notices })
+}
+
+/// Checks that polygons are those of the plan: the same files, unchanged.
+fn check_beside(plan: &Plan, flags: &Flags) -> Result<()> {
+    for (path, planned) in flags.areas.files().zip(&plan.beside) {
+        let absolute = std::path::absolute(path).map_err(|e| Error::io("finding", e))?;
+        if absolute != planned.path() {
+            let message = "is another file than when the plan was made: run jobs in the same folder";
+            return Err(Error::usage(message).of_input(absolute.display().to_string()));
+        }
+        planned.check()?;
+    }
+    Ok(())
 }
 
 /// The closed box of the world that holds the points of a window.
@@ -90,9 +105,9 @@ fn in_world(window: &Region<3>, coordinates: &Coordinates) -> Bounds {
 }
 
 /// The flags that the plan was made with.
-fn flags_of(plan: &Plan) -> Result<Flags> {
+pub(super) fn flags_of(arguments: &[String]) -> Result<Flags> {
     let program = std::iter::once("spfinalize".to_string());
-    Flags::try_parse_from(program.chain(plan.arguments.iter().cloned()))
+    Flags::try_parse_from(program.chain(arguments.iter().cloned()))
         .map_err(|e| Error::malformed(format!("the arguments of the plan: {e}")))
 }
 

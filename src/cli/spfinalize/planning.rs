@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::leaf::flags_of;
 use super::{Flags, TOOL};
 use crate::endings;
 use crate::notice;
@@ -67,7 +68,9 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     }
     let leaf_points = flags.plan.leaf_points.unwrap_or(LEAF_POINTS);
     let arguments = arguments_beside(&flags.inputs)?;
-    let plan = plan_of(&survey, &paths, Planning { leaf_points, arguments: &arguments })?;
+    check_arguments(flags, &arguments)?;
+    let beside: Vec<PathBuf> = flags.areas.files().cloned().collect();
+    let plan = plan_of(&survey, &paths, Planning { leaf_points, arguments: &arguments, beside: &beside })?;
     output.write_all(plan.to_json()?.as_bytes()).map_err(|e| Error::io("writing the plan", e))?;
     output.commit()?;
     if !flags.common.quiet {
@@ -112,6 +115,31 @@ fn arguments_beside(files: &[PathBuf]) -> Result<Vec<String>> {
             .map_err(|other| Error::usage(format!("{other:?} is not UTF-8, which plans need")))
     };
     others.map(text).collect()
+}
+
+/// Checks that jobs will read the arguments as this program does. They would not if the value of a flag were also the
+/// name of a file.
+fn check_arguments(flags: &Flags, arguments: &[String]) -> Result<()> {
+    let text = |flags: &Flags| {
+        format!(
+            "{:?}",
+            (
+                &flags.points,
+                &flags.areas,
+                &flags.text,
+                &flags.crs,
+                &flags.attributes,
+                flags.scale,
+                flags.offset,
+                flags.raw,
+                flags.octree
+            )
+        )
+    };
+    match flags_of(arguments) {
+        Ok(again) if text(&again) == text(flags) => Ok(()),
+        _ => Err(Error::usage("a value of a flag is also the name of a file: give the file as ./NAME")),
+    }
 }
 
 fn summary(plan: &Plan) -> String {

@@ -40,20 +40,29 @@ pub(super) fn run(flags: &Flags, common: &Common) -> anyhow::Result<()> {
     endings::check(&flags.output, &[endings::JSON])?;
     let plan = Plan::read(&flags.plan)?;
     check_apart([flags.plan.as_path()], &[("--output", &flags.output)])?;
+    check_name(&flags.output, &flags.work.dir)?;
     let policy = policy_of(&plan, &flags.work)?;
     let maker = Maker::new(&plan, &flags.work, policy, common)?;
     let mut output = Output::create(&flags.output, false)?;
     let order = plan.upwards();
     for &number in &order {
-        if maker.folder.with_mesh(number)?.is_none() {
-            maker.note(&format!("node {number} is not complete: making it"));
-            maker.make(plan.node(number)?)?;
+        let node = plan.node(number)?;
+        match maker.folder.with_mesh(number)? {
+            None => {
+                maker.note(&format!("node {number} is not complete: making it"));
+                maker.make(node)?;
+            }
+            Some(report) if report.joined != maker.folder.residual_hashes(node)? => {
+                maker.note(&format!("node {number} is older than what it joins: making it again"));
+                maker.make(node)?;
+            }
+            Some(_) => {}
         }
         if flags.verify
-            && let Some(damage) = maker.folder.damage_of(&maker.folder.mesh(number))?
+            && let Some(damage) = maker.folder.damage_of(node)?
         {
             maker.note(&format!("{damage}: making node {number} again"));
-            maker.make(plan.node(number)?)?;
+            maker.make(node)?;
         }
     }
     let mut reports = Vec::with_capacity(order.len());
@@ -85,6 +94,19 @@ pub(super) fn run(flags: &Flags, common: &Common) -> anyhow::Result<()> {
             manifest.merged
         ),
     );
+    Ok(())
+}
+
+/// Refuses the names of reports, which the manifest would replace.
+fn check_name(output: &Path, folder: &Path) -> Result<()> {
+    let parent = output.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let both = std::fs::canonicalize(parent).ok().zip(std::fs::canonicalize(folder).ok());
+    let stem = output.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+    if both.is_some_and(|(parent, folder)| parent == folder) && stem.bytes().all(|byte| byte.is_ascii_digit())
+    {
+        let message = "the name is that of the report of a node: give another one";
+        return Err(Error::usage(message).of_input(output.display().to_string()));
+    }
     Ok(())
 }
 

@@ -14,7 +14,7 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::{Output, create_folder};
 use spmesh_core::system;
 use spmesh_model::bounds::Region;
-use spmesh_plan::{FileSize, Node, NodeKind, NodeReport, Plan};
+use spmesh_plan::{FileSize, Node, NodeKind, NodeReport, Plan, hash_of_file};
 use spmesh_reduce::{
     Duplicates, Options, Outputs, Part, Stats, join_tetrahedra, join_triangles, tetrahedralize_part,
     triangulate_part,
@@ -77,10 +77,7 @@ impl<'a> Maker<'a> {
         if node.kind() == NodeKind::Inner {
             self.complete_children(node)?;
         }
-        match self.try_to_make(node) {
-            Err(_) if node.kind() == NodeKind::Inner && self.repair_children(node)? => self.try_to_make(node),
-            made => made,
-        }
+        self.try_to_make(node)
     }
 
     fn forget(&self, number: u32) -> Result<()> {
@@ -93,29 +90,19 @@ impl<'a> Maker<'a> {
         }
     }
 
-    /// Makes the children whose residuals are missing.
+    /// Makes the children whose residuals are not there as they were written, or were made with other options.
     fn complete_children(&self, node: &Node) -> anyhow::Result<()> {
         for &child in &node.children {
             let options = self.folder.report(child)?.map(|report| report.options);
-            if !self.folder.has_residual(child)? || options.is_some_and(|options| options != self.options) {
-                self.note(&format!("the residual of node {child} is missing: making the node first"));
+            if !self.folder.has_whole_residual(child)?
+                || options.is_some_and(|options| options != self.options)
+            {
+                let what = "is missing or damaged, or was made differently: making it first";
+                self.note(&format!("the residual of node {child} {what}"));
                 self.make(self.folder.plan.node(child)?)?;
             }
         }
         Ok(())
-    }
-
-    /// Makes the children again whose residuals are damaged; whether there were any.
-    fn repair_children(&self, node: &Node) -> anyhow::Result<bool> {
-        let mut were_damaged = false;
-        for &child in &node.children {
-            if let Some(damage) = self.folder.damage_of(&self.folder.residual(child))? {
-                self.note(&format!("{damage}: making node {child} again"));
-                self.make(self.folder.plan.node(child)?)?;
-                were_damaged = true;
-            }
-        }
-        Ok(were_damaged)
     }
 
     pub(super) fn note(&self, message: &str) {
@@ -243,13 +230,20 @@ impl<'a> Maker<'a> {
         let is_leaf = node.kind() == NodeKind::Leaf;
         let mut report = NodeReport::new(self.folder.plan.id(), node.number, node.stage, node.kind_name());
         report.options.clone_from(&self.options);
-        report.mesh = FileSize { file: mesh_name(node.number), bytes: outputs.mesh.bytes_written() };
-        report.residual = outputs
-            .residual
-            .as_ref()
-            .map(|residual| FileSize { file: residual_name(node.number), bytes: residual.bytes_written() });
+        let size = |file: String, output: &Output| FileSize {
+            file,
+            bytes: output.bytes_written(),
+            hash: String::new(),
+        };
+        report.mesh = size(mesh_name(node.number), &outputs.mesh);
+        report.residual =
+            outputs.residual.as_ref().map(|residual| size(residual_name(node.number), residual));
         outputs.mesh.commit()?;
         outputs.residual.map_or(Ok(()), Output::commit)?;
+        if let Some(residual) = &mut report.residual {
+            residual.hash = hash_of_file(&self.folder.residual(node.number))?;
+        }
+        report.joined = self.folder.residual_hashes(node)?;
         report.residual_points = stats.residual;
         report.simplices = stats.simplices;
         report.vertices = stats.vertices - stats.shared;

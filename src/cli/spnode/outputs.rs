@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::reduction::open_stream;
 use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_plan::{FileSize, Node, NodeReport, Plan};
+use spmesh_plan::{FileSize, Node, NodeReport, Plan, hash_of_file};
 
 /// The folder of all parts.
 #[derive(Debug, Clone, Copy)]
@@ -64,13 +64,16 @@ impl Folder<'_> {
         Ok(self.report(number)?.filter(|report| self.has(&report.mesh)))
     }
 
-    /// The report of a node that need not be made: its part is there, and its residual or the part of its parent,
-    /// which has used it.
+    /// The report of a node that need not be made: its part is there, made of the residuals that its children have
+    /// left; and its residual is, or the part of its parent, which has used it.
     ///
     /// # Errors
     /// As [`Folder::report`].
     pub(super) fn complete(&self, node: &Node) -> Result<Option<NodeReport>> {
         let Some(report) = self.with_mesh(node.number)? else { return Ok(None) };
+        if report.joined != self.residual_hashes(node)? {
+            return Ok(None);
+        }
         let is_used = match (&report.residual, node.parent) {
             (Some(residual), _) if self.has(residual) => true,
             (_, Some(parent)) => self.with_mesh(parent)?.is_some(),
@@ -79,22 +82,39 @@ impl Folder<'_> {
         Ok(Some(report).filter(|_| is_used))
     }
 
-    /// Whether the residual of a node is there.
+    /// Whether the residual of a node is there, as it was written.
     ///
     /// # Errors
     /// As [`Folder::report`].
-    pub(super) fn has_residual(&self, number: u32) -> Result<bool> {
-        let report = self.report(number)?;
-        Ok(report.and_then(|report| report.residual).is_some_and(|residual| self.has(&residual)))
+    pub(super) fn has_whole_residual(&self, number: u32) -> Result<bool> {
+        let written = self.report(number)?.and_then(|report| report.residual).map(|residual| residual.hash);
+        Ok(written.is_some() && hash_of_file(&self.residual(number)).ok() == written)
     }
 
-    /// What is wrong with a stream, if anything: it is read to its end.
+    /// The hashes of the residuals that a node joins, as the reports of its children state them.
+    ///
+    /// # Errors
+    /// As [`Folder::report`].
+    pub(super) fn residual_hashes(&self, node: &Node) -> Result<Vec<String>> {
+        let hash = |&child: &u32| -> Result<String> {
+            let residual = self.report(child)?.and_then(|report| report.residual);
+            Ok(residual.map(|residual| residual.hash).unwrap_or_default())
+        };
+        node.children.iter().map(hash).collect()
+    }
+
+    /// What is wrong with the part of a node, if anything: it is read to its end.
     ///
     /// # Errors
     /// Failures of the machine rather than of the file.
-    pub(super) fn damage_of(&self, path: &Path) -> Result<Option<Error>> {
+    pub(super) fn damage_of(&self, node: &Node) -> Result<Option<Error>> {
         let read = || -> Result<()> {
-            let mut reader = open_stream(path)?;
+            let path = self.mesh(node.number);
+            let mut reader = open_stream(&path)?;
+            if reader.header().part != Some(self.plan.part(node)) {
+                let message = format!("this is not part {} of the plan", node.number);
+                return Err(Error::malformed(message).of_input(path.display().to_string()));
+            }
             while reader.next_event()?.is_some() {}
             Ok(())
         };

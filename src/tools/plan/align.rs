@@ -33,7 +33,8 @@ struct Gap {
 pub(super) fn borders_between(tiles: &[(f64, f64)]) -> Option<Borders> {
     let mut sorted = tiles.to_vec();
     sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let width = median(tiles.iter().map(|(min, max)| max - min).collect())?;
+    let width =
+        median(tiles.iter().map(|(min, max)| max - min).collect()).filter(|width| width.is_finite())?;
     // The first column needs no border before it.
     let gaps = gaps_of(&sorted, width / 2.0);
     if gaps.len() + 1 < COLUMNS_MIN {
@@ -85,7 +86,7 @@ fn gaps_of(sorted: &[(f64, f64)], apart: f64) -> Vec<Gap> {
         end = end.max(max);
     }
     // What is called the first column begins nowhere in particular.
-    gaps.remove(0);
+    let mut gaps = gaps.split_off(gaps.len().min(1));
     let steps = gaps.windows(2).map(|pair| pair[1].before - pair[0].before).collect();
     let step = median(steps).unwrap_or(1.0);
     // From column to column, so that errors of the step do not add up.

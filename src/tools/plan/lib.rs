@@ -17,5 +17,5 @@ mod tree;
 pub use files::PlannedFile;
 pub use node::{Node, NodeBox, NodeKind};
 pub use plan::{Plan, Planning, plan_of};
-pub use report::{FileCount, FileSize, NodeReport};
+pub use report::{FileCount, FileSize, NodeReport, hash_of_file};
 pub use sums::check_sums;

@@ -12,7 +12,8 @@ use super::files::PlannedFile;
 use super::node::Node;
 use super::tree::{Division, Share};
 use spmesh_core::error::{Error, Result};
-use spmesh_io::source::{Description, Survey};
+use spmesh_core::limits::PLAN_LEN_MAX;
+use spmesh_io::source::{Description, Extent, Survey};
 use spmesh_stream::{Coordinates, Header, Kind, PartName};
 
 /// What a plan says of itself, so that no other JSON is taken for one.
@@ -20,6 +21,9 @@ const FORMAT: &str = "spmesh plan";
 
 /// Version of the layout.
 const VERSION: u32 = 1;
+
+/// The extent of files that are not read for points.
+const NO_POINTS: Extent = Extent { points: 0, bounds: None };
 
 /// The grid of integer coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -36,6 +40,8 @@ pub struct Planning<'a> {
     pub leaf_points: u64,
     /// Arguments of `spfinalize` that say which points count, and how files are read.
     pub arguments: &'a [String],
+    /// Files beside those of points that say which points count.
+    pub beside: &'a [PathBuf],
 }
 
 /// A plan: the files, and the tree of nodes that triangulates them.
@@ -61,6 +67,8 @@ pub struct Plan {
     pub points: u64,
     /// First and last node of each stage.
     pub stages: Vec<[u32; 2]>,
+    /// Files beside those of points that say which points count, such as polygons.
+    pub beside: Vec<PlannedFile>,
     /// The nodes by number.
     pub nodes: Vec<Node>,
     /// The files, in the order in which points are read.
@@ -100,6 +108,11 @@ pub fn plan_of(survey: &Survey, paths: &[PathBuf], planning: Planning) -> Result
         points: files.iter().map(|file| file.points).sum(),
         stages: stages_of(&nodes),
         nodes,
+        beside: planning
+            .beside
+            .iter()
+            .map(|path| PlannedFile::new(path, &NO_POINTS))
+            .collect::<Result<_>>()?,
         files,
     };
     plan.id = plan.hash()?;
@@ -131,6 +144,11 @@ impl Plan {
     /// version is another one.
     pub fn read(path: &Path) -> Result<Plan> {
         let named = |error: Error| error.of_input(path.display().to_string());
+        let found = fs::metadata(path).map_err(|e| named(Error::io("reading", e)))?;
+        if !found.is_file() || found.len() > PLAN_LEN_MAX {
+            let message = format!("no plan: it is no regular file, or longer than {PLAN_LEN_MAX} bytes");
+            return Err(named(Error::malformed(message)));
+        }
         let text = fs::read(path).map_err(|e| named(Error::io("reading", e)))?;
         Plan::parse(&text).map_err(named)
     }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::hash_of;
 use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::REPORT_LEN_MAX;
 
 const FORMAT: &str = "spmesh node";
 const VERSION: u32 = 1;
@@ -29,6 +30,17 @@ pub struct FileSize {
     pub file: String,
     /// Its length in bytes.
     pub bytes: u64,
+    /// A hash of a residual, in hexadecimal digits; empty for a part of the mesh.
+    pub hash: String,
+}
+
+/// The hash of a file.
+///
+/// # Errors
+/// I/O, if it cannot be read.
+pub fn hash_of_file(path: &Path) -> Result<String> {
+    let bytes = fs::read(path).map_err(|e| Error::io("reading", e).of_input(path.display().to_string()))?;
+    Ok(hash_of(&bytes))
 }
 
 /// The report of a node. The node is complete if its report is there, and its files have the lengths that it states.
@@ -67,6 +79,8 @@ pub struct NodeReport {
     pub residual: Option<FileSize>,
     /// Points of the residual.
     pub residual_points: u64,
+    /// Hashes of the residuals that the node has joined, in the order of its children.
+    pub joined: Vec<String>,
     /// Bytes that the node has read.
     pub read_bytes: u64,
     /// What was asked for that changes the mesh.
@@ -85,7 +99,7 @@ impl NodeReport {
     /// An empty report.
     #[must_use]
     pub fn new(plan: &str, node: u32, stage: u32, kind: &str) -> NodeReport {
-        let none = || FileSize { file: String::new(), bytes: 0 };
+        let none = || FileSize { file: String::new(), bytes: 0, hash: String::new() };
         NodeReport {
             format: FORMAT.to_string(),
             version: VERSION,
@@ -104,6 +118,7 @@ impl NodeReport {
             mesh: none(),
             residual: None,
             residual_points: 0,
+            joined: Vec::new(),
             read_bytes: 0,
             options: String::new(),
             seconds: 0.0,
@@ -118,6 +133,11 @@ impl NodeReport {
     /// # Errors
     /// I/O, if it is there but cannot be read.
     pub fn read(path: &Path) -> Result<Option<NodeReport>> {
+        match fs::metadata(path) {
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Ok(found) if !found.is_file() || found.len() > REPORT_LEN_MAX => return Ok(None),
+            _ => {}
+        }
         let text = match fs::read(path) {
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             read => read.map_err(|e| Error::io("reading", e).of_input(path.display().to_string()))?,

@@ -102,7 +102,9 @@ impl Division {
         };
         let mut children = Vec::new();
         for corner in 0..1 << self.dims {
-            children.extend(self.branch(self.child(&cell, middle, corner), &here, level + 1, count)?);
+            if let Some(child) = self.child(&cell, middle, corner) {
+                children.extend(self.branch(child, &here, level + 1, count)?);
+            }
         }
         if let [_] = children[..] {
             return Ok(children.pop().map(|only| Branch { region: cell.region, ..only }));
@@ -127,32 +129,33 @@ impl Division {
         if self.are_whole { at.ceil() } else { at }
     }
 
-    /// The place at which a cell is divided; `None` if it is too small.
-    fn middle(&self, cell: &Cell) -> Option<[f64; 3]> {
-        let mut middle = cell.min;
+    /// The places at which a cell is divided; none along axes along which it is too small. `None` if it is too small
+    /// along all of them.
+    fn middle(&self, cell: &Cell) -> Option<[Option<f64>; 3]> {
+        let mut middle = [None; 3];
         for (axis, middle) in middle.iter_mut().enumerate().take(self.dims) {
-            *middle = cell.min[axis] / 2.0 + cell.max[axis] / 2.0;
+            let at = cell.min[axis] / 2.0 + cell.max[axis] / 2.0;
+            let border = self.border(at);
+            // The region, too: each half must have room for a point.
+            let divides = self.border(cell.min[axis]) < border && border < self.border(cell.max[axis]);
+            let fits = cell.region.min[axis] < border && border < cell.region.max[axis];
+            *middle = (divides && fits).then_some(at);
         }
-        let divides = |axis: usize| {
-            let [low, border, high] =
-                [cell.min[axis], middle[axis], cell.max[axis]].map(|at| self.border(at));
-            low < border && border < high
-        };
-        // An axis without extent has one half only.
-        (0..self.dims).any(divides).then_some(middle)
+        middle.iter().any(Option::is_some).then_some(middle)
     }
 
-    /// The child at a corner: bit k of `corner` says which half along axis k.
-    fn child(&self, cell: &Cell, middle: [f64; 3], corner: usize) -> Cell {
+    /// The child at a corner: bit k of `corner` says which half along axis k. `None` if there is no such half.
+    fn child(&self, cell: &Cell, middle: [Option<f64>; 3], corner: usize) -> Option<Cell> {
         let mut child = *cell;
-        for (axis, &middle) in middle.iter().enumerate().take(self.dims) {
-            if corner >> axis & 1 == 0 {
-                (child.max[axis], child.region.max[axis]) = (middle, self.border(middle));
-            } else {
-                (child.min[axis], child.region.min[axis]) = (middle, self.border(middle));
+        for (axis, middle) in middle.into_iter().enumerate().take(self.dims) {
+            match (middle, corner >> axis & 1 == 0) {
+                (Some(at), true) => (child.max[axis], child.region.max[axis]) = (at, self.border(at)),
+                (Some(at), false) => (child.min[axis], child.region.min[axis]) = (at, self.border(at)),
+                (None, true) => {}
+                (None, false) => return None,
             }
         }
-        child
+        Some(child)
     }
 
     /// The nodes with their numbers.
@@ -187,7 +190,7 @@ impl Division {
             parent: None,
             children,
             region: NodeBox::of(&branch.region, self.dims as u8),
-            points: branch.points.round() as u64,
+            points: branch.points.ceil() as u64,
             files: branch.files.clone(),
         });
         listed.len() as u32 - 1
@@ -226,9 +229,26 @@ mod tests {
             let leaves: Vec<&Node> = nodes.iter().filter(|node| node.children.is_empty()).collect();
             for (i, leaf) in leaves.iter().enumerate() {
                 let region = leaf.region.region();
+                assert!((0..3).all(|axis| region.min[axis] < region.max[axis]), "{region:?}");
                 assert!(leaves[..i].iter().all(|other| !other.region.region().overlaps(&region)));
                 let reaching = shares.iter().filter(|share| reaches(&share.bounds, &region));
                 assert_eq!(leaf.files, reaching.map(|share| share.file).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn thin_boxes_are_divided_along_their_length() {
+        for (width, are_whole) in [(0.0, true), (1.0, true), (1.0, false), (5e-324, false)] {
+            let bounds = Bounds { min: [0.0; 3], max: [1000.0, width, width] };
+            let share = Share { file: 0, points: 1000, bounds };
+            for dims in [2, 3] {
+                let nodes = Division { dims, leaf_points: 9, are_whole }.nodes(&[share]).unwrap();
+                let is_open = |node: &Node| {
+                    let region = node.region.region();
+                    (0..3).all(|axis| region.min[axis] < region.max[axis])
+                };
+                assert!(nodes.len() > 100 && nodes.iter().all(is_open));
             }
         }
     }
