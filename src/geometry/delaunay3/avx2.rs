@@ -3,9 +3,10 @@
 use super::lanes::Lanes;
 use crate::processor::Avx2Fma;
 use std::arch::x86_64::{
-    __m256d, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd, _mm256_fmadd_pd, _mm256_fmsub_pd,
-    _mm256_max_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_permute4x64_pd, _mm256_set1_pd,
-    _mm256_setr_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd,
+    __m256d, _CMP_GT_OQ, _mm_loadu_pd, _mm256_add_pd, _mm256_castpd128_pd256, _mm256_cmp_pd, _mm256_fmadd_pd,
+    _mm256_fmsub_pd, _mm256_insertf128_pd, _mm256_max_pd, _mm256_movemask_pd, _mm256_mul_pd,
+    _mm256_permute4x64_pd, _mm256_set1_pd, _mm256_setr_pd, _mm256_storeu_pd, _mm256_sub_pd,
+    _mm256_unpackhi_pd, _mm256_unpacklo_pd,
 };
 use std::ops::{Add, Mul, Sub};
 
@@ -87,24 +88,30 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn where_greater(self, left: Avx2, right: Avx2) -> Avx2 {
+    fn signs(self, bound: Avx2) -> [u32; 2] {
         instructions! {
-            let mask = _mm256_cmp_pd::<_CMP_GT_OQ>(left.0, right.0);
-            Avx2(_mm256_blendv_pd(_mm256_set1_pd(f64::NAN), self.0, mask))
+            let certain = _mm256_cmp_pd::<_CMP_GT_OQ>(_mm256_mul_pd(self.0, self.0), bound.0);
+            let certain = _mm256_movemask_pd(certain) as u32 & 7;
+            let negative = _mm256_movemask_pd(self.0) as u32;
+            [certain & !negative, certain & negative]
         }
     }
 
+    /// Loads of halves of rows, of which two go into one register, save half of the shuffles.
     #[inline(always)]
-    fn columns(rows: [Avx2; 3]) -> [Avx2; 4] {
-        let [a, b, c] = [rows[0].0, rows[1].0, rows[2].0];
+    fn columns(_: Avx2Fma, rows: [&[f64; 4]; 3]) -> [Avx2; 4] {
+        let [a, b, c] = rows.map(|row| row.as_ptr());
         instructions! {
-            let (even, odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
-            let (even_c, odd_c) = (_mm256_unpacklo_pd(c, c), _mm256_unpackhi_pd(c, c));
+            let half = |row: *const f64, third: *const f64| {
+                _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(_mm_loadu_pd(row)), _mm_loadu_pd(third))
+            };
+            let (a_low, b_low) = (half(a, c), half(b, c));
+            let (a_high, b_high) = (half(a.add(2), c.add(2)), half(b.add(2), c.add(2)));
             [
-                Avx2(_mm256_permute2f128_pd::<0x20>(even, even_c)),
-                Avx2(_mm256_permute2f128_pd::<0x20>(odd, odd_c)),
-                Avx2(_mm256_permute2f128_pd::<0x31>(even, even_c)),
-                Avx2(_mm256_permute2f128_pd::<0x31>(odd, odd_c)),
+                Avx2(_mm256_unpacklo_pd(a_low, b_low)),
+                Avx2(_mm256_unpackhi_pd(a_low, b_low)),
+                Avx2(_mm256_unpacklo_pd(a_high, b_high)),
+                Avx2(_mm256_unpackhi_pd(a_high, b_high)),
             ]
         }
     }

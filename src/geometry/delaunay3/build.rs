@@ -2,7 +2,7 @@
 
 use super::complex::Complex;
 use super::exact::Exact;
-use super::insertion::{Cavity, Insertion, Refusal};
+use super::insertion::{Buffers, Insertion, Refusal};
 use super::lanes::Lanes;
 use super::stats::{PhaseTimer, Stats};
 use super::tetrahedralization::Vertex;
@@ -15,7 +15,7 @@ use crate::predicates::{Point3, Predicates3, Sign, WithPredicates3};
 pub(super) struct Build<'a, 's, W> {
     pub(super) complex: Complex<'s>,
     pub(super) setting: &'a Setting<W>,
-    pub(super) cavity: &'a mut Cavity,
+    pub(super) buffers: &'a mut Buffers,
     pub(super) stats: &'a mut Stats,
     /// The numbers of the vertices in the order of insertion; those of `first` are skipped.
     pub(super) insertions: &'a mut Insertions,
@@ -36,12 +36,12 @@ impl<'s, W: Weights> Build<'_, 's, W> {
         let Build { setting, insertions, first, starts, refused, .. } = self;
         let finite = self.complex.infinite() as usize;
         let mut start = starts.first().copied().unwrap_or(0);
-        self.cavity.clear();
+        self.buffers.clear();
         let mut insertion = Insertion::<L, W> {
             complex: self.complex,
             weights: &setting.weights,
             predicates,
-            cavity: self.cavity,
+            buffers: self.buffers,
             stats: self.stats,
             timer: PhaseTimer::new(setting.is_timed),
             infinite_lift: setting.infinite_lift,

@@ -5,11 +5,10 @@ use super::slots::Slots;
 use super::tetrahedralization::{Tetrahedron, Vertex, WORDS};
 use crate::predicates::Point3;
 use bytemuck::{Zeroable, cast_slice, cast_slice_mut};
-use spmesh_core::prefetch::prefetch;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
 /// First of the words that hold the neighbouring facets.
-const FIRST_NEIGHBOUR: usize = 4;
+pub(super) const FIRST_NEIGHBOUR: usize = 4;
 
 /// Tetrahedra per vertex that memory is reserved for at first: uniform points have 6.8, points of a surface
 /// up to 9. Memory costs nothing until it is touched; enlarging it would cost a copy.
@@ -23,19 +22,51 @@ const _: () = assert!(MAX_POINTS < DELETED as usize);
 /// vertex.
 pub(super) type Facet = u32;
 
-/// For a facet that is entered, and which of its [`TETRAHEDRON_FACETS`] is the first one as seen by who
-/// enters: the corners in that order.
-const ENTERED: [[[usize; 3]; 3]; 4] = entered();
+/// For a facet that is entered, and for the place, as a bit, of the first of its corners as seen by who enters: the
+/// corners in that order.
+static ENTERED: [[[u8; 4]; 16]; 4] = entered();
 
-const fn entered() -> [[[usize; 3]; 3]; 4] {
-    let mut table = [[[0; 3]; 3]; 4];
+const fn entered() -> [[[u8; 4]; 16]; 4] {
+    let mut table = [[[0; 4]; 16]; 4];
     let mut corner = 0;
     while corner < 4 {
         let [f, g, h] = TETRAHEDRON_FACETS[corner];
-        table[corner] = [[f, h, g], [g, f, h], [h, g, f]];
+        table[corner][1 << f] = [f as u8, h as u8, g as u8, 0];
+        table[corner][1 << g] = [g as u8, f as u8, h as u8, 0];
+        table[corner][1 << h] = [h as u8, g as u8, f as u8, 0];
         corner += 1;
     }
     table
+}
+
+/// The corners a, b, c of a tetrahedron that is entered through `facet`, of which a is the given vertex, in the order
+/// seen by who enters.
+#[inline(always)]
+pub(super) fn facets_behind(corners: [u32; 4], facet: Facet, a: u32) -> [usize; 3] {
+    let [f, g, h, _] = ENTERED[corner(facet)][places(corners, a)];
+    [usize::from(f & 3), usize::from(g & 3), usize::from(h & 3)]
+}
+
+/// The places of a vertex among corners, a bit for each.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn places(corners: [u32; 4], vertex: u32) -> usize {
+    use std::arch::x86_64::{
+        _mm_castsi128_ps, _mm_cmpeq_epi32, _mm_loadu_si128, _mm_movemask_ps, _mm_set1_epi32,
+    };
+    // SAFETY: every x86-64 processor has these instructions, and four words are loaded.
+    let mask = unsafe {
+        let equal = _mm_cmpeq_epi32(_mm_loadu_si128(corners.as_ptr().cast()), _mm_set1_epi32(vertex as i32));
+        _mm_movemask_ps(_mm_castsi128_ps(equal))
+    };
+    mask as usize & 15
+}
+
+/// The places of a vertex among corners, a bit for each.
+#[cfg(not(target_arch = "x86_64"))]
+#[inline(always)]
+fn places(corners: [u32; 4], vertex: u32) -> usize {
+    (0..4).fold(0, |places, i| places | usize::from(corners[i] == vertex) << i)
 }
 
 /// The tetrahedron of a facet.
@@ -127,18 +158,16 @@ impl<'s> Complex<'s> {
         self.tetrahedra[t as usize / WORDS].vertices
     }
 
+    /// The tetrahedron of a facet.
+    #[inline(always)]
+    pub(super) fn tetrahedron(&self, facet: Facet) -> &Tetrahedron {
+        &self.tetrahedra[facet as usize / WORDS]
+    }
+
     /// The vertex opposite to a facet.
     #[inline(always)]
     pub(super) fn opposite(&self, facet: Facet) -> u32 {
         self.words()[facet as usize]
-    }
-
-    /// Prefetches the neighbours of the tetrahedron of a facet.
-    #[inline(always)]
-    pub(super) fn fetch_neighbours(&self, facet: Facet) {
-        for other in self.tetrahedra[facet as usize / WORDS].neighbours {
-            prefetch(self.words(), other as usize);
-        }
     }
 
     /// The same facet as a facet of the neighbouring tetrahedron.
@@ -153,15 +182,13 @@ impl<'s> Complex<'s> {
         self.words_mut()[facet as usize + FIRST_NEIGHBOUR] = other;
     }
 
-    /// The facets beyond a tetrahedron that is entered through `facet`: across from its corners a, b, c, of
-    /// which a is the given vertex, in the order seen by who enters.
+    /// The facets beyond a tetrahedron that is entered through `facet`: across from its corners a, b, c, of which a
+    /// is the given vertex, in the order seen by who enters.
     #[inline(always)]
     pub(super) fn neighbours_behind(&self, facet: Facet, a: u32) -> [Facet; 3] {
-        let Tetrahedron { vertices, neighbours } = &self.tetrahedra[facet as usize / WORDS];
-        let i = corner(facet);
-        let [_, g, h] = TETRAHEDRON_FACETS[i];
-        let rotation = usize::from(vertices[g] == a) + 2 * usize::from(vertices[h] == a);
-        ENTERED[i][rotation].map(|corner| neighbours[corner])
+        let Tetrahedron { vertices, neighbours } = self.tetrahedron(facet);
+        let [f, g, h] = facets_behind(*vertices, facet, a);
+        [neighbours[f], neighbours[g], neighbours[h]]
     }
 
     /// Marks a tetrahedron as deleted; its neighbouring facets stay.

@@ -36,11 +36,12 @@ pub(super) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Out
     /// The greater number of each lane.
     fn greater(self, other: Self) -> Self;
 
-    /// `self` in the lanes where `left > right`, NaN in the others.
-    fn where_greater(self, left: Self, right: Self) -> Self;
+    /// The first three lanes, a bit for each, whose squares are above `bound`: those that are positive, and
+    /// those that are not.
+    fn signs(self, bound: Self) -> [u32; 2];
 
     /// The columns of a matrix of three rows.
-    fn columns(rows: [Self; 3]) -> [Self; 4];
+    fn columns(token: Self::Token, rows: [&[f64; 4]; 3]) -> [Self; 4];
 }
 
 /// For every processor.
@@ -106,13 +107,16 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn where_greater(self, left: Portable, right: Portable) -> Portable {
-        Portable([0, 1, 2, 3].map(|i| if left.0[i] > right.0[i] { self.0[i] } else { f64::NAN }))
+    fn signs(self, bound: Portable) -> [u32; 2] {
+        let square = self * self;
+        let bits = |is_set: [bool; 3]| (0..3).fold(0, |bits, i| bits | u32::from(is_set[i]) << i);
+        let certain = bits([0, 1, 2].map(|i| square.0[i] > bound.0[i]));
+        let positive = bits([0, 1, 2].map(|i| self.0[i] > 0.0));
+        [certain & positive, certain & !positive]
     }
 
     #[inline(always)]
-    fn columns(rows: [Portable; 3]) -> [Portable; 4] {
-        let [a, b, c] = rows.map(|row| row.0);
-        [0, 1, 2, 3].map(|i| Portable([a[i], b[i], c[i], 0.0]))
+    fn columns((): (), rows: [&[f64; 4]; 3]) -> [Portable; 4] {
+        [0, 1, 2, 3].map(|i| Portable([rows[0][i], rows[1][i], rows[2][i], 0.0]))
     }
 }

@@ -9,6 +9,7 @@
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod build;
+mod cavity;
 mod complex;
 mod corners;
 mod cut;
@@ -17,10 +18,12 @@ mod edges;
 mod exact;
 mod extract;
 mod insertion;
+mod insphere3;
 mod lanes;
 mod locate;
 mod parts;
 mod queries;
+mod search;
 mod slots;
 mod star;
 mod stats;
@@ -29,6 +32,7 @@ mod tests;
 mod tetrahedralization;
 mod tie;
 mod translated;
+mod trusted;
 mod weights;
 mod whole;
 
@@ -42,7 +46,7 @@ use crate::order::{Curve, Insertions, Sequence, SpatialOrder, Suffixes};
 use crate::predicates::{Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3};
 use build::{Build, First};
 use complex::Complex;
-use insertion::Cavity;
+use insertion::Buffers;
 use spmesh_core::error::{Error, Result};
 use std::borrow::Cow;
 use std::num::NonZeroUsize;
@@ -61,7 +65,7 @@ const POINTS_PER_THREAD: usize = 20_000;
 /// The kernel with its buffers.
 #[derive(Debug)]
 pub struct Kernel {
-    cavity: Cavity,
+    buffers: Buffers,
     counts: PredicateCounts,
     /// The curve along which points are stored and inserted.
     pub curve: Curve,
@@ -83,7 +87,7 @@ pub struct Kernel {
 impl Default for Kernel {
     fn default() -> Kernel {
         Kernel {
-            cavity: Cavity::default(),
+            buffers: Buffers::default(),
             counts: PredicateCounts::default(),
             curve: Curve::default(),
             sequence: Sequence::default(),

@@ -13,7 +13,7 @@
 use super::build::Build;
 use super::complex::{Complex, DELETED, Facet, TETRAHEDRA_PER_VERTEX};
 use super::cut::{Cut, PARTS_MAX};
-use super::insertion::Cavity;
+use super::insertion::Buffers;
 use super::slots::Slots;
 use super::tetrahedralization::{NONE, Tetrahedron, Vertex, WORDS};
 use super::weights::Weights;
@@ -180,7 +180,7 @@ impl Part<'_> {
             let build = Build {
                 complex,
                 setting,
-                cavity: &mut Cavity::default(),
+                buffers: &mut Buffers::default(),
                 stats: &mut tally.stats,
                 insertions: &mut insertions,
                 // They are not among the insertions.

@@ -62,11 +62,15 @@ pub(super) struct InSphere {
 impl InSphere {
     #[inline(always)]
     pub(super) fn new<W: Weights>(corners: [TranslatedVertex; 4]) -> InSphere {
-        let volumes = TETRAHEDRON_FACETS.map(|[i, j, k]| volume(corners[i].at, corners[j].at, corners[k].at));
-        let terms: [f64; 4] = std::array::from_fn(|i| corners[i].lift * volumes[i]);
+        // Closures would not be inlined into functions for one kind of processor.
+        let (mut volumes, mut terms, mut greatest) = ([0.0; 4], [0.0; 4], 0.0);
+        for (side, [i, j, k]) in TETRAHEDRON_FACETS.into_iter().enumerate() {
+            volumes[side] = volume(corners[i].at, corners[j].at, corners[k].at);
+            terms[side] = corners[side].lift * volumes[side];
+            let reach = corners[side].greatest::<W>();
+            greatest = if reach > greatest { reach } else { greatest };
+        }
         let value = (terms[0] + terms[1]) + (terms[2] + terms[3]);
-        let larger = |g: f64, reach: f64| if reach > g { reach } else { g };
-        let greatest = corners.iter().fold(0.0, |g, corner| larger(g, corner.greatest::<W>()));
         InSphere { corners, volumes, value, greatest }
     }
 

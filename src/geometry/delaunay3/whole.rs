@@ -2,7 +2,7 @@
 
 use super::build::Build;
 use super::complex::{Complex, TETRAHEDRA_PER_VERTEX};
-use super::insertion::Cavity;
+use super::insertion::Buffers;
 use super::parts;
 use super::slots::Slots;
 use super::stats::Stats;
@@ -90,16 +90,16 @@ impl Whole {
         &mut self,
         setting: &Setting<W>,
         insertions: &mut Insertions,
-        cavity: &mut Cavity,
+        buffers: &mut Buffers,
         tally: &mut Tally,
     ) -> Result<()> {
         let mut refused = Vec::new();
         loop {
-            self.run(setting, insertions, cavity, tally, &mut refused);
+            self.run(setting, insertions, buffers, tally, &mut refused);
             // Only lack of room refuses vertices here.
             while let Some(vertex) = refused.pop() {
                 self.grow()?;
-                self.run(setting, &mut Insertions::listed(vec![vertex]), cavity, tally, &mut refused);
+                self.run(setting, &mut Insertions::listed(vec![vertex]), buffers, tally, &mut refused);
             }
             if insertions.len() == 0 {
                 return Ok(());
@@ -111,7 +111,7 @@ impl Whole {
         &mut self,
         setting: &Setting<W>,
         insertions: &mut Insertions,
-        cavity: &mut Cavity,
+        buffers: &mut Buffers,
         tally: &mut Tally,
         refused: &mut Vec<u32>,
     ) {
@@ -119,7 +119,7 @@ impl Whole {
         self.change(|complex| {
             let start = complex.words_of_tetrahedra().find(|&t| !complex.is_deleted(t)).unwrap_or(0);
             let (first, starts) = (setting.first, &[start]);
-            let build = Build { complex, setting, cavity, stats, insertions, first, starts, refused };
+            let build = Build { complex, setting, buffers, stats, insertions, first, starts, refused };
             setting.arithmetic.run(build, counts)
         });
     }
@@ -170,7 +170,7 @@ impl Kernel {
         let has_threads =
             self.threads.get() > 1 && W::ARE_EQUAL && self.sequence != Sequence::Pass && !self.by_bit_levels;
         if !has_threads {
-            return whole.insert(setting, &mut insertions, &mut self.cavity, tally);
+            return whole.insert(setting, &mut insertions, &mut self.buffers, tally);
         }
         let mut done = 0;
         for end in phases(insertions.len(), self.points_per_thread) {
@@ -184,7 +184,7 @@ impl Kernel {
                 let refused = parts::insert(whole, setting, done, numbers, threads, tally)?;
                 numbers = Insertions::listed(refused);
             }
-            whole.insert(setting, &mut numbers, &mut self.cavity, tally)?;
+            whole.insert(setting, &mut numbers, &mut self.buffers, tally)?;
             done = end;
         }
         Ok(())
