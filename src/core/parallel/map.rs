@@ -46,6 +46,22 @@ where
     done.into_iter().map(|(_, result)| result).collect()
 }
 
+/// Does `work` for all items, which cannot fail, as [`map`] does.
+///
+/// # Panics
+/// If `work` panics.
+pub fn for_each<I>(threads: NonZeroUsize, items: I, work: impl Fn(I::Item) + Sync)
+where
+    I: IntoIterator<IntoIter: ExactSizeIterator + Send>,
+    I::Item: Send,
+{
+    let work = |item| {
+        work(item);
+        Ok(())
+    };
+    map(threads, items, work).expect("work does not fail");
+}
+
 /// Items that no thread has taken yet.
 struct Shared<I> {
     items: Mutex<Enumerate<I>>,

@@ -26,7 +26,7 @@ mod threads;
 mod ticker;
 
 pub use buffer_pool::BufferPool;
-pub use map::map;
+pub use map::{for_each, map};
 pub use ordered_pool::OrderedPool;
 pub use produce::produce;
 pub use read_ahead::read_ahead;

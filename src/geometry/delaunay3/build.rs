@@ -13,7 +13,7 @@ use crate::predicates::{Point3, Predicates3, Sign, WithPredicates3};
 
 /// Inserts vertices into a complex, all in one arithmetic.
 pub(super) struct Build<'a, 's, W> {
-    pub(super) complex: Complex<'s>,
+    pub(super) complex: &'a mut Complex<'s>,
     pub(super) setting: &'a Setting<W>,
     pub(super) buffers: &'a mut Buffers,
     pub(super) stats: &'a mut Stats,
@@ -26,15 +26,14 @@ pub(super) struct Build<'a, 's, W> {
     pub(super) refused: &'a mut Vec<u32>,
 }
 
-impl<'s, W: Weights> Build<'_, 's, W> {
-    /// The complex with the vertices inserted: all but those refused, or, if there is no more room, all until
-    /// the one refused last.
+impl<W: Weights> Build<'_, '_, W> {
+    /// Inserts the vertices: all but those refused, or, if there is no more room, all until the one refused last.
     ///
     /// Inlined, like everything that it calls with lanes, into one function per kind of processor.
     #[inline(always)]
-    pub(super) fn run<L: Lanes>(self, predicates: &mut dyn Exact, token: L::Token) -> Complex<'s> {
+    pub(super) fn run<L: Lanes>(self, predicates: &mut dyn Exact, token: L::Token) {
         let Build { setting, insertions, first, starts, refused, .. } = self;
-        let finite = self.complex.infinite() as usize;
+        let own = self.complex.own.clone();
         let mut start = starts.first().copied().unwrap_or(0);
         self.buffers.clear();
         let mut insertion = Insertion::<L, W> {
@@ -59,7 +58,7 @@ impl<'s, W: Weights> Build<'_, 's, W> {
                     Ok(next) => start = next,
                     Err(Refusal::Blocked) if !is_retried => {
                         is_retried = true;
-                        let nearest = starts[vertex as usize * starts.len() / finite];
+                        let nearest = starts[(vertex - own.start) as usize * starts.len() / own.len()];
                         if !insertion.complex.is_deleted(nearest) {
                             start = nearest;
                             continue;
@@ -79,7 +78,7 @@ impl<'s, W: Weights> Build<'_, 's, W> {
                 break;
             }
         }
-        insertion.finish()
+        insertion.finish();
     }
 }
 

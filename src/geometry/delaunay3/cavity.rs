@@ -1,9 +1,9 @@
 //! The cavity of a new point: the tetrahedra in conflict with it, and the facets around them.
 
-use super::complex::{Complex, Facet, tetrahedron_of};
+use super::complex::{Complex, Facet, VERTEX, tetrahedron_of};
 use super::insphere3::{Frame, Signs};
 use super::lanes::Lanes;
-use super::tetrahedralization::{Tetrahedron, Vertex};
+use super::tetrahedralization::Vertex;
 use super::weights::Weights;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
@@ -148,11 +148,11 @@ impl Cavity {
         complex: &mut Complex<'_>,
         frame: &Frame<'_, L, W>,
     ) -> [Finding; 4] {
-        let Tetrahedron { vertices, neighbours } = *complex.tetrahedron(t);
+        let (vertices, neighbours) = (complex.corners(t), complex.neighbours(t));
         for i in 0..4 {
-            let vertex = &mut complex.vertices[vertices[i] as usize];
-            vertex.local = i as u32;
-            self.rows[i] = frame.row(vertices[i], vertex);
+            let place = complex.place_of_number(vertices[i]);
+            complex.numbers[place] = i as u32;
+            self.rows[i] = frame.row(vertices[i], &complex.vertices[vertices[i] as usize]);
         }
         self.vertices[..4].copy_from_slice(&vertices);
         self.vertices[4] = NO_VERTEX;
@@ -161,10 +161,10 @@ impl Cavity {
         complex.delete(t);
         let mut apexes = [0; 4];
         for side in 0..4 {
-            apexes[side] = complex.opposite(neighbours[side]);
+            apexes[side] = complex.opposite(neighbours[side]) & VERTEX;
         }
         // Corner 0 is d for three facets, corner 1 for the fourth.
-        let vertices = &complex.vertices;
+        let vertices = complex.vertices;
         let [r, s, t, u] = [&self.rows[0], &self.rows[1], &self.rows[2], &self.rows[3]];
         let near = signs(frame, [s, u, t, r], [apexes[1], apexes[3], apexes[2]], vertices);
         let far = signs(frame, [r, t, u, s], [apexes[0]; 3], vertices);

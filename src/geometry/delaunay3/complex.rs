@@ -1,11 +1,11 @@
 //! A triangulated 3-sphere in a flat array: the tetrahedralization and one vertex at infinity (thesis 4.3).
 
 use super::MAX_POINTS;
-use super::slots::Slots;
-use super::tetrahedralization::{Tetrahedron, Vertex, WORDS};
+use super::tetrahedralization::{Vertex, WORDS};
+use super::words::Words;
 use crate::predicates::Point3;
-use bytemuck::{Zeroable, cast_slice, cast_slice_mut};
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
+use std::ops::Range;
 
 /// First of the words that hold the neighbouring facets.
 pub(super) const FIRST_NEIGHBOUR: usize = 4;
@@ -16,7 +16,13 @@ pub(super) const TETRAHEDRA_PER_VERTEX: usize = 9;
 
 /// Flag of each vertex of a deleted tetrahedron: with it, a number is above those of all vertices.
 pub(super) const DELETED: u32 = 1 << 31;
-const _: () = assert!(MAX_POINTS < DELETED as usize);
+
+/// Flag of each vertex of a frozen tetrahedron, which stays as it is while parts change: see [`super::parts`].
+pub(super) const FROZEN: u32 = 1 << 30;
+
+/// A vertex without flags.
+pub(super) const VERTEX: u32 = FROZEN - 1;
+const _: () = assert!(MAX_POINTS < VERTEX as usize);
 
 /// A facet of a tetrahedron is the word of the vertex opposite to it; a tetrahedron is the word of its first
 /// vertex.
@@ -81,38 +87,47 @@ pub(super) fn corner(facet: Facet) -> usize {
     (facet & 3) as usize
 }
 
-/// Vertices and tetrahedra. The last vertex is that at infinity.
+/// The vertices, and the tetrahedra of which a thread may change some: all, or those of a part.
 #[derive(Debug)]
 pub(super) struct Complex<'s> {
-    pub(super) vertices: Vec<Vertex>,
-    pub(super) tetrahedra: Slots<'s>,
-    /// Deleted tetrahedra, whose places are reused before the array grows.
+    /// All vertices; the last one is that at infinity.
+    pub(super) vertices: &'s [Vertex],
+    /// The finite vertices of the part.
+    pub(super) own: Range<u32>,
+    /// Of each of them, and behind them of the vertex at infinity, its number among the vertices of a cavity;
+    /// arbitrary if it is not one of them.
+    pub(super) numbers: Vec<u32>,
+    pub(super) words: Words<'s>,
+    /// Deleted tetrahedra, whose places are used first.
     pub(super) free: Vec<u32>,
-    /// Tetrahedra before this word belong to other parts, too, and stay as they are: see [`super::parts`].
-    pub(super) frozen: u32,
+    /// Room that no tetrahedron has been in yet, as numbers of tetrahedra.
+    pub(super) fresh: Range<usize>,
 }
 
-impl<'s> Complex<'s> {
-    /// The first tetrahedron, positively oriented, and the four infinite ones around it, in empty room for
-    /// five at least.
-    pub(super) fn new(vertices: Vec<Vertex>, mut tetrahedra: Slots<'s>, first: [u32; 4]) -> Complex<'s> {
-        let infinite = vertices.len() as u32 - 1;
+impl Complex<'_> {
+    /// Writes the first tetrahedron, positively oriented, and the four infinite ones around it, at the start of the
+    /// room, which is empty.
+    pub(super) fn begin(&mut self, first: [u32; 4]) {
+        let infinite = self.infinite();
         let outer = TETRAHEDRON_FACETS.map(|corners| {
             let [a, b, c] = corners.map(|i| first[i]);
             [infinite, a, c, b]
         });
-        for vertices in [first].into_iter().chain(outer) {
-            tetrahedra.push(Tetrahedron { vertices, neighbours: [0; 4] });
-        }
-        let mut complex = Complex { vertices, tetrahedra, free: Vec::new(), frozen: 0 };
-        complex.link_all();
-        complex
+        let all: Vec<u32> = [first]
+            .into_iter()
+            .chain(outer)
+            .map(|vertices| {
+                let t = self.allocate();
+                self.write(t, vertices, [0; 4]);
+                t
+            })
+            .collect();
+        self.link_all(&all);
     }
 
-    /// Links all facets, comparing each with each: for a few tetrahedra.
-    fn link_all(&mut self) {
-        let facets: Vec<Facet> =
-            self.words_of_tetrahedra().flat_map(|t| (0..4).map(move |i| t + i)).collect();
+    /// Links all facets of tetrahedra, comparing each with each: for a few.
+    fn link_all(&mut self, tetrahedra: &[u32]) {
+        let facets: Vec<Facet> = tetrahedra.iter().flat_map(|t| (0..4).map(move |i| t + i)).collect();
         let corners = |facet: Facet| {
             let vertices = self.corners(tetrahedron_of(facet));
             let mut corners = TETRAHEDRON_FACETS[corner(facet)].map(|i| vertices[i]);
@@ -123,21 +138,6 @@ impl<'s> Complex<'s> {
         let other = |f: Facet| facets.iter().copied().find(|&g| is_other(f, g)).expect("a closed complex");
         let pairs: Vec<[Facet; 2]> = facets.iter().map(|&f| [f, other(f)]).collect();
         pairs.into_iter().for_each(|[facet, other]| self.set_neighbour(facet, other));
-    }
-
-    #[inline(always)]
-    fn words(&self) -> &[u32] {
-        cast_slice(&self.tetrahedra)
-    }
-
-    #[inline(always)]
-    fn words_mut(&mut self) -> &mut [u32] {
-        cast_slice_mut(&mut self.tetrahedra)
-    }
-
-    /// All tetrahedra, including deleted ones.
-    pub(super) fn words_of_tetrahedra(&self) -> impl Iterator<Item = u32> + use<'s> {
-        (0..self.words().len() as u32).step_by(WORDS)
     }
 
     /// The vertex at infinity.
@@ -152,92 +152,119 @@ impl<'s> Complex<'s> {
         self.vertices[vertex as usize].at
     }
 
-    /// The vertices of tetrahedron `t`.
+    /// Where the number of a vertex of the part, or of that at infinity, is.
+    #[inline(always)]
+    pub(super) fn place_of_number(&self, vertex: u32) -> usize {
+        vertex.wrapping_sub(self.own.start).min(self.own.end - self.own.start) as usize
+    }
+
+    /// The vertices of tetrahedron `t`, with their flags.
     #[inline(always)]
     pub(super) fn corners(&self, t: u32) -> [u32; 4] {
-        self.tetrahedra[t as usize / WORDS].vertices
+        self.words.four(t as usize)
     }
 
-    /// The tetrahedron of a facet.
-    #[inline(always)]
-    pub(super) fn tetrahedron(&self, facet: Facet) -> &Tetrahedron {
-        &self.tetrahedra[facet as usize / WORDS]
+    /// The vertices of a tetrahedron that may be frozen.
+    pub(super) fn corners_of_any(&self, t: u32) -> [u32; 4] {
+        self.corners(t).map(|v| v & VERTEX)
     }
 
-    /// The vertex opposite to a facet.
+    /// The vertex opposite to a facet, with its flags.
     #[inline(always)]
     pub(super) fn opposite(&self, facet: Facet) -> u32 {
-        self.words()[facet as usize]
+        self.words.get(facet as usize)
+    }
+
+    /// The facets of the neighbours of tetrahedron `t`.
+    #[inline(always)]
+    pub(super) fn neighbours(&self, t: u32) -> [Facet; 4] {
+        self.words.four(t as usize + FIRST_NEIGHBOUR)
     }
 
     /// The same facet as a facet of the neighbouring tetrahedron.
     #[inline(always)]
     pub(super) fn neighbour(&self, facet: Facet) -> Facet {
-        self.words()[facet as usize + FIRST_NEIGHBOUR]
+        self.words.get(facet as usize + FIRST_NEIGHBOUR)
     }
 
     /// Sets the neighbouring facet, in this direction only.
     #[inline(always)]
     pub(super) fn set_neighbour(&mut self, facet: Facet, other: Facet) {
-        self.words_mut()[facet as usize + FIRST_NEIGHBOUR] = other;
+        self.words.set(facet as usize + FIRST_NEIGHBOUR, other);
     }
 
     /// The facets beyond a tetrahedron that is entered through `facet`: across from its corners a, b, c, of which a
-    /// is the given vertex, in the order seen by who enters.
+    /// is the given vertex, with its flags, in the order seen by who enters.
     #[inline(always)]
     pub(super) fn neighbours_behind(&self, facet: Facet, a: u32) -> [Facet; 3] {
-        let Tetrahedron { vertices, neighbours } = self.tetrahedron(facet);
-        let [f, g, h] = facets_behind(*vertices, facet, a);
-        [neighbours[f], neighbours[g], neighbours[h]]
+        let t = tetrahedron_of(facet);
+        let [f, g, h] = facets_behind(self.corners(t), facet, a);
+        let first = t as usize + FIRST_NEIGHBOUR;
+        [self.words.get(first + f), self.words.get(first + g), self.words.get(first + h)]
     }
 
     /// Marks a tetrahedron as deleted; its neighbouring facets stay.
     #[inline(always)]
     pub(super) fn delete(&mut self, t: u32) {
-        let vertices = &mut self.tetrahedra[t as usize / WORDS].vertices;
-        *vertices = vertices.map(|v| v | DELETED);
+        for word in t as usize..t as usize + 4 {
+            self.words.set(word, self.words.get(word) | DELETED);
+        }
     }
 
     /// Undoes [`Complex::delete`], if nothing was written since.
     pub(super) fn restore(&mut self, t: u32) {
-        let vertices = &mut self.tetrahedra[t as usize / WORDS].vertices;
-        *vertices = vertices.map(|v| v & !DELETED);
+        for word in t as usize..t as usize + 4 {
+            self.words.set(word, self.words.get(word) & !DELETED);
+        }
     }
 
     /// Whether a tetrahedron is deleted.
     #[inline(always)]
     pub(super) fn is_deleted(&self, t: u32) -> bool {
-        self.corners(t)[0] >= DELETED
+        self.opposite(t) >= DELETED
+    }
+
+    /// Whether a tetrahedron is frozen.
+    #[inline(always)]
+    pub(super) fn is_frozen(&self, t: u32) -> bool {
+        self.opposite(t) & FROZEN != 0
     }
 
     /// Whether there is room for so many tetrahedra.
     #[inline(always)]
     pub(super) fn has_room(&self, count: usize) -> bool {
-        count <= self.free.len() + self.tetrahedra.left()
+        count <= self.free.len() + self.fresh.len()
     }
 
     /// The place of a tetrahedron yet to be written: one that was deleted, or a new one, for which there must
     /// be room.
     #[inline(always)]
     pub(super) fn allocate(&mut self) -> u32 {
-        if let Some(slot) = self.free.pop() {
-            return slot;
-        }
-        let slot = self.tetrahedra.len();
-        self.tetrahedra.push(Tetrahedron::zeroed());
-        (slot * WORDS) as u32
+        self.free.pop().unwrap_or_else(|| (self.fresh.next().expect("room was asked for") * WORDS) as u32)
     }
 
     /// Writes a tetrahedron.
     #[inline(always)]
     pub(super) fn write(&mut self, t: u32, vertices: [u32; 4], neighbours: [Facet; 4]) {
-        self.tetrahedra[t as usize / WORDS] = Tetrahedron { vertices, neighbours };
+        self.words.write(t, vertices, neighbours);
     }
 
     /// The facet of tetrahedron `t` on the hull, if `t` is infinite.
     #[inline(always)]
     pub(super) fn hull_facet(&self, t: u32) -> Option<Facet> {
         let infinite = self.infinite();
-        self.corners(t).iter().position(|&v| v == infinite).map(|i| t + i as u32)
+        let [a, b, c, d] = self.corners(t);
+        let side = if a == infinite {
+            0
+        } else if b == infinite {
+            1
+        } else if c == infinite {
+            2
+        } else if d == infinite {
+            3
+        } else {
+            return None;
+        };
+        Some(t + side)
     }
 }

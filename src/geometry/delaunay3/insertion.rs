@@ -2,7 +2,7 @@
 //! Watson, 1981).
 
 use super::cavity::{Cavity, Face, Finding};
-use super::complex::{Complex, tetrahedron_of};
+use super::complex::{Complex, VERTEX, tetrahedron_of};
 use super::exact::Exact;
 use super::insphere3::Frame;
 use super::lanes::Lanes;
@@ -52,7 +52,7 @@ impl Buffers {
 
 /// The tetrahedralization of the points inserted so far, and what inserting needs.
 pub(super) struct Insertion<'a, 's, L: Lanes, W> {
-    pub(super) complex: Complex<'s>,
+    pub(super) complex: &'a mut Complex<'s>,
     pub(super) weights: &'a W,
     pub(super) predicates: &'a mut dyn Exact,
     pub(super) buffers: &'a mut Buffers,
@@ -69,12 +69,11 @@ pub(super) struct Insertion<'a, 's, L: Lanes, W> {
     pub(super) token: L::Token,
 }
 
-impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
-    /// The complex. Adds the decisions made here to the counts of the predicates.
-    pub(super) fn finish(self) -> Complex<'s> {
+impl<L: Lanes, W: Weights> Insertion<'_, '_, L, W> {
+    /// Adds the decisions made here to the counts of the predicates.
+    pub(super) fn finish(self) {
         self.predicates.counts_mut().filter += self.tests - self.unfiltered;
         self.stats.insphere_tests += self.tests;
-        self.complex
     }
 
     /// Inserts vertex `q`, which is not in the mesh yet, unless others hide it; returns where to start the
@@ -105,7 +104,7 @@ impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
         }
         self.tests += (border + found) as u64 - 1;
         self.stats.created += border as u64;
-        let start = star.write(&mut self.complex, cavity, q);
+        let start = star.write(self.complex, cavity, q);
         self.timer.end_phase(&mut self.stats.update);
         Ok(start)
     }
@@ -126,22 +125,20 @@ impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
     /// If a frozen tetrahedron is in conflict.
     #[inline(always)]
     fn search_cavity(&mut self, at: Site, t: u32) -> Result<(), FrozenConflict> {
-        // So that differences to it vanish.
         let infinite = self.complex.infinite();
-        self.complex.vertices[infinite as usize].at = at.at;
         let (weights, infinite_lift, token) = (self.weights, self.infinite_lift, self.token);
         let frame = Frame::<L, W> { origin: at, weights, infinite, infinite_lift, token };
-        for (face, known) in self.buffers.cavity.open(t, &mut self.complex, &frame) {
+        for (face, known) in self.buffers.cavity.open(t, self.complex, &frame) {
             if let Some(is_in_conflict) = known
-                && face.beyond() >= self.complex.frozen
+                && !self.complex.is_frozen(tetrahedron_of(face.beyond()))
             {
-                self.buffers.cavity.add(face, is_in_conflict, &mut self.complex);
+                self.buffers.cavity.add(face, is_in_conflict, self.complex);
             } else {
                 self.settle(at, (face, known))?;
             }
         }
         loop {
-            match search(&mut self.buffers.cavity, &mut self.complex, &frame) {
+            match search(&mut self.buffers.cavity, self.complex, &frame) {
                 Stop::Complete => return Ok(()),
                 Stop::Full => self.buffers.cavity.grow(),
                 Stop::Unsure(findings) => {
@@ -163,26 +160,26 @@ impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
     #[inline(never)]
     fn settle(&mut self, at: Site, (face, known): Finding) -> Result<(), FrozenConflict> {
         let t = tetrahedron_of(face.beyond());
-        let is_frozen = t < self.complex.frozen;
-        if is_frozen && self.complex.corners(t).contains(&self.complex.infinite()) {
+        let is_frozen = self.complex.is_frozen(t);
+        if is_frozen && self.complex.corners_of_any(t).contains(&self.complex.infinite()) {
             return Err(FrozenConflict);
         }
         let is_in_conflict = known.unwrap_or_else(|| self.decide(at, face));
         if is_frozen && is_in_conflict {
             return Err(FrozenConflict);
         }
-        self.buffers.cavity.add(face, is_in_conflict, &mut self.complex);
+        self.buffers.cavity.add(face, is_in_conflict, self.complex);
         Ok(())
     }
 
     #[inline(always)]
     fn translate(&self, vertex: u32, from: Site) -> TranslatedVertex {
-        TranslatedVertex::new(&self.complex, self.weights, vertex, from, self.infinite_lift)
+        TranslatedVertex::new(self.complex, self.weights, vertex, from, self.infinite_lift)
     }
 
     /// Whether the tetrahedron beyond a facet is in conflict, if the filter did not tell.
     fn decide(&mut self, at: Site, face: Face) -> bool {
-        let apex = self.complex.opposite(face.beyond());
+        let apex = self.complex.opposite(face.beyond()) & VERTEX;
         let vertices = face.corners().map(|number| self.buffers.cavity.vertices()[number as usize]);
         let [a, b, c] = vertices.map(|v| self.translate(v, at));
         let test = InSphere::new::<W>([self.translate(apex, at), a, c, b]);
@@ -204,14 +201,14 @@ impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
                 return is_inside(&test);
             }
         }
-        is_in_conflict(&self.complex, self.weights, tetrahedron_of(face.beyond()), at, self.predicates)
+        is_in_conflict(self.complex, self.weights, tetrahedron_of(face.beyond()), at, self.predicates)
     }
 
     /// A tetrahedron in conflict with a point.
     #[inline(always)]
     fn find_conflict(&mut self, at: Site, start: u32) -> Result<u32, Unopened> {
-        let t = walk(&self.complex, start, at.at);
-        if t < self.complex.frozen {
+        let t = walk(self.complex, start, at.at);
+        if self.complex.is_frozen(t) {
             return Err(Unopened::Blocked);
         }
         let [a, b, c, d] = self.complex.corners(t);
@@ -224,11 +221,11 @@ impl<'s, L: Lanes, W: Weights> Insertion<'_, 's, L, W> {
         if !W::ARE_EQUAL && test.value < 0.0 && test.is_certain::<W>() && test.has_origin_inside() {
             return Err(Unopened::Hidden(t));
         }
-        let t = walk_exactly(&self.complex, self.weights, t, at, self.predicates);
-        if t < self.complex.frozen {
+        let t = walk_exactly(self.complex, self.weights, t, at, self.predicates);
+        if self.complex.is_frozen(t) {
             return Err(Unopened::Blocked);
         }
-        if !W::ARE_EQUAL && !is_in_conflict(&self.complex, self.weights, t, at, self.predicates) {
+        if !W::ARE_EQUAL && !is_in_conflict(self.complex, self.weights, t, at, self.predicates) {
             return Err(Unopened::Hidden(t));
         }
         Ok(t)

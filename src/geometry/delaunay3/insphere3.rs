@@ -13,9 +13,10 @@ pub(super) struct Frame<'w, L: Lanes, W> {
     /// The new point.
     pub(super) origin: Site,
     pub(super) weights: &'w W,
-    /// The vertex at infinity. It is at the new point, and lifted: the direction upwards, which makes the test
-    /// of an infinite tetrahedron the sign of a volume. The bound of the filter holds all the more.
+    /// The vertex at infinity: its row is the direction upwards, which makes the test of an infinite tetrahedron the
+    /// sign of a volume. The bound of the filter holds all the more.
     pub(super) infinite: u32,
+    /// Its lift: of about the size of others, for the sake of the filter; integer if coordinates are.
     pub(super) infinite_lift: f64,
     pub(super) token: L::Token,
 }
@@ -33,13 +34,16 @@ impl<L: Lanes, W: Weights> Frame<'_, L, W> {
     /// A vertex relative to the new point, and its lift.
     #[inline(always)]
     pub(super) fn row(&self, number: u32, vertex: &Vertex) -> [f64; 4] {
+        if number == self.infinite {
+            return [0.0, 0.0, 0.0, self.infinite_lift];
+        }
         let ([x, y, z], [p, q, r]) = (vertex.at, self.origin.at);
         let (x, y, z) = (x - p, y - q, z - r);
         let mut lift = x * x + y * y + z * z;
         if !W::ARE_EQUAL {
             lift -= self.weights.of(number) - self.origin.weight;
         }
-        [x, y, z, if number == self.infinite { self.infinite_lift } else { lift }]
+        [x, y, z, lift]
     }
 
     /// The rows of three vertices, column by column.
@@ -54,19 +58,26 @@ impl<L: Lanes, W: Weights> Frame<'_, L, W> {
             let weights = [self.weights.of(k), self.weights.of(l), self.weights.of(m), 0.0];
             lift = lift - (L::new(self.token, weights) - self.splat(self.origin.weight));
         }
+        let columns = [x, y, z, lift];
         if k == self.infinite || l == self.infinite || m == self.infinite {
-            lift = self.with_infinite(numbers, lift);
+            return self.with_infinite(numbers, columns);
         }
-        [x, y, z, lift]
+        columns
     }
 
     #[inline(always)]
-    fn with_infinite(&self, numbers: [u32; 3], lift: L) -> L {
-        let mut lifts = lift.array();
+    fn with_infinite(&self, numbers: [u32; 3], columns: [L; 4]) -> [L; 4] {
+        let [x, y, z, lift] = columns;
+        let mut columns = [x.array(), y.array(), z.array(), lift.array()];
         for i in 0..3 {
-            lifts[i] = if numbers[i] == self.infinite { self.infinite_lift } else { lifts[i] };
+            if numbers[i] == self.infinite {
+                (columns[0][i], columns[1][i], columns[2][i]) = (0.0, 0.0, 0.0);
+                columns[3][i] = self.infinite_lift;
+            }
         }
-        L::new(self.token, lifts)
+        let [x, y, z, lift] = columns;
+        let token = self.token;
+        [L::new(token, x), L::new(token, y), L::new(token, z), L::new(token, lift)]
     }
 
     /// The tests of the three tetrahedra beyond the facets dbc, adc, abd of a tetrahedron, in this order, given

@@ -17,11 +17,16 @@ const STEPS_MAX: usize = 10_000;
 pub(super) fn walk(complex: &Complex<'_>, start: u32, q: Point3) -> u32 {
     let infinite = complex.infinite();
     let t = complex.hull_facet(start).map_or(start, |side| tetrahedron_of(complex.neighbour(side)));
-    if t < complex.frozen {
+    if complex.is_frozen(t) {
         return t;
     }
-    let vertices = complex.corners(t);
-    let at = vertices.map(|v| difference(complex.point(v), q));
+    let vertices @ [a, b, c, d] = complex.corners(t);
+    let at = [
+        difference(complex.point(a), q),
+        difference(complex.point(b), q),
+        difference(complex.point(c), q),
+        difference(complex.point(d), q),
+    ];
     let mut entered: Option<(Facet, u32, [Point3; 3])> = None;
     for (side, [i, j, k]) in TETRAHEDRON_FACETS.into_iter().enumerate() {
         if volume(at[i], at[j], at[k]) < 0.0 {
@@ -33,7 +38,8 @@ pub(super) fn walk(complex: &Complex<'_>, start: u32, q: Point3) -> u32 {
     let Some((mut facet, mut first, [mut a, mut b, mut c])) = entered else { return t };
     for _ in 0..STEPS_MAX {
         let apex = complex.opposite(facet);
-        if apex == infinite || facet < complex.frozen {
+        // Flags of frozen tetrahedra are above all vertices.
+        if apex >= infinite {
             break;
         }
         let d = difference(complex.point(apex), q);
@@ -79,7 +85,7 @@ pub(super) fn walk_exactly<W: Weights>(
     let q = q.at;
     loop {
         let vertices = complex.corners(t);
-        if vertices.contains(&complex.infinite()) || t < complex.frozen {
+        if vertices.contains(&complex.infinite()) || complex.is_frozen(t) {
             return t;
         }
         let side = TETRAHEDRON_FACETS.iter().position(|corners| {
@@ -111,7 +117,7 @@ pub(super) fn is_in_conflict<W: Weights>(
     if complex.is_deleted(t) {
         return true;
     }
-    let vertices = complex.corners(t);
+    let vertices = complex.corners_of_any(t);
     let Some(side) = complex.hull_facet(t) else {
         let abcd @ [a, b, c, d] = vertices.map(|v| complex.point(v));
         let sign = if W::ARE_EQUAL {

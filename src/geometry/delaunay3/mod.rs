@@ -24,7 +24,6 @@ mod locate;
 mod parts;
 mod queries;
 mod search;
-mod slots;
 mod star;
 mod stats;
 #[cfg(test)]
@@ -35,19 +34,20 @@ mod translated;
 mod trusted;
 mod weights;
 mod whole;
+mod words;
 
-pub use corners::{CornerParts, Corners};
+pub use corners::{CornerParts, Corners, turned};
 pub(crate) use edges::EDGES;
 pub use edges::Ring;
 pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
 
-use crate::order::{Curve, Insertions, Sequence, SpatialOrder, Suffixes};
+use crate::order::{Curve, Insertions, Places, Sequence, SpatialOrder, Suffixes};
 use crate::predicates::{Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3};
 use build::{Build, First};
-use complex::Complex;
 use insertion::Buffers;
 use spmesh_core::error::{Error, Result};
+use spmesh_core::parallel;
 use std::borrow::Cow;
 use std::num::NonZeroUsize;
 use std::time::Instant;
@@ -199,15 +199,13 @@ impl Kernel {
             }
             mesh.stats.merge(&tally.stats);
             mesh.stats.created += 5;
-            whole.change(|mut complex| {
-                mesh.hull_facets = if W::ARE_EQUAL {
-                    extract::extract(&mut complex, |_| ())
-                } else {
-                    extract_with_hidden(&mut complex, &mut mesh.hidden)
-                };
-                complex
-            });
             (mesh.vertices, mesh.tetrahedra) = (whole.vertices, whole.tetrahedra);
+            mesh.vertices.pop();
+            mesh.hull_facets = if W::ARE_EQUAL {
+                extract::extract(&mut mesh.tetrahedra, mesh.vertices.len() as u32, |_| ())
+            } else {
+                extract_with_hidden(mesh)
+            };
         }
         mesh.stats.insertion = started.elapsed();
         Ok(())
@@ -215,15 +213,13 @@ impl Kernel {
 
     /// Fills the vertices with the distinct points in order along the curve.
     fn take_sorted(&self, points: Cow<[Point3]>, extent: &Extent<3>, mesh: &mut Tetrahedralization) {
+        let threads = self.threads.min(worthwhile(points.len() / self.points_per_thread.max(1)));
         let mut order = SpatialOrder::default();
+        let places = order.sort_on(threads, &points, extent, self.curve);
+        // And that at infinity.
         mesh.vertices.reserve_exact(points.len() + 1);
-        for index in order.sort(&points, extent, self.curve) {
-            let at = points[index as usize];
-            match mesh.vertices.last() {
-                Some(last) if last.at == at => mesh.duplicates.push([index, last.index]),
-                _ => mesh.vertices.push(Vertex { at, index, local: 0 }),
-            }
-        }
+        gather(threads, places, &points, &mut mesh.vertices);
+        leave_out_duplicates(mesh);
     }
 
     /// Makes of equal points the heaviest the vertex.
@@ -331,22 +327,54 @@ fn checked_extent(points: &[Point3]) -> Result<Extent<3>> {
     Ok(extent)
 }
 
-/// [`extract::extract`]; adds the input points of the vertices that are in no tetrahedron to `hidden`.
-fn extract_with_hidden(complex: &mut Complex<'_>, hidden: &mut Vec<u32>) -> usize {
-    let mut is_visible = vec![false; complex.vertices.len()];
-    let hull_facets =
-        extract::extract(complex, |vertices| vertices.iter().for_each(|&v| is_visible[v as usize] = true));
-    let all = complex.vertices.iter().zip(is_visible);
-    hidden.extend(all.filter(|(_, is_visible)| !is_visible).map(|(vertex, _)| vertex.index));
+/// [`extract::extract`]; adds the input points of the vertices that are in no tetrahedron to those hidden.
+fn extract_with_hidden(mesh: &mut Tetrahedralization) -> usize {
+    let infinite = mesh.vertices.len() as u32;
+    let mut is_visible = vec![false; mesh.vertices.len()];
+    let see = |vertices: [u32; 4]| vertices.iter().for_each(|&v| is_visible[v as usize] = true);
+    let hull_facets = extract::extract(&mut mesh.tetrahedra, infinite, see);
+    let all = mesh.vertices.iter().zip(is_visible);
+    mesh.hidden.extend(all.filter(|(_, is_visible)| !is_visible).map(|(vertex, _)| vertex.index));
     hull_facets
 }
 
-impl<'s, W: Weights> WithPredicates3 for Build<'_, 's, W> {
-    type Output = Complex<'s>;
+impl<W: Weights> WithPredicates3 for Build<'_, '_, W> {
+    type Output = ();
 
-    fn with(self, predicates: &mut impl Predicates3) -> Complex<'s> {
-        dispatch::run(self, predicates)
+    fn with(self, predicates: &mut impl Predicates3) {
+        dispatch::run(self, predicates);
     }
+}
+
+/// So many threads, one at least.
+fn worthwhile(threads: usize) -> NonZeroUsize {
+    NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN)
+}
+
+/// Adds the points in this order; there is room for them.
+fn gather(threads: NonZeroUsize, places: Places<'_>, points: &[Point3], vertices: &mut Vec<Vertex>) {
+    let share = points.len().div_ceil(threads.get()).max(1);
+    let room = &mut vertices.spare_capacity_mut()[..points.len()];
+    let shares = room.chunks_mut(share).zip(places.chunks(share));
+    parallel::for_each(threads, shares, |(room, places)| {
+        for (vertex, index) in room.iter_mut().zip(places) {
+            vertex.write(Vertex::new(points[index as usize], index));
+        }
+    });
+    // SAFETY: each place has been written: there are as many as points.
+    unsafe { vertices.set_len(vertices.len() + points.len()) };
+}
+
+/// Leaves the first of equal vertices, which follow each other, and lists the others.
+fn leave_out_duplicates(mesh: &mut Tetrahedralization) {
+    let Tetrahedralization { vertices, duplicates, .. } = mesh;
+    vertices.dedup_by(|vertex, first| {
+        let is_equal = vertex.at == first.at;
+        if is_equal {
+            duplicates.push([vertex.index, first.index]);
+        }
+        is_equal
+    });
 }
 
 /// The lift of the vertex at infinity: of about the size of those of neighbours, so that it does not spoil

@@ -10,14 +10,16 @@
 //! processor has something to do while it waits for them.
 
 use super::cavity::{Cavity, Face, Finding, NO_VERTEX};
-use super::complex::{Complex, DELETED, FIRST_NEIGHBOUR, Facet, facets_behind, tetrahedron_of};
+use super::complex::{
+    Complex, DELETED, FIRST_NEIGHBOUR, FROZEN, Facet, VERTEX, facets_behind, tetrahedron_of,
+};
 use super::insphere3::{Frame, Signs};
 use super::lanes::Lanes;
 use super::tetrahedralization::Vertex;
 use super::trusted::Trusted;
 use super::weights::Weights;
-use bytemuck::cast_slice_mut;
-use spmesh_core::prefetch::prefetch;
+use super::words::Words;
+use std::ops::Range;
 
 /// Why a search stopped.
 #[derive(Debug, Clone, Copy)]
@@ -38,18 +40,19 @@ struct Neighbours {
 }
 
 /// A search under way: a view of the complex and the cavity. The counters are those of the [`Cavity`].
-struct Search<'a> {
-    /// The words of the tetrahedra.
-    words: Trusted<'a, u32>,
-    points: Trusted<'a, Vertex>,
-    entered: Trusted<'a, Face>,
-    border: Trusted<'a, Face>,
-    vertices: Trusted<'a, u32>,
-    rows: Trusted<'a, [f64; 4]>,
+struct Search<'a, 's> {
+    words: &'a mut Words<'s>,
+    points: Trusted<&'a [Vertex]>,
+    /// See [`Complex::numbers`].
+    numbers: Trusted<&'a mut [u32]>,
+    own: Range<u32>,
+    entered: Trusted<&'a mut [Face]>,
+    border: Trusted<&'a mut [Face]>,
+    vertices: Trusted<&'a mut [u32]>,
+    rows: Trusted<&'a mut [[f64; 4]]>,
     found: usize,
     border_len: usize,
     count: usize,
-    frozen: u32,
 }
 
 /// Searches until the cavity is complete or something stops it.
@@ -59,14 +62,15 @@ pub(super) fn search<L: Lanes, W: Weights>(
     complex: &mut Complex<'_>,
     frame: &Frame<'_, L, W>,
 ) -> Stop {
-    // SAFETY: of the complex, the words of neighbours are words of the array, those of corners numbers of vertices,
-    // marked or not; the facets of the cavity are words of the array, as `clear` makes sure of those of earlier
-    // insertions. The numbers of vertices in facets are below `count`, and `room`, which is compared with `found`
-    // before a tetrahedron adds its neighbours, leaves room for all lists: see `Cavity`.
+    // SAFETY: corners of tetrahedra are vertices, with flags, and those of tetrahedra of a cavity are of the part or at
+    // infinity. The numbers of vertices in facets are below `count`, and `room`, which is compared with `found` before
+    // a tetrahedron adds its neighbours, leaves room for all lists: see `Cavity`.
     let mut search = unsafe {
         Search {
-            words: Trusted::new(cast_slice_mut(&mut complex.tetrahedra)),
-            points: Trusted::new(&mut complex.vertices),
+            words: &mut complex.words,
+            points: Trusted::new(complex.vertices),
+            numbers: Trusted::new(&mut complex.numbers),
+            own: complex.own.clone(),
             entered: Trusted::new(&mut cavity.entered),
             border: Trusted::new(&mut cavity.border),
             vertices: Trusted::new(&mut cavity.vertices),
@@ -74,7 +78,6 @@ pub(super) fn search<L: Lanes, W: Weights>(
             found: cavity.found,
             border_len: cavity.border_len,
             count: cavity.count,
-            frozen: complex.frozen,
         }
     };
     let (stop, tested) = search.run(cavity.tested, cavity.room, frame);
@@ -83,7 +86,7 @@ pub(super) fn search<L: Lanes, W: Weights>(
     stop
 }
 
-impl Search<'_> {
+impl Search<'_, '_> {
     /// Returns of how many tetrahedra the neighbours have been tested, too.
     #[inline(always)]
     fn run<L: Lanes, W: Weights>(
@@ -119,13 +122,13 @@ impl Search<'_> {
         let (face, later) = (self.entered[number], self.entered[number + 1].beyond());
         self.prefetch_neighbours(later);
         let ([a, b, c], beyond) = (face.corners(), face.beyond());
-        let apex = self.words[beyond as usize] & !DELETED;
+        let apex = self.words.get(beyond as usize) & !DELETED;
         let neighbours = self.behind(beyond, self.vertices[a as usize] | DELETED);
         let d = self.number(apex, frame);
         let rows = [&self.rows[a as usize], &self.rows[b as usize], &self.rows[c as usize]];
         let [i, j, k] = neighbours;
-        let (u, v, w) = (self.words[i as usize], self.words[j as usize], self.words[k as usize]);
-        let [u, v, w] = [u & !DELETED, v & !DELETED, w & !DELETED];
+        let (u, v, w) = (self.words.get(i as usize), self.words.get(j as usize), self.words.get(k as usize));
+        let [u, v, w] = [u & VERTEX, v & VERTEX, w & VERTEX];
         let places = [&self.points[u as usize], &self.points[v as usize], &self.points[w as usize]];
         let signs = frame.signs(rows, &self.rows[d as usize], frame.columns([u, v, w], places));
         let faces = [Face::new([d, b, c], i), Face::new([a, d, c], j), Face::new([a, b, d], k)];
@@ -138,7 +141,7 @@ impl Search<'_> {
     fn prefetch_neighbours(&self, facet: Facet) {
         let first = tetrahedron_of(facet) as usize + FIRST_NEIGHBOUR;
         for side in 0..4 {
-            prefetch(self.words.as_slice(), self.words[first + side] as usize);
+            self.words.prefetch(self.words.get(first + side) as usize);
         }
     }
 
@@ -146,20 +149,20 @@ impl Search<'_> {
     #[inline(always)]
     fn behind(&self, facet: Facet, a: u32) -> [Facet; 3] {
         let t = tetrahedron_of(facet) as usize;
-        let corners = [self.words[t], self.words[t + 1], self.words[t + 2], self.words[t + 3]];
-        let [i, j, k] = facets_behind(corners, facet, a);
+        let [i, j, k] = facets_behind(self.words.four(t), facet, a);
         let neighbours = t + FIRST_NEIGHBOUR;
-        [self.words[neighbours + i], self.words[neighbours + j], self.words[neighbours + k]]
+        [self.words.get(neighbours + i), self.words.get(neighbours + j), self.words.get(neighbours + k)]
     }
 
     /// The number of a vertex of the cavity: the next one if it has none yet.
     #[inline(always)]
     fn number<L: Lanes, W: Weights>(&mut self, vertex: u32, frame: &Frame<'_, L, W>) -> u32 {
         let next = self.count;
-        let known = (self.points[vertex as usize].local as usize).min(next);
+        let place = vertex.wrapping_sub(self.own.start).min(self.own.end - self.own.start) as usize;
+        let known = (self.numbers[place] as usize).min(next);
         let is_known = self.vertices[known] == vertex;
         let number = if is_known { known } else { next };
-        self.points[vertex as usize].local = number as u32;
+        self.numbers[place] = number as u32;
         self.rows[number] = frame.row(vertex, &self.points[vertex as usize]);
         self.vertices[next] = vertex;
         self.count = next + usize::from(!is_known);
@@ -177,11 +180,10 @@ impl Search<'_> {
         let facets = [faces[0].beyond(), faces[1].beyond(), faces[2].beyond()];
         // Those that are not in the cavity.
         let [u, v, w] = facets;
-        let (u, v, w) = (self.words[u as usize], self.words[v as usize], self.words[w as usize]);
+        let (u, v, w) = (self.words.get(u as usize), self.words.get(v as usize), self.words.get(w as usize));
         let new = !u >> 31 | !v >> 31 << 1 | !w >> 31 << 2;
         let (inside, outside) = (signs.inside & new, signs.outside & new);
-        let first = facets[0].min(facets[1]).min(facets[2]);
-        if inside | outside != new || first < self.frozen {
+        if inside | outside != new || (u | v | w) & FROZEN != 0 {
             return Err([0, 1, 2].map(|i| (new >> i & 1 == 1).then(|| (faces[i], signs.of(i)))));
         }
         for i in 0..3 {
@@ -191,7 +193,7 @@ impl Search<'_> {
             self.border_len += (outside >> i & 1) as usize;
             let t = tetrahedron_of(facets[i]) as usize;
             for corner in 0..4 {
-                self.words[t + corner] |= inside >> i << 31;
+                self.words.set(t + corner, self.words.get(t + corner) | inside >> i << 31);
             }
         }
         Ok(())

@@ -1,9 +1,8 @@
 //! The star of a new point, which takes the place of its cavity.
 
 use super::cavity::Cavity;
-use super::complex::{Complex, FIRST_NEIGHBOUR, Facet, tetrahedron_of};
+use super::complex::{Complex, Facet, tetrahedron_of};
 use super::trusted::Trusted;
-use bytemuck::cast_slice_mut;
 
 /// Up to this number of vertices, edges are found in a table that stays in the first-level cache.
 const STRIDE: usize = 64;
@@ -27,7 +26,7 @@ impl Star {
     /// Writes the star of vertex `q` into the complex, which must have room for it; returns one of its
     /// tetrahedra.
     #[inline(always)]
-    pub(super) fn write(&mut self, complex: &mut Complex<'_>, cavity: &mut Cavity, q: u32) -> u32 {
+    pub(super) fn write(&mut self, complex: &mut Complex<'_>, cavity: &Cavity, q: u32) -> u32 {
         let wanted = cavity.border().len();
         self.slots.clear();
         self.slots.extend(cavity.entered().iter().map(|face| tetrahedron_of(face.beyond())));
@@ -47,17 +46,17 @@ impl Star {
     /// A tetrahedron of the star has the new vertex as its corner 0, then those of the facet. Across from a
     /// corner of the facet is what lies to the left of the other two in opposite direction.
     #[inline(always)]
-    fn write_by_table(&mut self, complex: &mut Complex<'_>, cavity: &mut Cavity, q: u32) {
+    fn write_by_table(&mut self, complex: &mut Complex<'_>, cavity: &Cavity, q: u32) {
         let wanted = cavity.border().len();
         // SAFETY: there are `wanted` facets, and slots; the corners of facets have numbers below that of vertices,
-        // which is at most STRIDE; slots are words of tetrahedra, and what is beyond a facet is a word of a corner.
-        let (mut left, mut words, slots, border, vertices) = unsafe {
+        // which is at most STRIDE.
+        let (mut left, slots, border, vertices) = unsafe {
+            let (border, vertices) = (&cavity.border[..], &cavity.vertices[..]);
             (
                 Trusted::new(&mut self.left[..]),
-                Trusted::new(cast_slice_mut::<_, u32>(&mut complex.tetrahedra)),
-                Trusted::new(&mut self.slots),
-                Trusted::new(&mut cavity.border),
-                Trusted::new(&mut cavity.vertices),
+                Trusted::new(&self.slots[..]),
+                Trusted::new(border),
+                Trusted::new(vertices),
             )
         };
         let edge = |a: u32, b: u32| a as usize * STRIDE + b as usize;
@@ -72,11 +71,8 @@ impl Star {
             let ([a, b, c], beyond) = (face.corners(), face.beyond());
             let [u, v, w] = [vertices[a as usize], vertices[b as usize], vertices[c as usize]];
             let facets = [left[edge(c, b)], left[edge(a, c)], left[edge(b, a)]];
-            let tetrahedron = [q, u, v, w, beyond, facets[0], facets[1], facets[2]];
-            for (word, value) in tetrahedron.into_iter().enumerate() {
-                words[slot as usize + word] = value;
-            }
-            words[beyond as usize + FIRST_NEIGHBOUR] = slot;
+            complex.write(slot, [q, u, v, w], [beyond, facets[0], facets[1], facets[2]]);
+            complex.set_neighbour(beyond, slot);
         }
     }
 

@@ -16,7 +16,7 @@ pub struct Corner {
     pub corner: u32,
 }
 
-/// A vertex: half a cache line, with a word for the search of cavities.
+/// A vertex: half a cache line.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub struct Vertex {
@@ -24,15 +24,14 @@ pub struct Vertex {
     pub at: Point3,
     /// Index of the input point.
     pub index: u32,
-    /// Its number among the vertices of a cavity; arbitrary if it is not one of them.
-    pub(super) local: u32,
+    unused: u32,
 }
 
 impl Vertex {
     /// The input point of this index.
-    #[cfg(feature = "experiments")]
+    #[inline(always)]
     pub(crate) fn new(at: Point3, index: u32) -> Vertex {
-        Vertex { at, index, local: 0 }
+        Vertex { at, index, unused: 0 }
     }
 }
 

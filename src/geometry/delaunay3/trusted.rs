@@ -1,30 +1,21 @@
-//! Arrays whose indices are not checked in release builds.
-//!
-//! The search of a cavity takes nearly all indices from arrays of the kernel. Checks of bounds took 8 % of all
-//! time.
+//! Arrays whose indices are not checked in release builds, like those of [`Words`](super::words::Words).
 
-use std::ops::{Index, IndexMut};
+use std::ops::{Deref, DerefMut, Index, IndexMut};
 
-/// An array that is used at indices in bounds only. Debug builds, as tests are, check that.
+/// A reference to an array that is used at indices in bounds only. Debug builds, as tests are, check that.
 #[derive(Debug)]
-pub(super) struct Trusted<'a, T>(&'a mut [T]);
+pub(super) struct Trusted<A>(A);
 
-impl<'a, T> Trusted<'a, T> {
+impl<A> Trusted<A> {
     /// # Safety
     /// As long as this exists, it is used at indices in bounds only.
     #[inline(always)]
-    pub(super) unsafe fn new(array: &'a mut [T]) -> Trusted<'a, T> {
+    pub(super) unsafe fn new(array: A) -> Trusted<A> {
         Trusted(array)
-    }
-
-    /// The whole array.
-    #[inline(always)]
-    pub(super) fn as_slice(&self) -> &[T] {
-        self.0
     }
 }
 
-impl<T> Index<usize> for Trusted<'_, T> {
+impl<T, A: Deref<Target = [T]>> Index<usize> for Trusted<A> {
     type Output = T;
 
     #[inline(always)]
@@ -35,7 +26,7 @@ impl<T> Index<usize> for Trusted<'_, T> {
     }
 }
 
-impl<T> IndexMut<usize> for Trusted<'_, T> {
+impl<T, A: DerefMut<Target = [T]>> IndexMut<usize> for Trusted<A> {
     #[inline(always)]
     fn index_mut(&mut self, index: usize) -> &mut T {
         debug_assert!(index < self.0.len());

@@ -1,13 +1,13 @@
 //! The complex of all points between insertions, and insertion on one thread or several.
 
 use super::build::Build;
-use super::complex::{Complex, TETRAHEDRA_PER_VERTEX};
+use super::complex::{Complex, DELETED, TETRAHEDRA_PER_VERTEX};
 use super::insertion::Buffers;
 use super::parts;
-use super::slots::Slots;
 use super::stats::Stats;
-use super::tetrahedralization::{Tetrahedron, Vertex};
+use super::tetrahedralization::{Tetrahedron, Vertex, WORDS};
 use super::weights::Weights;
+use super::words::Words;
 use super::{Kernel, MAX_POINTS};
 use crate::order::{Insertions, Sequence};
 use crate::predicates::{Arithmetic3, PredicateCounts};
@@ -58,6 +58,8 @@ pub(super) struct Whole {
     /// For how many tetrahedra there is room. The array may have more, of earlier uses, on which the order of
     /// tetrahedra must not depend.
     pub(super) room: usize,
+    /// See [`Complex::numbers`].
+    numbers: Vec<u32>,
 }
 
 impl Whole {
@@ -66,20 +68,31 @@ impl Whole {
         tetrahedra.clear();
         let room = TETRAHEDRA_PER_VERTEX * vertices.len();
         tetrahedra.reserve_exact(room);
-        let mut whole = Whole { vertices: Vec::new(), tetrahedra, free: Vec::new(), room };
-        whole.change(|empty| Complex::new(vertices, empty.tetrahedra, first));
+        let numbers = vec![0; vertices.len()];
+        let mut whole = Whole { vertices, tetrahedra, free: Vec::new(), room, numbers };
+        whole.change(|complex| complex.begin(first));
         whole
     }
 
     /// Changes the complex.
-    pub(super) fn change(&mut self, change: impl for<'s> FnOnce(Complex<'s>) -> Complex<'s>) {
-        let (vertices, free) = (std::mem::take(&mut self.vertices), std::mem::take(&mut self.free));
-        let tetrahedra = Slots::of(&mut self.tetrahedra, self.room);
-        let complex = change(Complex { vertices, tetrahedra, free, frozen: 0 });
-        let len = complex.tetrahedra.len();
-        (self.vertices, self.free) = (complex.vertices, complex.free);
-        // SAFETY: the slots of the complex are those of the array, and have so many tetrahedra.
-        unsafe { Slots::give_back(&mut self.tetrahedra, len) };
+    fn change(&mut self, change: impl FnOnce(&mut Complex<'_>)) {
+        let fresh = self.tetrahedra.len()..self.room;
+        let finite = self.vertices.len() as u32 - 1;
+        let mut complex = Complex {
+            vertices: &self.vertices,
+            own: 0..finite,
+            numbers: std::mem::take(&mut self.numbers),
+            // SAFETY: facets of neighbours are words of tetrahedra in the array, and room is used in order: what is
+            // before the first fresh place was written. Nothing else is made of the array, or uses it.
+            words: unsafe { Words::of(&mut self.tetrahedra) },
+            free: std::mem::take(&mut self.free),
+            fresh,
+        };
+        change(&mut complex);
+        (self.numbers, self.free) = (complex.numbers, complex.free);
+        let len = complex.fresh.start;
+        // SAFETY: there is room for that many tetrahedra, and they have been written.
+        unsafe { self.tetrahedra.set_len(len) };
     }
 
     /// Inserts vertices on the calling thread, but those of the first tetrahedron.
@@ -115,12 +128,14 @@ impl Whole {
         tally: &mut Tally,
         refused: &mut Vec<u32>,
     ) {
+        let first_there = self.tetrahedra.iter().position(|tetrahedron| tetrahedron.vertices[0] < DELETED);
+        let starts = [(first_there.unwrap_or(0) * WORDS) as u32];
         let Tally { stats, counts } = tally;
+        let first = setting.first;
         self.change(|complex| {
-            let start = complex.words_of_tetrahedra().find(|&t| !complex.is_deleted(t)).unwrap_or(0);
-            let (first, starts) = (setting.first, &[start]);
-            let build = Build { complex, setting, buffers, stats, insertions, first, starts, refused };
-            setting.arithmetic.run(build, counts)
+            let build =
+                Build { complex, setting, buffers, stats, insertions, first, starts: &starts, refused };
+            setting.arithmetic.run(build, counts);
         });
     }
 

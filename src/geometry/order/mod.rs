@@ -21,6 +21,8 @@ pub use sequence::{Insertions, Sequence};
 use crate::predicates::{Extent, lexicographic};
 use cells::Cells;
 use radix::{Keyed, RadixSort};
+use spmesh_core::parallel;
+use std::num::NonZeroUsize;
 
 /// Points of one cell are ordered along a finer curve if they are more than this, and lexicographically if
 /// not.
@@ -48,24 +50,80 @@ impl SpatialOrder {
         points: &[[f64; D]],
         extent: &Extent<D>,
         curve: Curve,
-    ) -> impl Iterator<Item = u32> + '_ {
+    ) -> Places<'_> {
+        self.sort_on(NonZeroUsize::MIN, points, extent, curve)
+    }
+
+    /// The same on so many threads.
+    pub fn sort_on<const D: usize>(
+        &mut self,
+        threads: NonZeroUsize,
+        points: &[[f64; D]],
+        extent: &Extent<D>,
+        curve: Curve,
+    ) -> Places<'_> {
         let items = self.sort.items(points.len());
         let mut key_bits = 0;
         if lexicographic(extent.lower, extent.upper).is_lt() {
             let cells = Cells::of(extent, points.len());
             key_bits = D as u32 * cells.bits;
-            items.extend((0u32..).zip(points).map(|(index, point)| {
-                let key = curve.key(cells.of_point(*point), cells.bits);
-                Keyed::new(key, index)
-            }));
+            let key = |point: [f64; D]| curve.key(cells.of_point(point), cells.bits);
+            fill_keys(threads, items, points, key);
         } else {
             items.extend((0..points.len() as u32).map(|index| Keyed::new(0, index)));
         }
         let sorted = self.sort.sort(key_bits);
         for_groups(sorted, |group| refine(points, curve, group));
-        sorted.iter().map(|item| item.index())
+        Places(sorted.iter())
     }
 }
+
+/// Adds an item for each point, with its key.
+fn fill_keys<P: Copy + Sync>(
+    threads: NonZeroUsize,
+    items: &mut Vec<Keyed>,
+    points: &[P],
+    key: impl Fn(P) -> u32 + Sync,
+) {
+    if threads == NonZeroUsize::MIN {
+        items.extend((0u32..).zip(points).map(|(index, &point)| Keyed::new(key(point), index)));
+        return;
+    }
+    items.resize(points.len(), Keyed::default());
+    let share = points.len().div_ceil(threads.get());
+    let shares = items.chunks_mut(share).zip(points.chunks(share)).enumerate();
+    parallel::for_each(threads, shares, |(number, (items, points))| {
+        for ((index, item), &point) in (number * share..).zip(items).zip(points) {
+            *item = Keyed::new(key(point), index as u32);
+        }
+    });
+}
+
+/// Indices of points in an order.
+#[derive(Debug, Clone)]
+pub struct Places<'o>(std::slice::Iter<'o, Keyed>);
+
+impl<'o> Places<'o> {
+    /// The same order in pieces of so many points.
+    pub fn chunks(self, size: usize) -> impl ExactSizeIterator<Item = Places<'o>> {
+        self.0.as_slice().chunks(size).map(|piece| Places(piece.iter()))
+    }
+}
+
+impl Iterator for Places<'_> {
+    type Item = u32;
+
+    #[inline]
+    fn next(&mut self) -> Option<u32> {
+        self.0.next().map(|item| item.index())
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.0.size_hint()
+    }
+}
+
+impl ExactSizeIterator for Places<'_> {}
 
 /// Calls `work` for all runs of at least two items with equal keys.
 fn for_groups(items: &mut [Keyed], work: impl FnMut(&mut [Keyed])) {

@@ -5,6 +5,7 @@ use spmesh_core::error::Result;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
 use spmesh_stream::{Coordinates, Kind, Weights};
+use std::num::NonZeroUsize;
 
 /// A facet of a simplex, named by the corner opposite to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,6 +54,12 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// sides.
     const PASSES_FEW: bool;
 
+    /// Gives the next node so many threads. Then neither the order of its simplices nor that of their corners depends
+    /// on them.
+    fn share(&mut self, threads: NonZeroUsize) {
+        let _ = threads;
+    }
+
     /// Triangulates `points` canonically; if they have weights, as their regular triangulation.
     ///
     /// # Errors
@@ -76,6 +83,11 @@ pub(super) trait Bulk<const D: usize>: Default {
 
     /// The corners of a simplex, in positive orientation.
     fn corners(&self, simplex: u32) -> Self::Corners;
+
+    /// The corners of a simplex in the order in which they are written, in positive orientation.
+    fn written(&self, simplex: u32) -> Self::Corners {
+        self.corners(simplex)
+    }
 
     /// The same facet, as a facet of the neighbouring simplex; `None` on the hull.
     fn neighbour(&self, facet: Facet) -> Option<Facet>;

@@ -9,6 +9,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
 use spmesh_stream::{Coordinates, Header, PatchBlocks, PointCode, Weights};
+use std::num::NonZeroUsize;
 
 /// The rules that all nodes of a run share.
 #[derive(Debug, Clone, Copy)]
@@ -178,6 +179,11 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         self.misfit
     }
 
+    /// Gives the next node so many threads.
+    pub(super) fn share(&mut self, threads: NonZeroUsize) {
+        self.bulk.share(threads);
+    }
+
     /// Decisions of the predicates so far.
     pub(super) fn counts(&self) -> &PredicateCounts {
         self.bulk.counts()
@@ -341,7 +347,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         builder.isolated(self.bulk.hidden().iter().copied(), points, code, blocks, flush)?;
         for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
             if self.simplex_states[simplex as usize] == SimplexState::Open {
-                builder.simplex(self.bulk.corners(simplex).as_ref(), points, code, blocks, flush)?;
+                builder.simplex(self.bulk.written(simplex).as_ref(), points, code, blocks, flush)?;
             }
         }
         builder.isolated(unused.into_iter(), points, code, blocks, flush)

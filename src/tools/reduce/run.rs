@@ -1,6 +1,7 @@
 //! From a stream of points to a mesh stream.
 
 use std::io::{Read, Write};
+use std::num::NonZeroUsize;
 
 use super::boxes::Boxes;
 use super::budget::Budget;
@@ -181,6 +182,7 @@ where
         rules,
         schedule: Schedule::new(Plan::new(tree), Boxes::new(tree, bounds, outer)),
         budget: Budget::new::<B, D>(options.memory, options.threads, header.attributes.row_len()),
+        threads: NonZeroUsize::new(options.threads).unwrap_or(NonZeroUsize::MIN),
     };
     let merging = Merging::new(options.duplicates, header.coordinates, rules.weights);
     let cells = CellReader::new(reader, outer, merging);

@@ -1,6 +1,7 @@
 //! A run under way: the steps that one thread and several have in common.
 
 use std::io::Write;
+use std::num::NonZeroUsize;
 
 use super::budget::Budget;
 use super::bulk::Bulk;
@@ -25,6 +26,7 @@ pub(super) struct Run<const D: usize> {
     pub(super) rules: Rules<D>,
     pub(super) schedule: Schedule<D>,
     pub(super) budget: Budget,
+    pub(super) threads: NonZeroUsize,
 }
 
 impl<const D: usize> Run<D> {
@@ -88,6 +90,10 @@ impl<const D: usize> Run<D> {
         sequencer: &mut Sequencer<W>,
         worker: &mut Worker<B, D>,
     ) -> Result<()> {
+        // All other nodes are done, so the threads are idle. What is left behind has an order that depends on them.
+        if !self.rules.is_partial {
+            worker.share(self.threads);
+        }
         // The residual of a partial run passes through all nodes up to the root of the tree.
         while let Some((job, children)) = self.schedule.take_root() {
             self.check_memory(job.len())?;

@@ -2,13 +2,14 @@
 
 use std::borrow::Cow;
 use std::collections::HashSet;
+use std::num::NonZeroUsize;
 
 use super::bulk::{Bulk, Facet, WallSide};
 use super::residual::Residual;
-use super::walls::{WallIndex, turned};
+use super::walls::{self, WallIndex};
 use spmesh_core::error::Result;
 use spmesh_core::prefetch::prefetch;
-use spmesh_geometry::delaunay3::{Corner, Kernel, Tetrahedralization};
+use spmesh_geometry::delaunay3::{Corner, Kernel, Tetrahedralization, turned};
 use spmesh_geometry::order::sizes_to_starts;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_geometry::predicates::sphere::SphereBounds;
@@ -29,6 +30,8 @@ pub(super) struct Space {
     /// The tetrahedra, ordered along the curve by their last vertex: in the mesh, insertion in rounds has
     /// scattered them.
     sequence: Vec<u32>,
+    /// Whether the kernel may have several threads, so that the order in the mesh may depend on them.
+    is_shared: bool,
     hull: Vec<Facet>,
     walls: WallIndex,
 }
@@ -56,6 +59,14 @@ impl Space {
             self.sequence[*place as usize] = t;
             *place += 1;
         }
+        if self.is_shared {
+            let mut start = 0;
+            for end in places {
+                let equal = &mut self.sequence[start..end as usize];
+                equal.sort_unstable_by_key(|&t| turned(tetrahedra[t as usize].vertices));
+                start = end as usize;
+            }
+        }
     }
 
     fn find_hull(&mut self) {
@@ -78,10 +89,12 @@ impl Space {
                 let [a, b, c] = facet.map(|i| vertices[i]);
                 let is_outer = self.neighbour(Facet { simplex, corner }).is_none();
                 let sides = [Some([a, b, c]), is_outer.then_some([b, a, c])];
-                found.extend(sides.into_iter().flatten().filter(|&side| index.contains(side)).map(turned));
+                found.extend(
+                    sides.into_iter().flatten().filter(|&side| index.contains(side)).map(walls::turned),
+                );
             }
         }
-        walls.iter().position(|&wall| !found.contains(&turned(wall))).unwrap_or(0)
+        walls.iter().position(|&wall| !found.contains(&walls::turned(wall))).unwrap_or(0)
     }
 }
 
@@ -99,6 +112,11 @@ impl Bulk<3> for Space {
     const KERNEL_BYTES: usize = 640;
     const SAMPLED_MIN: usize = 50_000;
     const PASSES_FEW: bool = true;
+
+    fn share(&mut self, threads: NonZeroUsize) {
+        self.kernel.threads = threads;
+        self.is_shared = true;
+    }
 
     fn triangulate(&mut self, points: &Residual<3>, weights: Option<Weights>) -> Result<()> {
         self.weights.clear();
@@ -141,6 +159,12 @@ impl Bulk<3> for Space {
     fn corners(&self, tetrahedron: u32) -> [u32; 4] {
         let vertices = self.mesh.vertices();
         self.mesh.tetrahedra()[tetrahedron as usize].vertices.map(|v| vertices[v as usize].index)
+    }
+
+    fn written(&self, tetrahedron: u32) -> [u32; 4] {
+        let corners = self.mesh.tetrahedra()[tetrahedron as usize].vertices;
+        let corners = if self.is_shared { turned(corners) } else { corners };
+        corners.map(|v| self.mesh.vertices()[v as usize].index)
     }
 
     #[inline]

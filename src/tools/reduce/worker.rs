@@ -9,6 +9,7 @@ use super::schedule::Job;
 use spmesh_core::error::Result;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_stream::PatchBlocks;
+use std::num::NonZeroUsize;
 
 /// A solver, with the memory for the union of residuals.
 pub(super) struct Worker<B, const D: usize> {
@@ -52,6 +53,11 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
             return Ok(passed_up(std::mem::take(&mut self.union), blocks));
         }
         self.solver.solve(number, &mut self.union, &region, blocks, flush)
+    }
+
+    /// Gives the next node so many threads.
+    pub(super) fn share(&mut self, threads: NonZeroUsize) {
+        self.solver.share(threads);
     }
 
     /// Decisions of the predicates so far.
