@@ -28,10 +28,17 @@ def against_peers(contest):
         chosen += [peer for peer in peers[1:] if peer.name == CGAL]
     for peer in chosen:
         which = f"{peer.name}, the fastest peer" if peer is peers[0] and contest.dims else peer.name
-        yield f"{contest.ratio(peer, ours)} times as fast as {which}"
-        yield f"{contest.ratio(ours, peer, memory)} times the peak memory of {peer.name}"
+        yield contest.ratio(peer, ours).told(f"times as fast as {which}")
+        yield from of_memory(contest, ours, peer, f"times the peak memory of {peer.name}")
     if contest.dims >= 3:
         yield f"{sum(ours.peaks) / contest.points:.0f} bytes per point"
+
+
+def of_memory(contest, over, under, words):
+    """A ratio of peaks, unless they are near the floor."""
+    ratio = contest.ratio(over, under, memory)
+    if ratio:
+        yield ratio.told(words)
 
 
 def of_threads(contest):
@@ -39,12 +46,12 @@ def of_threads(contest):
     for one, two in ((OURS, OURS_TWICE), (ALONE.format(1), ALONE.format(2)), (TESS3.format(1), TESS3.format(2))):
         one, two = contest.get(one), contest.get(two)
         if one and two:
-            yield f"two threads are {contest.ratio(one, two)} times as fast as one: {two.name}"
-            yield f"two threads take {contest.ratio(two, one, memory)} times the peak memory of one"
+            yield contest.ratio(one, two).told(f"times as fast on two threads as on one: {two.name}")
+            yield from of_memory(contest, two, one, "times the peak memory of one, on two threads")
     ours, hxt = contest.get(OURS_TWICE), contest.get(HXT_TWICE)
     if ours and hxt:
-        yield f"on two threads each, {contest.ratio(hxt, ours)} times as fast as HXT"
-        yield f"on two threads each, {contest.ratio(ours, hxt, memory)} times the peak memory of HXT"
+        yield contest.ratio(hxt, ours).told("times as fast as HXT, on two threads each")
+        yield from of_memory(contest, ours, hxt, "times the peak memory of HXT, on two threads each")
 
 
 def laz_ratios(contest):
@@ -64,10 +71,9 @@ def from_laz(contest):
     if not all(found or [None]):
         return
     laz, decoder, two = (contest.get(name).wall for name in (FROM_LAZ, DECODER, ALONE.format(2)))
-    yield (
-        f"from LAZ to a mesh ({laz:.2f} s) takes {found[0]} times one parallel decoding ({decoder:.2f} s) and the "
-        f"triangulation on two threads ({two:.2f} s); without the triangulation, {found[1]} times the decoding"
-    )
+    parts = f"one parallel decoding ({decoder:.2f} s) and the triangulation on two threads ({two:.2f} s)"
+    yield f"LAZ to mesh ({laz:.2f} s): {found[0].told('times as long as ' + parts)}"
+    yield f"LAZ to mesh without the triangulation: {found[1].told('times the decoding')}"
 
 
 def parts3(ours):

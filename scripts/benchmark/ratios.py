@@ -63,10 +63,15 @@ class Ratio:
         return found and not found.low <= 1 <= found.high
 
     def __str__(self):
-        """The median and the interval: 2.77 (2.70 to 2.84)."""
+        """For a table: 2.77 (2.70 to 2.84)."""
+        return self.told("")
+
+    def told(self, words):
+        """The median, its interval, and words after them: 2.77 (2.70 to 2.84) times as fast."""
         found = self.interval
-        span = f" ({digits(found.low)} to {digits(found.high)})" if found else " (no interval)"
-        return digits(self.median) + span + (f", {SAME}" if found and not self.is_distinct else "")
+        span = f"{digits(found.low)} to {digits(found.high)}" if found else "no interval"
+        same = f", {SAME}" if found and not self.is_distinct else ""
+        return f"{digits(self.median)} ({span}){words and ' '}{words}{same}"
 
     def as_json(self):
         found = self.interval

@@ -68,7 +68,8 @@ class Scale:
 
 def points_of(path):
     """The number of points that a LAS or LAZ header states."""
-    header = path.open("rb").read(COUNT_AT + 8)
+    with path.open("rb") as file:
+        header = file.read(COUNT_AT + 8)
     is_new = header[MINOR_AT] >= 4
     (count,) = struct.unpack_from("<Q" if is_new else "<I", header, COUNT_AT if is_new else OLD_COUNT_AT)
     return count
