@@ -30,7 +30,7 @@ def against_peers(contest):
         which = f"{peer.name}, the fastest peer" if peer is peers[0] and contest.dims else peer.name
         yield contest.ratio(peer, ours).told(f"times as fast as {which}")
         yield from of_memory(contest, ours, peer, f"times the peak memory of {peer.name}")
-    if contest.dims >= 3:
+    if contest.dims >= 3 and ours.median(memory):
         yield f"{sum(ours.peaks) / contest.points:.0f} bytes per point"
 
 

@@ -8,7 +8,7 @@ import ratios
 import rasters
 import structures
 from inputs import count_of, program
-from measure import Contestant, compete, floor_bytes
+from measure import Contestant, compete
 
 OURS, OURS_TWICE = "spmesh", "spmesh, 2 threads"
 HXT_TWICE = "HXT, 2 threads"
@@ -103,8 +103,7 @@ def wall(run):
 
 
 def memory(run):
-    """Peak memory of all processes together; None near the floor, where peaks may not be the programs' own."""
-    return sum(run.peaks) if min(run.peaks) > 1.1 * floor_bytes() else None
+    return run.memory
 
 
 class Contests:

@@ -4,7 +4,6 @@ import contextlib
 import fcntl
 import json
 import os
-import resource
 import shutil
 import statistics
 import subprocess
@@ -19,6 +18,9 @@ import ratios
 
 # A program that takes longer is run once: more rounds serve to tell differences of a few per cent.
 ONCE_SECONDS = 30.0
+# The system counts the peak of a process that waits in vfork, which is this one's, as that of the new program.
+# After fork it counts only what this process holds at the time.
+subprocess._USE_VFORK = False
 
 
 @dataclass
@@ -37,10 +39,17 @@ class Run:
     disk: int = 0
     # From 1; 0 is the warm-up, which counts only for programs that are run once.
     round: int = 0
+    # What floor_bytes was at the time.
+    floor: int = 0
 
     @property
     def cpu(self):
         return sum(self.cpus)
+
+    @property
+    def memory(self):
+        """Peak memory of all processes together; None near the floor, where a peak may not be the program's."""
+        return sum(self.peaks) if min(self.peaks) > 1.1 * self.floor else None
 
     def as_json(self):
         times = {"round": self.round, "wall_s": self.wall, "cpus_s": self.cpus}
@@ -96,9 +105,9 @@ class Contestant:
 
 
 def floor_bytes():
-    """A lower limit of measured peaks: a new process is a copy of this one until it runs its program, and the
-    system counts that."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    """A lower limit of measured peaks, that of a program that does nothing: a new process is a copy of this one
+    until it runs its program, and the system counts that."""
+    return reap(subprocess.Popen(["true"])).ru_maxrss * 1024
 
 
 def run(contestant, limit_s, pins=None):
@@ -119,7 +128,8 @@ def run(contestant, limit_s, pins=None):
     failed = [p.args[0] for p in processes if p.returncode not in contestant.accepts]
     failure = f"over {limit_s:.0f} s" if overdue.is_set() else f"{failed} failed: {words[-300:]}" if failed else ""
     cpus = [u.ru_utime + u.ru_stime for u in usages]
-    return Run(wall, cpus, [u.ru_maxrss * 1024 for u in usages], said, failure, sampled.peak if sampled else 0)
+    peaks = [usage.ru_maxrss * 1024 for usage in usages]
+    return Run(wall, cpus, peaks, said, failure, sampled.peak if sampled else 0, floor=floor_bytes())
 
 
 def spawn(contestant, texts):

@@ -3,7 +3,6 @@
 import conclusions
 import ratios
 from contests import OURS
-from measure import floor_bytes
 from peers3 import CGAL, PEERS as PEERS3
 
 PEERS_OF_STRUCTURES = [peer.name for peer in PEERS3 if peer.threads == 1]
@@ -64,8 +63,7 @@ def kernel3_row(contest, c):
     per_point = number(seconds / contest.points * 1e6, 3)
     cgal = contest.get(CGAL)
     speed = said(contest.ratio(cgal, c)) if cgal and cgal is not c else ""
-    # Near the floor, the peak may not be the program's.
-    bytes_per_point = f"{c.peaks[0] / contest.points:.0f}" if c.peaks[0] > 1.1 * floor_bytes() else ""
+    bytes_per_point = f"{c.peaks[0] / contest.points:.0f}" if c.median(lambda run: run.memory) else ""
     cells = [per_point, times_ours(contest, c), speed, megabytes(c.peaks), bytes_per_point, elements(contest, c)]
     return [c.name, number(seconds), span, *cells]
 

@@ -2,7 +2,6 @@
 
 import json
 import unittest
-from unittest import mock
 
 import conclusions
 import contests
@@ -13,6 +12,7 @@ from contests import ALONE, DECODER, FROM_LAZ, HXT_TWICE, OURS, OURS_TWICE
 
 MB = 10**6
 COUNT = 1000
+FLOOR = 20 * MB
 
 
 def contestant(name, seconds, megabytes=100, first_round=1):
@@ -20,14 +20,13 @@ def contestant(name, seconds, megabytes=100, first_round=1):
     found = measure.Contestant(name, [["program"]])
     for number, time in enumerate(seconds, first_round):
         said = {"seconds": time, "tetrahedra": 7, "triangles": 7}
-        found.runs.append(measure.Run(time, [time], [megabytes * MB], said, round=number))
+        found.runs.append(measure.Run(time, [time], [megabytes * MB], said, round=number, floor=FLOOR))
     return found
 
 
 def lines(name, dims, *found):
     contest = contests.Contest(name, COUNT, list(found), dims=dims)
-    with mock.patch.object(contests, "floor_bytes", lambda: 20 * MB):
-        return "\n".join(conclusions.lines(contest)), tables.contest(contest), conclusions.as_json(contest)
+    return "\n".join(conclusions.lines(contest)), tables.contest(contest), conclusions.as_json(contest)
 
 
 class Conclusions(unittest.TestCase):

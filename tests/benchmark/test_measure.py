@@ -64,6 +64,17 @@ class Rounds(unittest.TestCase):
         json.dumps(run.as_json())
 
 
+    def test_peaks_are_those_of_programs(self):
+        """What this process held before does not count, what it holds does: see floor_bytes."""
+        waste = bytearray(64 << 20)
+        held = measure.floor_bytes()
+        del waste
+        run = measure.run(measure.Contestant("nothing", [["true"]]), LIMIT_S)
+        self.assertGreater(held, 64 << 20)
+        self.assertLess(max(run.peaks), 64 << 20)
+        self.assertIsNone(run.memory)
+
+
 class Cores(unittest.TestCase):
     def test_one_thread_of_each_physical_core_comes_first(self):
         two_by_two = {0: {0, 2}, 2: {0, 2}, 1: {1, 3}, 3: {1, 3}}
