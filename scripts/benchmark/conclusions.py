@@ -113,7 +113,8 @@ def as_json(contest):
     pairs += [(OURS, OURS_TWICE), (HXT_TWICE, OURS_TWICE)]
     pairs += [(name.format(1), name.format(2)) for name in (ALONE, TESS3)]
     found = [entry for over, under in pairs for entry in entries(contest, over, under)]
-    for name, ratio in zip(("LAZ to decoding and triangulation", "the rest of LAZ to decoding"), laz_ratios(contest) or ()):
+    of_laz = ("LAZ to decoding and triangulation", "the rest of LAZ to decoding")
+    for name, ratio in zip(of_laz, laz_ratios(contest) or ()):
         found.append({"over": name, "of": "seconds", **ratio.as_json()})
     return {**contest.as_json(), "ratios": found}
 

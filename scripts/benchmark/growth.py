@@ -1,5 +1,5 @@
-"""Growth in the plane: time per point, memory and width from one million to a hundred million points, in flight order and
-permuted."""
+"""Growth in the plane: time per point, memory and width from one million to a hundred million points, in flight
+order and permuted."""
 
 from inputs import count_of, program
 from measure import Contestant, compete
@@ -67,5 +67,5 @@ def cells(facts):
 
 
 def markdown(rows):
-    title = f"### Growth in the plane\n\nLAS to mesh file; permuted points with `spfinalize --memory {PERMUTED_MEMORY}`.\n\n"
-    return title + table(HEAD, [cells(facts) for facts in rows]) + "\n"
+    how = f"LAS to mesh file; permuted points with `spfinalize --memory {PERMUTED_MEMORY}`."
+    return f"### Growth in the plane\n\n{how}\n\n" + table(HEAD, [cells(facts) for facts in rows]) + "\n"

@@ -141,7 +141,8 @@ def spawn(contestant, texts):
         words = [str(word) for word in command]
         is_last = number == len(contestant.commands) - 1
         sink = texts if is_last else subprocess.PIPE
-        processes.append(subprocess.Popen(words, stdin=source, stdout=sink, stderr=texts, env={**os.environ, **folder}))
+        environment = {**os.environ, **folder}
+        processes.append(subprocess.Popen(words, stdin=source, stdout=sink, stderr=texts, env=environment))
         if number:
             source.close()
         source = processes[-1].stdout

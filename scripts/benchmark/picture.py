@@ -48,7 +48,8 @@ def space(rows):
             for way in (PIPE, WHOLE):
                 chosen = [row for row in rows if (row["kind"], row["way"]) == (kind, way)]
                 name = kind + (f", {WHOLE}" if way == WHOLE else "")
-                yield Curve(name, colour, sorted((row["points"], value(row)) for row in chosen), is_dashed=way == WHOLE)
+                values = sorted((row["points"], value(row)) for row in chosen)
+                yield Curve(name, colour, values, is_dashed=way == WHOLE)
 
     times = list(curves(lambda row: row["us_per_point"]))
     memory = list(curves(lambda row: sum(row["peak_bytes"]) / 1e6))

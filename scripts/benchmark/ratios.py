@@ -94,8 +94,8 @@ def ratio(over, under):
 
 
 def percent(share):
-    """A level, rounded down: 93.75 %."""
-    return f"{math.floor(share * 1e4) / 100:g} %"
+    """A level, rounded down: 98.4375 %."""
+    return f"{math.floor(share * 1e6) / 1e4:g} %"
 
 
 def orders(count, seed):

@@ -51,7 +51,8 @@ class Scale:
         self.dem = self.flags.dir / "dem.tif"
         model = [*mesh, [program("spdem"), "--quiet", "-o", self.dem]]
         audit = [*mesh, [program("spinfo"), "--audit"]]
-        return [Contestant(name, pipe, threads=0, temporary=self.temporary) for name, pipe in (("DEM", model), ("audit", audit))]
+        pipes = (("DEM", model), ("audit", audit))
+        return [Contestant(name, pipe, threads=0, temporary=self.temporary) for name, pipe in pipes]
 
     def figures(self, pipe):
         print(f"  {pipe.name}", file=sys.stderr, flush=True)
@@ -62,8 +63,9 @@ class Scale:
         names = [command[0].name for command in pipe.commands]
         processes = [dict(zip(("name", "cpu_s", "peak_bytes"), row)) for row in zip(names, run.cpus, run.peaks)]
         said = {key: run.said.get(key) for key in ("triangles", "residual_max", "width")}
-        facts = {"name": pipe.name, "failure": run.failure, "wall_s": run.wall, "cpu_s": run.cpu, "output_bytes": written}
-        return {**facts, "processes": processes, "temporary_bytes": run.disk, **said}
+        times = {"wall_s": run.wall, "cpu_s": run.cpu, "processes": processes}
+        sizes = {"output_bytes": written, "temporary_bytes": run.disk}
+        return {"name": pipe.name, "failure": run.failure, **times, **sizes, **said}
 
 
 def points_of(path):
@@ -79,16 +81,20 @@ def markdown(facts):
     """A row per process, and one for each pipe."""
     rows = []
     for pipe in facts["pipes"]:
-        disk = number(pipe["temporary_bytes"] / 1e6, 0)
         memory = sum(process["peak_bytes"] for process in pipe["processes"])
-        sums = [number(pipe["wall_s"]), number(pipe["cpu_s"]), number(memory / 1e6, 0), disk, number(pipe["output_bytes"] / 1e6, 0)]
-        rows.append([f"{pipe['name']} {pipe['failure']}".strip(), *sums])
+        sizes = [megabytes(size) for size in (memory, pipe["temporary_bytes"], pipe["output_bytes"])]
+        times = [number(pipe["wall_s"]), number(pipe["cpu_s"])]
+        rows.append([f"{pipe['name']} {pipe['failure']}".strip(), *times, *sizes])
         for process in pipe["processes"]:
-            rows.append([process["name"], "", number(process["cpu_s"]), number(process["peak_bytes"] / 1e6, 0), "", ""])
+            rows.append([process["name"], "", number(process["cpu_s"]), megabytes(process["peak_bytes"]), "", ""])
     head = ["pipe", "wall s", "CPU s", "peak MB", "temporary files, MB", "output MB"]
     size = f"{facts['points']:,} points in {facts['tiles']} tiles of {facts['input_bytes'] / 1e6:,.0f} MB together"
     counts = "".join(f"\n* {pipe['name']}: {told(pipe)}" for pipe in facts["pipes"])
     return f"### {facts['name']}\n\n{size}; one run each, so no intervals.\n\n{table(head, rows)}{counts}\n"
+
+
+def megabytes(size):
+    return number(size / 1e6, 0)
 
 
 def told(pipe):

@@ -53,7 +53,8 @@ class Conclusions(unittest.TestCase):
         json.dumps(facts)
 
     def test_a_slow_peer_has_no_interval(self):
-        words, table, _ = lines("uniform-1k", 2, contestant(OURS, [1.0, 2.0, 3.0]), contestant("CDT", [40.0], first_round=0))
+        slow = contestant("CDT", [40.0], first_round=0)
+        words, table, _ = lines("uniform-1k", 2, contestant(OURS, [1.0, 2.0, 3.0]), slow)
         self.assertIn("20.00 (no interval) times as fast as CDT", words)
         self.assertIn("run once has no interval", table)
 

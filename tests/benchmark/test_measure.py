@@ -127,8 +127,9 @@ class Files(unittest.TestCase):
         self.assertEqual(len(points), 3 * len(atoms) - 7)
         self.assertEqual(len(set(points)), len(points))
         self.assertEqual(points[: len(atoms)], [tuple(round(x, 3) for x in atom) for atom in atoms])
-        first, second = (max(x for x, *_ in points[: len(atoms)]), min(x for x, *_ in points[len(atoms) : 2 * len(atoms)]))
-        self.assertAlmostEqual(second - first, copies.GAP * copies.UNIT)
+        end = max(x for x, *_ in points[: len(atoms)])
+        start = min(x for x, *_ in points[len(atoms) : 2 * len(atoms)])
+        self.assertAlmostEqual(start - end, copies.GAP * copies.UNIT)
 
     def test_points_of_las_headers(self):
         data = copies.SOURCE.parent

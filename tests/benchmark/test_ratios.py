@@ -68,7 +68,7 @@ class Levels(unittest.TestCase):
     def test_levels_are_exact(self):
         self.assertEqual([ratios.level(count, 1) for count in (2, 5, 6, 7)], [0.5, 0.9375, 0.96875, 0.984375])
         self.assertEqual(ratios.percent(0.9375), "93.75 %")
-        self.assertEqual(ratios.percent(0.984375), "98.43 %")
+        self.assertEqual(ratios.percent(0.984375), "98.4375 %")
 
     def test_levels_count_the_sides_of_the_median(self):
         for count in range(2, 11):
