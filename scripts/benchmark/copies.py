@@ -6,16 +6,21 @@ import itertools
 import structures
 import target
 
-# Lysozyme, with its water.
-SOURCE = target.ROOT / "tests" / "data" / "1aki.pdb"
+# A small protein, if no folder of structures is given.
+SOURCE = target.ROOT / "tests" / "data" / "1l2y.pdb.gz"
 # In thousandths of an angstrom, as files of the PDB have them.
 UNIT = 1e-3
 GAP = 1500
 
 
-def write(count, path):
-    """Writes `count` points as triples of f64, copy by copy, along x first and z last."""
-    atoms = [tuple(round(x / UNIT) for x in atom) for atom in structures.atoms(SOURCE)]
+def source(folder):
+    """The largest structure of a folder, or SOURCE."""
+    return max(structures.find(folder), key=lambda path: path.stat().st_size) if folder else SOURCE
+
+
+def write(source, count, path):
+    """Writes `count` points as triples of f64, copy by copy of a structure, along x first and z last."""
+    atoms = [tuple(round(x / UNIT) for x in atom) for atom in structures.atoms(source)]
     pitch = [max(column) - min(column) + GAP for column in zip(*atoms)]
     copies = -(-count // len(atoms))
     side = side_of(copies)

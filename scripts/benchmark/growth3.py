@@ -1,6 +1,7 @@
 """Growth in space: time per point, memory and width of the pipe, beside `tess3`, which holds everything."""
 
 import conclusions
+import copies
 import machine
 import ratios
 from contests import memory, wall
@@ -24,6 +25,7 @@ class Growth3:
         self.inputs, self.flags = inputs, flags
         self.mesh = flags.dir / "mesh.spm"
         self.sizes = flags.sizes or (QUICK_SIZES if flags.quick else SIZES)
+        self.source = copies.source(flags.structures)
         self.points_max = machine.memory_bytes() // WHOLE_BYTES_PER_POINT
 
     def run(self):
@@ -35,12 +37,14 @@ class Growth3:
         rows = [row(*which, contestant) for which, contestant in contestants.items()]
         for facts in rows:
             facts.update(against(contestants, *(facts[key] for key in ("kind", "way", "size"))))
+            facts["source"] = self.source.name if facts["kind"] == "structure" else ""
         if not self.flags.keep:
             self.inputs.remove_big()
         return rows
 
     def contestant(self, kind, way, size):
-        points = self.inputs.file(f"{kind}-{size}.spm")
+        is_real = kind == "structure"
+        points = self.inputs.copied(self.source, size) if is_real else self.inputs.file(f"{kind}-{size}.spm")
         written = ["--quiet", "--stats=json", "-o", self.mesh]
         finalize = [program("spfinalize"), "--quiet", "--octree", "--temp-dir", self.flags.dir, points]
         ways = {PIPE: [finalize, [program("spdelaunay3d"), *written]], WHOLE: [[program("tess3"), *written, points]]}
@@ -74,7 +78,7 @@ HEAD += ["time to tess3's", "memory to tess3's"]
 
 
 def cells(facts):
-    start = [f"{facts['kind']}, {facts['points']:,}", facts["way"]]
+    start = [f"{facts['kind']} {facts['source']}".strip() + f", {facts['points']:,}", facts["way"]]
     if "seconds" not in facts:
         return [*start, facts["failure"], *[""] * (len(HEAD) - 3)]
     peaks = " + ".join(number(peak / 1e6, 0) for peak in facts["peak_bytes"])

@@ -24,7 +24,7 @@ def count_of(text):
 class Inputs:
     """Files by name: uniform-10M.f64, grid-1000.f64, decimals-1000.f64, flight-10M.las or .laz,
     permuted-10M.las; in 3D uniform3-1M.f64 and others, in 4D grid4-10.f64 and random4-10k.f64 (see inputs3.rs
-    and inputs4.rs in rust/src/bin); streams of points in space, random-1M.spm, gyroid-1M.spm, structure-1M.spm.
+    and inputs4.rs in rust/src/bin); streams of points in space, random-1M.spm and gyroid-1M.spm.
     """
 
     def __init__(self, folder, helpers):
@@ -43,8 +43,6 @@ class Inputs:
             self.make(target.ROOT / "scripts" / "gen-lidar", "--points", count_of(size), "--seed", 1, "-o", part)
         elif kind in VOLUMES:
             self.make(target.ROOT / "scripts" / "gen-volume", "--family", kind, "--points", count_of(size), "-o", part)
-        elif kind == "structure":
-            self.make_structure(count_of(size), part)
         elif kind == "permuted":
             self.make(self.helpers / "inputs", "permute", self.file(f"flight-{size}.las"), part)
         else:
@@ -53,12 +51,17 @@ class Inputs:
         os.replace(part, path)
         return path
 
-    def make_structure(self, count, path):
-        raw = path.with_suffix(".f64")
-        copies.write(count, raw)
-        grid = ["--scale", ",".join([str(copies.UNIT)] * 3)]
-        self.make(program("spfinalize"), "--octree", "--preserve", *grid, "--raw", "f64le", raw, "-o", path)
-        raw.unlink()
+    def copied(self, source, size):
+        """A stream of copies of a structure, side by side."""
+        path = self.folder / f"{source.name.split('.')[0].replace('-', '_')}_copies-{size}.spm"
+        if not path.exists():
+            raw, part = path.with_suffix(".f64"), path.with_name("part-" + path.name)
+            copies.write(source, count_of(size), raw)
+            grid = ["--scale", ",".join([str(copies.UNIT)] * 3)]
+            self.make(program("spfinalize"), "--octree", "--preserve", *grid, "--raw", "f64le", raw, "-o", part)
+            raw.unlink()
+            os.replace(part, path)
+        return path
 
     def finalized(self, las):
         """The stream that the current spfinalize makes of a file."""

@@ -122,7 +122,7 @@ class Files(unittest.TestCase):
         atoms = structures.atoms(copies.SOURCE)
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "points"
-            copies.write(3 * len(atoms) - 7, path)
+            copies.write(copies.source(None), 3 * len(atoms) - 7, path)
             points = list(zip(*[iter(memoryview(path.read_bytes()).cast("d"))] * 3))
         self.assertEqual(len(points), 3 * len(atoms) - 7)
         self.assertEqual(len(set(points)), len(points))
@@ -130,6 +130,9 @@ class Files(unittest.TestCase):
         end = max(x for x, *_ in points[: len(atoms)])
         start = min(x for x, *_ in points[len(atoms) : 2 * len(atoms)])
         self.assertAlmostEqual(start - end, copies.GAP * copies.UNIT)
+
+    def test_the_largest_structure_of_a_folder_is_copied(self):
+        self.assertEqual(copies.source(copies.SOURCE.parent).name, "1aki.cif")
 
     def test_points_of_las_headers(self):
         data = copies.SOURCE.parent
