@@ -1,7 +1,7 @@
 """What the ratios of a contest say, in words and as JSON."""
 
 import ratios
-from contests import ALONE, DECODER, FROM_LAZ, HXT_TWICE, IN_PARTS, OURS, OURS_TWICE, TESS3, memory, wall
+from contests import ALONE, DECODER, FROM_LAZ, HXT_TWICE, IN_PARTS, OURS, OURS_TWICE, TESS3, cpu, memory, wall
 from peers3 import CGAL
 
 
@@ -29,14 +29,15 @@ def against_peers(contest):
     for peer in chosen:
         which = f"{peer.name}, the fastest peer" if peer is peers[0] and contest.dims else peer.name
         yield contest.ratio(peer, ours).told(f"times as fast as {which}")
-        yield from of_memory(contest, ours, peer, f"times the peak memory of {peer.name}")
+        yield from of(cpu, contest, ours, peer, f"times the CPU time of {peer.name}, from start to end")
+        yield from of(memory, contest, ours, peer, f"times the peak memory of {peer.name}")
     if contest.dims >= 3 and ours.median(memory):
         yield f"{sum(ours.peaks) / contest.points:.0f} bytes per point"
 
 
-def of_memory(contest, over, under, words):
-    """A ratio of peaks, unless they are near the floor."""
-    ratio = contest.ratio(over, under, memory)
+def of(value, contest, over, under, words):
+    """A ratio of values that are not known of each run."""
+    ratio = contest.ratio(over, under, value)
     if ratio:
         yield ratio.told(words)
 
@@ -47,11 +48,12 @@ def of_threads(contest):
         one, two = contest.get(one), contest.get(two)
         if one and two:
             yield contest.ratio(one, two).told(f"times as fast on two threads as on one: {two.name}")
-            yield from of_memory(contest, two, one, "times the peak memory of one, on two threads")
+            yield from of(cpu, contest, two, one, "times the CPU time of one, on two threads")
+            yield from of(memory, contest, two, one, "times the peak memory of one, on two threads")
     ours, hxt = contest.get(OURS_TWICE), contest.get(HXT_TWICE)
     if ours and hxt:
         yield contest.ratio(hxt, ours).told("times as fast as HXT, on two threads each")
-        yield from of_memory(contest, ours, hxt, "times the peak memory of HXT, on two threads each")
+        yield from of(memory, contest, ours, hxt, "times the peak memory of HXT, on two threads each")
 
 
 def laz_ratios(contest):
@@ -120,9 +122,9 @@ def as_json(contest):
 
 
 def entries(contest, over, under):
-    """Ratios of time and memory of two contestants, given by name, if both ran."""
+    """Ratios of time, CPU time and memory of two contestants, given by name, if both ran."""
     upper, lower = contest.get(over), contest.get(under)
-    for of, value in (("seconds", contest.seconds_of), ("peak_bytes", memory)):
+    for name, value in (("seconds", contest.seconds_of), ("cpu_s", cpu), ("peak_bytes", memory)):
         ratio = upper and lower and contest.ratio(upper, lower, value)
         if ratio:
-            yield {"over": over, "under": under, "of": of, **ratio.as_json()}
+            yield {"over": over, "under": under, "of": name, **ratio.as_json()}

@@ -37,6 +37,8 @@ SETS = {
 # Time limits of a run; Qhull needs minutes for a grid in 4D.
 LIMIT_S, LIMIT4_S = 120.0, 300.0
 COORDINATE_BYTES = 8
+# Below, the start of a program is much of its time.
+CPU_MIN_S = 0.05
 
 
 def dims_of(name):
@@ -100,6 +102,11 @@ class Contest:
 
 def wall(run):
     return run.wall
+
+
+def cpu(run):
+    """Seconds of the processor of all processes together, with reading and writing; None if too few to tell."""
+    return run.cpu if run.cpu > CPU_MIN_S else None
 
 
 def memory(run):

@@ -42,6 +42,7 @@ class Conclusions(unittest.TestCase):
         )
         self.assertIn("1.00 (0.900 to 1.50) times as fast as HXT, the fastest peer, not distinguishable", words)
         self.assertIn("3.00 (2.50 to 3.00) times as fast as CGAL", words)
+        self.assertIn("0.333 (0.333 to 0.400) times the CPU time of CGAL", words)
         self.assertIn("0.250 (0.250 to 0.250) times the peak memory of CGAL", words)
         self.assertIn("2.00 (1.60 to 3.00) times as fast on two threads as on one: spmesh, 2 threads", words)
         self.assertIn("1.25 (1.25 to 1.25) times the peak memory of one, on two threads", words)
