@@ -150,6 +150,13 @@ def ratio_of_sums(contests, over, under):
     return ratios.ratio(*sums) if both else None
 
 
+def sums_as_json(contests):
+    """The ratios of these sums, round by round."""
+    pairs = {name: ratio_of_sums(contests, CGAL, name) for name in [OURS, *PEERS_OF_STRUCTURES] if name != CGAL}
+    found = [{"over": CGAL, "under": name, **ratio.as_json()} for name, ratio in pairs.items() if ratio]
+    return {"name": "sums over structures", "ratios": found}
+
+
 def sum_by_round(each):
     """Sums of values of the rounds that all have."""
     rounds = set.intersection(*(set(values) for values in each))

@@ -87,6 +87,8 @@ class Conclusions(unittest.TestCase):
         ]
         self.assertEqual(tables.ratio_of_sums(each, peers3.CGAL, OURS).rounds, {1: 3.0, 2: 1.5})
         self.assertIn("2.25 (1.50 to 3.00)", tables.structures(each, {}))
+        (ratio,) = tables.sums_as_json(each)["ratios"]
+        self.assertEqual((ratio["under"], ratio["rounds"]), (OURS, {1: 3.0, 2: 1.5}))
 
 
 if __name__ == "__main__":
