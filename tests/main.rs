@@ -5,6 +5,7 @@ mod areas;
 mod attributes;
 mod audit;
 mod banks;
+mod bench;
 mod canopy;
 mod cell_grid;
 mod cli;

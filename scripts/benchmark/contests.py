@@ -1,16 +1,17 @@
 """The kinds of measurement: the kernels alone, in 2D, 3D and 4D, and whole pipes from file to file."""
 
-import statistics
 import sys
 from collections import defaultdict
 from dataclasses import dataclass, field
 
+import ratios
 import rasters
 import structures
 from inputs import count_of, program
 from measure import Contestant, compete
 
-OURS = "spmesh"
+OURS, OURS_TWICE = "spmesh", "spmesh, 2 threads"
+HXT_TWICE = "HXT, 2 threads"
 # Elevation models, whose peers differ from those of triangulations.
 DEM = "dem"
 # Reading the clock takes time, so this run is not compared with peers.
@@ -31,16 +32,19 @@ SETS = {
     "2d": (FULL_SETS, QUICK_SETS),
     "3d": (FULL_SETS_3D, QUICK_SETS_3D),
     "4d": (FULL_SETS_4D, QUICK_SETS_4D),
+    "scale": (["scale-1G"], ["scale-1M"]),
 }
 # Time limits of a run; Qhull needs minutes for a grid in 4D.
 LIMIT_S, LIMIT4_S = 120.0, 300.0
 COORDINATE_BYTES = 8
+# Below, the start of a program is much of its time.
+CPU_MIN_S = 0.05
 
 
 def dims_of(name):
     """Dimension of the points of a set, from its name; 0 for sets without triangulating peers."""
     kind = name.split("-")[0]
-    if name == SWEEP or kind == DEM:
+    if name == SWEEP or kind in (DEM, "scale"):
         return 0
     return 3 if name == STRUCTURES else int(kind[-1]) if kind[-1] in "34" else 2
 
@@ -65,10 +69,12 @@ class Contest:
         """The elements of a triangulation or a diagram."""
         return {3: "tetrahedra", 4: "cells"}.get(self.dims, "triangles")
 
-    @property
-    def seconds(self):
-        """The compared time of a contestant: the whole pipe, or the triangulation of a kernel alone."""
-        return (lambda c: c.wall) if self.is_pipe else (lambda c: c.said("seconds"))
+    def seconds_of(self, run):
+        """The compared time of a run: the whole pipe, or the triangulation of a kernel alone."""
+        return run.wall if self.is_pipe or not self.dims else run.said.get("seconds")
+
+    def seconds(self, contestant):
+        return contestant.median(self.seconds_of)
 
     def get(self, name):
         return next((c for c in self.contestants if c.name == name and c.runs), None)
@@ -79,13 +85,10 @@ class Contest:
         ran = [c for c in self.contestants if c.name not in names and c.runs and self.seconds(c)]
         return sorted((c for c in ran if self.dims in (0, 2) or "threads" not in c.name), key=self.seconds)
 
-    def speed(self, contestant, other):
-        """How many times as fast as `other` a contestant is: the median of the ratios in each round, because
-        a machine's speed drifts."""
-        if not other:
-            return None
-        pairs = zip(other.runs, contestant.runs)
-        return statistics.median(theirs.said["seconds"] / its.said["seconds"] for theirs, its in pairs)
+    def ratio(self, over, under, value=None):
+        """The ratio of two contestants in seconds, or in another value of a run; None if there is none."""
+        value = value or self.seconds_of
+        return ratios.ratio(over.by_round(value), under.by_round(value))
 
     def elements(self):
         """The element count that most programs report, if any."""
@@ -95,6 +98,19 @@ class Contest:
     def as_json(self):
         contestants = [c.as_json() for c in self.contestants]
         return {"name": self.name, "points": self.points, "contestants": contestants, "absent": self.absent}
+
+
+def wall(run):
+    return run.wall
+
+
+def cpu(run):
+    """Seconds of the processor of all processes together, with reading and writing; None if too few to tell."""
+    return run.cpu if run.cpu > CPU_MIN_S else None
+
+
+def memory(run):
+    return run.memory
 
 
 class Contests:
@@ -147,9 +163,9 @@ class Contests:
         files = structures.find(self.flags.structures)
         folder = self.flags.dir / "sweep"
         command = [program("tess3"), "--quiet", "--out-dir", folder, *files, "--threads"]
-        both = [Contestant(TESS3.format(n), [[*command, n]], folder, accepts=(0, 1)) for n in (1, 2)]
+        both = [Contestant(TESS3.format(n), [[*command, n]], folder, threads=n, accepts=(0, 1)) for n in (1, 2)]
         contest = Contest(SWEEP, len(files), both, dims=0)
-        compete(both, self.flags.rounds, self.limit(contest), self.flags.lock)
+        compete(both, self.flags, self.limit(contest))
         return contest
 
     def limit(self, contest):
@@ -159,7 +175,7 @@ class Contests:
     def compete(self, contest):
         chosen = [c for c in contest.contestants if self.is_wanted(c.name)]
         contest.contestants = chosen
-        compete(chosen, self.flags.rounds, self.limit(contest), self.flags.lock)
+        compete(chosen, self.flags, self.limit(contest))
 
     def is_wanted(self, name):
         return not self.flags.only or name.split(",")[0].split()[0].lower() in self.flags.only
@@ -175,7 +191,11 @@ class Contests:
     def kernel3(self, name, points):
         kernel = [program("examples/kernel3_time"), points]
         contestants = [Contestant(OURS, [kernel]), Contestant(IN_PARTS, [[*kernel, "--parts"]])]
-        contestants += [Contestant(p.name, [[p.program, points, p.threads]]) for p in self.peers[3] if p.program]
+        contestants.append(Contestant(OURS_TWICE, [[*kernel, "--threads", 2]], threads=2))
+        for peer in self.peers[3]:
+            if peer.program:
+                command = [peer.program, points, peer.threads]
+                contestants.append(Contestant(peer.name, [command], threads=peer.threads))
         return Contest(name, points.stat().st_size // (3 * COORDINATE_BYTES), contestants, self.absent(3), dims=3)
 
     def kernel4(self, name, points):
@@ -186,13 +206,13 @@ class Contests:
     def pipe(self, name, size):
         las, laz = self.inputs.file(f"flight-{size}.las"), self.inputs.file(f"flight-{size}.laz")
         stream = self.inputs.finalized(las)
-        contestants = [Contestant(OURS, self.from_file(las), self.mesh)]
+        contestants = [Contestant(OURS, self.from_file(las), self.mesh, threads=0)]
         contestants += [self.contestant(peer, las) for peer in self.peers[2] if peer.program]
-        contestants.append(Contestant(FROM_LAZ, self.from_file(laz), self.mesh))
-        contestants.append(Contestant(DECODER, [[self.inputs.helpers / "decode", laz, 2]]))
+        contestants.append(Contestant(FROM_LAZ, self.from_file(laz), self.mesh, threads=0))
+        contestants.append(Contestant(DECODER, [[self.inputs.helpers / "decode", laz, 2]], threads=2))
         for threads in (1, 2):
             alone = [[*self.delaunay(), "--threads", threads, stream]]
-            contestants.append(Contestant(ALONE.format(threads), alone, self.mesh))
+            contestants.append(Contestant(ALONE.format(threads), alone, self.mesh, threads=threads))
         return Contest(name, count_of(size), contestants, self.absent(2))
 
     def dem(self, name):

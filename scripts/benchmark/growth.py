@@ -1,5 +1,5 @@
-"""Growth: time per point, memory and width from one million to a hundred million points, in flight order and
-permuted."""
+"""Growth in the plane: time per point, memory and width from one million to a hundred million points, in flight
+order and permuted."""
 
 from inputs import count_of, program
 from measure import Contestant, compete
@@ -26,7 +26,7 @@ class Growth:
         """One row per size and order."""
         chosen = [(size, order) for order in (COHERENT, PERMUTED) for size in self.sizes]
         contestants = [self.contestant(size, order) for size, order in chosen]
-        compete(contestants, self.flags.rounds, self.flags.growth_limit, self.flags.lock)
+        compete(contestants, self.flags, self.flags.growth_limit)
         rows = [row(size, order, c) for (size, order), c in zip(chosen, contestants)]
         if not self.flags.keep:
             self.inputs.remove_big()
@@ -39,7 +39,7 @@ class Growth:
         kind = "permuted" if order == PERMUTED else "flight"
         finalize = [program("spfinalize"), "--quiet", *flags, self.inputs.file(f"{kind}-{size}.las")]
         delaunay = [program("spdelaunay2d"), "--stats=json", "-o", self.mesh]
-        return Contestant(f"{size} {order}", [finalize, delaunay], self.mesh)
+        return Contestant(f"{size} {order}", [finalize, delaunay], self.mesh, threads=0)
 
 
 def row(size, order, contestant):
@@ -67,5 +67,5 @@ def cells(facts):
 
 
 def markdown(rows):
-    title = f"### Growth\n\nLAS to mesh file; permuted points with `spfinalize --memory {PERMUTED_MEMORY}`.\n\n"
-    return title + table(HEAD, [cells(facts) for facts in rows]) + "\n"
+    how = f"LAS to mesh file; permuted points with `spfinalize --memory {PERMUTED_MEMORY}`."
+    return f"### Growth in the plane\n\n{how}\n\n" + table(HEAD, [cells(facts) for facts in rows]) + "\n"

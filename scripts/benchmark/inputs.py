@@ -3,14 +3,17 @@
 import os
 import subprocess
 
+import copies
 import target
 
-UNITS = {"k": 10**3, "M": 10**6}
+UNITS = {"k": 10**3, "M": 10**6, "G": 10**9}
 # Larger inputs are removed, unless --keep is given.
 KEPT_POINTS_MAX = 10**7
 # Examples that 4D sets need, and examples that other sets need.
 EXAMPLES4 = ["diagram4_time"]
-EXAMPLES = ["kernel_time", "kernel3_time", "gen_lidar"]
+EXAMPLES = ["kernel_time", "kernel3_time", "gen_lidar", "gen_volume"]
+# Families of scripts/gen-volume.
+VOLUMES = ["random", "gyroid"]
 
 
 def count_of(text):
@@ -20,8 +23,8 @@ def count_of(text):
 
 class Inputs:
     """Files by name: uniform-10M.f64, grid-1000.f64, decimals-1000.f64, flight-10M.las or .laz,
-    permuted-10M.las; in 3D uniform3-1M.f64 and others, in 4D grid4-10.f64 and random4-10k.f64. See inputs3.rs
-    and inputs4.rs in rust/src/bin.
+    permuted-10M.las; in 3D uniform3-1M.f64 and others, in 4D grid4-10.f64 and random4-10k.f64 (see inputs3.rs
+    and inputs4.rs in rust/src/bin); streams of points in space, random-1M.spm and gyroid-1M.spm.
     """
 
     def __init__(self, folder, helpers):
@@ -38,12 +41,26 @@ class Inputs:
         part = path.with_name("part-" + name)
         if kind == "flight":
             self.make(target.ROOT / "scripts" / "gen-lidar", "--points", count_of(size), "--seed", 1, "-o", part)
+        elif kind in VOLUMES:
+            self.make(target.ROOT / "scripts" / "gen-volume", "--family", kind, "--points", count_of(size), "-o", part)
         elif kind == "permuted":
             self.make(self.helpers / "inputs", "permute", self.file(f"flight-{size}.las"), part)
         else:
             maker = f"inputs{kind[-1]}" if kind[-1] in "34" else "inputs"
             self.make(self.helpers / maker, kind, count_of(size), part)
         os.replace(part, path)
+        return path
+
+    def copied(self, source, size):
+        """A stream of copies of a structure, side by side."""
+        path = self.folder / f"{source.name.split('.')[0].replace('-', '_')}_copies-{size}.spm"
+        if not path.exists():
+            raw, part = path.with_suffix(".f64"), path.with_name("part-" + path.name)
+            copies.write(source, count_of(size), raw)
+            grid = ["--scale", ",".join([str(copies.UNIT)] * 3)]
+            self.make(program("spfinalize"), "--octree", "--preserve", *grid, "--raw", "f64le", raw, "-o", part)
+            raw.unlink()
+            os.replace(part, path)
         return path
 
     def finalized(self, las):
@@ -57,7 +74,7 @@ class Inputs:
 
     def remove_big(self):
         for path in self.folder.iterdir():
-            if count_of(path.stem.split("-")[-1]) > KEPT_POINTS_MAX:
+            if path.is_file() and count_of(path.stem.split("-")[-1]) > KEPT_POINTS_MAX:
                 path.unlink()
 
 

@@ -30,14 +30,17 @@ def commit():
     return (line_of("git", "rev-parse", "--short=12", "HEAD") or "unknown") + changed
 
 
+def memory_bytes():
+    return int(field_of("/proc/meminfo", "MemTotal").split()[0]) * 1024
+
+
 def describe():
-    memory_kb = int(field_of("/proc/meminfo", "MemTotal").split()[0])
     return {
         "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
         "commit": commit(),
         "cpu": field_of("/proc/cpuinfo", "model name"),
         "cores": len(os.sched_getaffinity(0)),
-        "memory_GiB": round(memory_kb / 2**20),
+        "memory_GiB": round(memory_bytes() / 2**30),
         "kernel": f"{platform.system()} {platform.release()}",
         "rustc": line_of("rustc", "--version"),
         "c++": line_of("g++", "--version"),

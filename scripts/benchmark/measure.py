@@ -4,7 +4,6 @@ import contextlib
 import fcntl
 import json
 import os
-import resource
 import shutil
 import statistics
 import subprocess
@@ -14,8 +13,14 @@ import threading
 import time
 from dataclasses import dataclass, field
 
+import disk
+import ratios
+
 # A program that takes longer is run once: more rounds serve to tell differences of a few per cent.
 ONCE_SECONDS = 30.0
+# The system counts the peak of a process that waits in vfork, which is this one's, as that of the new program.
+# After fork it counts only what this process holds at the time.
+subprocess._USE_VFORK = False
 
 
 @dataclass
@@ -23,12 +28,32 @@ class Run:
     """The measurements of one run of a pipeline."""
 
     wall: float
-    cpu: float
+    # Seconds of the processor, of each process.
+    cpus: list
     # Peak resident memory of each process, in bytes; see floor_bytes.
     peaks: list
     # The lines of JSON that the processes wrote, as one object.
     said: dict
     failure: str = ""
+    # Peak of temporary files, in bytes, if it was sampled.
+    disk: int = 0
+    # From 1; 0 is the warm-up, which counts only for programs that are run once.
+    round: int = 0
+    # What floor_bytes was at the time.
+    floor: int = 0
+
+    @property
+    def cpu(self):
+        return sum(self.cpus)
+
+    @property
+    def memory(self):
+        """Peak memory of all processes together; None near the floor, where a peak may not be the program's."""
+        return sum(self.peaks) if min(self.peaks) > 1.1 * self.floor else None
+
+    def as_json(self):
+        times = {"round": self.round, "wall_s": self.wall, "cpus_s": self.cpus}
+        return {**times, "peak_bytes": self.peaks, "disk_bytes": self.disk, "said": self.said}
 
 
 @dataclass
@@ -39,10 +64,19 @@ class Contestant:
     name: str
     commands: list
     output: str = ""
+    # How many cores the pipeline may use; 0 stands for all.
+    threads: int = 1
+    # An empty folder for temporary files, whose size is sampled.
+    temporary: str = ""
     # Exit codes that do not count as failures.
     accepts: tuple = (0,)
     runs: list = field(default_factory=list)
     failure: str = ""
+
+    def by_round(self, value):
+        """The values of all runs that have one, by round."""
+        values = {run.round: value(run) for run in self.runs}
+        return {number: v for number, v in values.items() if v is not None}
 
     def median(self, value):
         """Median of `value` over the runs; None if no run has a value."""
@@ -66,51 +100,66 @@ class Contestant:
         return self.median(lambda run: run.said.get(key))
 
     def as_json(self):
-        runs = [{"wall_s": r.wall, "cpu_s": r.cpu, "peak_bytes": r.peaks, "said": r.said} for r in self.runs]
+        runs = [run.as_json() for run in self.runs]
         return {"name": self.name, "commands": self.commands, "failure": self.failure, "runs": runs}
 
 
 def floor_bytes():
-    """A lower limit of measured peaks: a new process is a copy of this one until it runs its program, and the
-    system counts that."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    """A lower limit of measured peaks, that of a program that does nothing: a new process is a copy of this one
+    until it runs its program, and the system counts that."""
+    return reap(subprocess.Popen(["true"])).ru_maxrss * 1024
 
 
-def run(commands, limit_s, accepts=(0,)):
-    """Runs `commands` as a pipeline, and kills it after `limit_s` seconds."""
+def run(contestant, limit_s, pins=None):
+    """Runs a pipeline, and kills it after `limit_s` seconds."""
     with tempfile.TemporaryFile("w+") as texts:
         start = time.perf_counter()
-        processes = spawn([[str(word) for word in command] for command in commands], texts)
+        with pins.held(contestant.threads) if pins else contextlib.nullcontext():
+            processes = spawn(contestant, texts)
         overdue = threading.Event()
         timer = threading.Timer(limit_s, lambda: (overdue.set(), [p.kill() for p in processes]))
         timer.start()
-        usages = []
-        for process in processes:
-            _, status, usage = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
-            usages.append(usage)
+        with sampler(contestant, processes) as sampled:
+            usages = [reap(process) for process in processes]
         wall = time.perf_counter() - start
         timer.cancel()
         texts.seek(0)
         said, words = parse(texts.read())
-    failed = [p.args[0] for p in processes if p.returncode not in accepts]
+    failed = [p.args[0] for p in processes if p.returncode not in contestant.accepts]
     failure = f"over {limit_s:.0f} s" if overdue.is_set() else f"{failed} failed: {words[-300:]}" if failed else ""
-    cpu = sum(u.ru_utime + u.ru_stime for u in usages)
-    return Run(wall, cpu, [u.ru_maxrss * 1024 for u in usages], said, failure)
+    cpus = [u.ru_utime + u.ru_stime for u in usages]
+    peaks = [usage.ru_maxrss * 1024 for usage in usages]
+    return Run(wall, cpus, peaks, said, failure, sampled.peak if sampled else 0, floor=floor_bytes())
 
 
-def spawn(commands, texts):
+def spawn(contestant, texts):
     """Starts a pipeline; stderr of all processes and stdout of the last one go to `texts`."""
     processes = []
     source = subprocess.DEVNULL
-    for number, command in enumerate(commands):
-        is_last = number == len(commands) - 1
+    folder = {"TMPDIR": str(contestant.temporary)} if contestant.temporary else {}
+    for number, command in enumerate(contestant.commands):
+        words = [str(word) for word in command]
+        is_last = number == len(contestant.commands) - 1
         sink = texts if is_last else subprocess.PIPE
-        processes.append(subprocess.Popen(command, stdin=source, stdout=sink, stderr=texts))
+        environment = {**os.environ, **folder}
+        processes.append(subprocess.Popen(words, stdin=source, stdout=sink, stderr=texts, env=environment))
         if number:
             source.close()
         source = processes[-1].stdout
     return processes
+
+
+def sampler(contestant, processes):
+    if not contestant.temporary:
+        return contextlib.nullcontext()
+    return disk.Sampler(contestant.temporary, [process.pid for process in processes])
+
+
+def reap(process):
+    """Waits for a process; returns what it used."""
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return usage
 
 
 def parse(text):
@@ -142,21 +191,28 @@ def alone(path):
         yield
 
 
-def compete(contestants, rounds, limit_s, lock=None):
-    """Runs all contestants in turn, once per round, until each has its rounds, is too slow or fails."""
-    for number in range(rounds):
-        for contestant in contestants:
-            slow = contestant.runs and contestant.runs[0].wall > ONCE_SECONDS and len(contestants) > 1
-            if contestant.failure or slow:
+def compete(contestants, flags, limit_s):
+    """Runs all contestants once as a warm-up, which is not counted, and then once per round, in an order that
+    changes. One that is too slow or fails is not run again. The warm-up of one that takes over ONCE_SECONDS is
+    its only run, unless it is alone."""
+    orders = ratios.orders(len(contestants), flags.seed)
+    for number in range(flags.rounds + 1):
+        for place in next(orders):
+            contestant = contestants[place]
+            if contestant.failure or (contestant.runs and contestant.runs[0].round == 0):
                 continue
-            with alone(lock):
-                result = run(contestant.commands, limit_s, contestant.accepts)
+            with alone(flags.lock):
+                result = run(contestant, limit_s, flags.pins)
+            result.round = number
             remove(contestant.output)
             # Flush the output to disk now, so that the next contestant does not wait for it.
             os.sync()
             told = result.failure or f"{result.wall:.2f} s"
-            print(f"  round {number + 1}: {contestant.name}: {told}", file=sys.stderr, flush=True)
-            if result.failure:
-                contestant.failure = result.failure
-            else:
+            print(f"  {name_of(number)}: {contestant.name}: {told}", file=sys.stderr, flush=True)
+            contestant.failure = result.failure
+            if not result.failure and (number or (result.wall > ONCE_SECONDS and len(contestants) > 1)):
                 contestant.runs.append(result)
+
+
+def name_of(number):
+    return f"round {number}" if number else "warm-up"

@@ -22,7 +22,7 @@ def contestants(inputs, name, folder):
     ours = [[program("spfinalize"), "--quiet", las], [program("spdelaunay2d"), "--quiet"]]
     output = folder / "terrain.tif"
     raster = [program("spdem"), "--step", STEP, "--stats=json", "--quiet", "-o", output]
-    found, absent = [Contestant("spmesh", [*ours, raster], output)], {}
+    found, absent = [Contestant("spmesh", [*ours, raster], output, threads=0)], {}
     if shutil.which("gdal_grid"):
         layer = vector_layer(points, las.with_suffix(".fgb"))
         found.append(Contestant(GDAL, [gdal(layer, grid, folder / "gdal.tif")], folder / "gdal.tif"))

@@ -219,11 +219,11 @@ class Shapes:
             command = [inputs.program(engine), "-q", stream, "-o", "/dev/null"]
             if engine == "configgen":
                 command[1:1] = ["--degree", "2"]
-            if engine.startswith("spdelaunay"):
+            if engine.startswith(("spdelaunay", "tess3")):
                 command[1:1] = ["--threads", "1"]
             contestant = measure.Contestant(engine, [command])
             for _ in range(self.flags.rounds):
-                run = measure.run(contestant.commands, LIMIT_S)
+                run = measure.run(contestant, LIMIT_S, self.flags.pins)
                 if run.failure:
                     return {"engine": engine, "shape": shape, "times": times, "peaks": peaks, "failure": run.failure}
                 contestant.runs.append(run)

@@ -1,7 +1,8 @@
 """Results as Markdown tables."""
 
-from contests import ALONE, DECODER, FROM_LAZ, IN_PARTS, OURS, TESS3
-from measure import floor_bytes
+import conclusions
+import ratios
+from contests import OURS
 from peers3 import CGAL, PEERS as PEERS3
 
 PEERS_OF_STRUCTURES = [peer.name for peer in PEERS3 if peer.threads == 1]
@@ -39,27 +40,31 @@ def elements(contest, contestant):
     return f"{count:,.0f}" + ("" if count == contest.elements() else " **differs**")
 
 
-def ratio(contest, contestant):
+def times_ours(contest, contestant):
+    """The ratio of a contestant's time to ours."""
     ours = contest.get(OURS)
-    value = contest.seconds(contestant)
-    return number(value / contest.seconds(ours), 2) if ours and value is not None else ""
+    return said(contest.ratio(contestant, ours)) if ours and contestant is not ours else ""
+
+
+def said(ratio):
+    return "" if ratio is None else str(ratio)
 
 
 def kernel_row(contest, c):
     seconds = c.said("seconds")
     span = spread(c, lambda run: run.said["seconds"])
     per_point = number(seconds / contest.points * 1e6, 3)
-    return [c.name, number(seconds), span, per_point, ratio(contest, c), megabytes(c.peaks), elements(contest, c)]
+    return [c.name, number(seconds), span, per_point, times_ours(contest, c), megabytes(c.peaks), elements(contest, c)]
 
 
 def kernel3_row(contest, c):
     seconds = c.said("seconds")
     span = spread(c, lambda run: run.said["seconds"])
     per_point = number(seconds / contest.points * 1e6, 3)
-    speed = number(contest.speed(c, contest.get(CGAL)), 2)
-    # Near the floor, the peak may not be the program's.
-    bytes_per_point = f"{c.peaks[0] / contest.points:.0f}" if c.peaks[0] > 1.1 * floor_bytes() else ""
-    cells = [per_point, ratio(contest, c), speed, megabytes(c.peaks), bytes_per_point, elements(contest, c)]
+    cgal = contest.get(CGAL)
+    speed = said(contest.ratio(cgal, c)) if cgal and cgal is not c else ""
+    bytes_per_point = f"{c.peaks[0] / contest.points:.0f}" if c.median(lambda run: run.memory) else ""
+    cells = [per_point, times_ours(contest, c), speed, megabytes(c.peaks), bytes_per_point, elements(contest, c)]
     return [c.name, number(seconds), span, *cells]
 
 
@@ -74,7 +79,7 @@ def kernel4_row(contest, c):
 def pipe_row(contest, c):
     alone = c.said("seconds") if len(c.commands) == 1 else None
     cells = [number(c.wall), spread(c, lambda run: run.wall), number(c.median(lambda run: run.cpu)), number(alone)]
-    return [c.name, *cells, ratio(contest, c), megabytes(c.peaks), elements(contest, c)]
+    return [c.name, *cells, times_ours(contest, c), megabytes(c.peaks), elements(contest, c)]
 
 
 KERNEL_HEAD = ["program", "seconds", "range", "us/point", "times ours", "peak MB", "triangles"]
@@ -98,55 +103,13 @@ def contest(contest):
             absent[contestant.name] = contestant.failure
     rows += [[name, reason, *[""] * (len(head) - 2)] for name, reason in absent.items()]
     title = f"### {contest.name}\n\n"
-    return title + table(head, rows) + "".join(f"\n* {line}" for line in conclusions(contest)) + "\n"
+    return title + table(head, rows) + notes(contest, conclusions.lines(contest))
 
 
-def conclusions(contest):
-    """Ratios, in words."""
-    ours, peers = contest.get(OURS), contest.peers()
-    # Elevation models have two peers, and both are named.
-    for best in peers[: 1 if contest.dims else None] if ours else []:
-        times = contest.seconds(best) / contest.seconds(ours)
-        memory = 100 * sum(ours.peaks) / sum(best.peaks)
-        which = f"{best.name}, the fastest peer," if contest.dims else best.name
-        yield f"{times:.2f} times as fast as {which} with {memory:.1f} % of its peak memory"
-    cgal = contest.get(CGAL)
-    if contest.dims >= 3 and ours and cgal:
-        times, memory = contest.speed(ours, cgal), sum(ours.peaks) / contest.points
-        yield f"{times:.2f} times as fast as CGAL, with {memory:.0f} bytes per point"
-    parts = contest.get(IN_PARTS)
-    if parts:
-        yield from conclusions3(parts)
-    if contest.dims == 4 and ours:
-        yield from conclusions4(ours)
-    laz, decoder = contest.get(FROM_LAZ), contest.get(DECODER)
-    one, two = (contest.get(ALONE.format(threads)) for threads in (1, 2))
-    if one and two:
-        yield f"two threads are {one.wall / two.wall:.2f} times as fast as one (finalized stream from a file)"
-    if laz and decoder and two:
-        times = (laz.wall - two.wall) / decoder.wall
-        yield (
-            f"from LAZ, {laz.wall:.2f} s: the triangulation alone on two threads ({two.wall:.2f} s) "
-            f"and {times:.2f} times the decoding ({decoder.wall:.2f} s)"
-        )
-
-
-def conclusions3(ours):
-    """The columns of thesis table 3.3 for our kernel."""
-    words = ("order", "locate", "predicates", "update")
-    times = [f"{word} {ours.said(f'{word}_seconds'):.3f} s" for word in words]
-    yield f"ours, table 3.3: {', '.join(times)}, of {ours.said('seconds'):.3f} s with the clock"
-    created, tests = ours.said("created"), ours.said("in_sphere_tests")
-    yield f"ours, table 3.3: {created:,.0f} tetrahedra created, {tests:,.0f} in-sphere tests"
-
-
-def conclusions4(ours):
-    """The parts of our time, and the parts that peers leave out."""
-    order, insertion, merge = (ours.said(f"{part}_seconds") for part in ("order", "insertion", "merge"))
-    created, tests = ours.said("created"), ours.said("in_sphere_tests")
-    yield f"ours: order {order:.3f} s, insertion {insertion:.3f} s, merge {merge:.3f} s"
-    yield f"ours: {created:,.0f} simplices created, {tests:,.0f} in-sphere tests"
-    yield "CGAL, and Qhull with Qt, triangulate only: making cells, our merge, is no part of their time"
+def notes(contest, lines):
+    """Conclusions, and what their intervals are."""
+    note = conclusions.note([len(c.runs) for c in contest.contestants])
+    return "".join(f"\n* {line}" for line in lines) + f"\n\n{note}"
 
 
 def machine(facts):
@@ -172,11 +135,32 @@ def structures(contests, unread):
         rows.append([*start, *[number(times.get(name)) for name in names]])
     points = sum(contest.points for contest in contests)
     rows.append(["all", f"{points:,}", "", *[number(sums[name] or None) for name in names]])
-    speeds = [number(sums[CGAL] / sums[name], 2) if sums[name] else "" for name in names]
+    speeds = ["" if name == CGAL else said(ratio_of_sums(contests, CGAL, name)) for name in names]
     rows.append(["CGAL's times its", "", "", *speeds])
     left_out = "".join(f"\n* {name}: not read: {reason}" for name, reason in unread.items())
     head = ["structure", "atoms", "tetrahedra", *[f"{name}, s" for name in names]]
-    return "### structures\n\n" + table(head, rows) + left_out + "\n"
+    note = conclusions.note([len(c.runs) for contest in contests for c in contest.contestants])
+    return "### structures\n\n" + table(head, rows) + left_out + f"\n\n{note}"
+
+
+def ratio_of_sums(contests, over, under):
+    """The ratio of times of two programs for all structures that both read, round by round."""
+    both = [(upper, lower) for each in contests if (upper := each.get(over)) and (lower := each.get(under))]
+    sums = [sum_by_round([c.by_round(lambda run: run.said["seconds"]) for c in side]) for side in zip(*both)]
+    return ratios.ratio(*sums) if both else None
+
+
+def sums_as_json(contests):
+    """The ratios of these sums, round by round."""
+    pairs = {name: ratio_of_sums(contests, CGAL, name) for name in [OURS, *PEERS_OF_STRUCTURES] if name != CGAL}
+    found = [{"over": CGAL, "under": name, **ratio.as_json()} for name, ratio in pairs.items() if ratio]
+    return {"name": "sums over structures", "ratios": found}
+
+
+def sum_by_round(each):
+    """Sums of values of the rounds that all have."""
+    rounds = set.intersection(*(set(values) for values in each))
+    return {number: sum(values[number] for values in each) for number in rounds}
 
 
 def sweep(contest):
@@ -187,8 +171,5 @@ def sweep(contest):
         cells = [number(c.median(lambda run: run.cpu)), megabytes(c.peaks)] if c.runs else ["", ""]
         rows.append([c.name, number(c.wall) if c.runs else c.failure, span, *cells])
     head = ["program", "wall s", "range", "CPU s", "peak MB"]
-    text = f"### sweep over {contest.points} files\n\n" + table(head, rows)
-    one, two = (contest.get(TESS3.format(threads)) for threads in (1, 2))
-    if one and two:
-        text += f"\n* two threads are {one.wall / two.wall:.2f} times as fast as one\n"
-    return text + "\n"
+    title = f"### sweep over {contest.points} files\n\n"
+    return title + table(head, rows) + notes(contest, conclusions.of_threads(contest))

@@ -1,8 +1,8 @@
-//! Times the 3D kernel, on one thread.
+//! Times the 3D kernel, on one thread unless `--threads` names more.
 //!
-//! `kernel3_time POINTS` is our contestant in `scripts/bench`: one run with fresh buffers. With `--parts` it
-//! also times the parts of insertions, the columns of thesis table 3.3; this takes additional time. With
-//! `--weighted`, each point has a fourth number, its weight.
+//! `kernel3_time POINTS` is our contestant in `scripts/bench`: one run with fresh buffers; `--threads N` is the
+//! same on N threads. With `--parts` it also times the parts of insertions, the columns of thesis table 3.3;
+//! this takes additional time. With `--weighted`, each point has a fourth number, its weight.
 //! `kernel3_time POINTS --way WAY` inserts in `rounds`, in one `pass` along the curve or at `random`; or, if
 //! built with `--features experiments`, in floating point as the program of the thesis: `float`, or
 //! `float-random`.
@@ -25,21 +25,27 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     match &words[..] {
         [points, flag] if flag == "--weighted" => compare_weighted(read_tuples(&mut File::open(points)?)?),
-        [points] => compare(read_tuples(&mut File::open(points)?)?, false),
-        [points, flag] if flag == "--parts" => compare(read_tuples(&mut File::open(points)?)?, true),
+        [points] => run(Kernel::new(), read_tuples(&mut File::open(points)?)?),
+        [points, flag] if flag == "--parts" => in_parts(read_tuples(&mut File::open(points)?)?),
+        [points, flag, threads] if flag == "--threads" => {
+            let mut kernel = Kernel::new();
+            kernel.threads = threads.parse()?;
+            run(kernel, read_tuples(&mut File::open(points)?)?)
+        }
         [points, flag, way] if flag == "--way" => in_a_way(read_tuples(&mut File::open(points)?)?, way),
         [points, rounds] => tune(&read_tuples(&mut File::open(points)?)?, rounds.parse()?),
-        _ => Err("usage: kernel3_time POINTS [--parts|--weighted|--way WAY|ROUNDS]".into()),
+        _ => Err("usage: kernel3_time POINTS [--parts|--threads N|--weighted|--way WAY|ROUNDS]".into()),
     }
 }
 
-/// One run with fresh buffers. The kernel takes ownership of the points, so that memory holds them once.
-fn compare(points: Vec<[f64; 3]>, is_timed: bool) -> Result<(), Box<dyn Error>> {
+/// One run that times its parts.
+fn in_parts(points: Vec<[f64; 3]>) -> Result<(), Box<dyn Error>> {
     let mut kernel = Kernel::new();
-    kernel.is_timed = is_timed;
+    kernel.is_timed = true;
     run(kernel, points)
 }
 
+/// One run with fresh buffers. The kernel takes ownership of the points, so that memory holds them once.
 fn run(mut kernel: Kernel, points: Vec<[f64; 3]>) -> Result<(), Box<dyn Error>> {
     let count = points.len();
     let mut mesh = Tetrahedralization::default();
