@@ -20,7 +20,7 @@ pub use sequence::{Insertions, Sequence};
 
 use crate::predicates::{Extent, lexicographic};
 use cells::Cells;
-use radix::{Keyed, RadixSort};
+use radix::Keyed;
 
 /// Points of one cell are ordered along a finer curve if they are more than this, and lexicographically if
 /// not.
@@ -35,7 +35,7 @@ const FEW: usize = 12;
 /// Shape: 16 bytes per point of the greatest set so far, until it is dropped.
 #[derive(Debug, Default)]
 pub struct SpatialOrder {
-    sort: RadixSort,
+    memory: Vec<u64>,
 }
 
 impl SpatialOrder {
@@ -49,22 +49,35 @@ impl SpatialOrder {
         extent: &Extent<D>,
         curve: Curve,
     ) -> impl Iterator<Item = u32> + '_ {
-        let items = self.sort.items(points.len());
-        let mut key_bits = 0;
-        if lexicographic(extent.lower, extent.upper).is_lt() {
-            let cells = Cells::of(extent, points.len());
-            key_bits = D as u32 * cells.bits;
-            items.extend((0u32..).zip(points).map(|(index, point)| {
-                let key = curve.key(cells.of_point(*point), cells.bits);
-                Keyed::new(key, index)
-            }));
-        } else {
-            items.extend((0..points.len() as u32).map(|index| Keyed::new(0, index)));
+        let words = 2 * points.len();
+        if self.memory.len() < words {
+            self.memory = vec![0; words];
         }
-        let sorted = self.sort.sort(key_bits);
-        for_groups(sorted, |group| refine(points, curve, group));
-        sorted.iter().map(|item| item.index())
+        sort_in(&mut self.memory[..words], points, extent, curve)
     }
+}
+
+/// [`SpatialOrder::sort`] in memory of two words for each point, whose content is arbitrary.
+pub(crate) fn sort_in<'m, const D: usize>(
+    memory: &'m mut [u64],
+    points: &[[f64; D]],
+    extent: &Extent<D>,
+    curve: Curve,
+) -> impl Iterator<Item = u32> + 'm {
+    let (items, scratch) = bytemuck::cast_slice_mut(memory).split_at_mut(points.len());
+    let mut key_bits = 0;
+    if lexicographic(extent.lower, extent.upper).is_lt() {
+        let cells = Cells::of(extent, points.len());
+        key_bits = D as u32 * cells.bits;
+        for ((index, point), item) in (0u32..).zip(points).zip(&mut *items) {
+            *item = Keyed::new(curve.key(cells.of_point(*point), cells.bits), index);
+        }
+    } else {
+        (0u32..).zip(&mut *items).for_each(|(index, item)| *item = Keyed::new(0, index));
+    }
+    let sorted = radix::sort(items, scratch, key_bits);
+    for_groups(sorted, |group| refine(points, curve, group));
+    sorted.iter().map(|item| item.index())
 }
 
 /// Calls `work` for all runs of at least two items with equal keys.
