@@ -257,11 +257,11 @@ fn settle(
         return value > 0.0;
     }
     counts.perturbed += 1;
-    let is_above = |p: Point2, q: Point2| p[0] > q[0] || (p[0] == q[0] && p[1] > q[1]);
+    // None of this can be predicted: no branches.
+    let is_above = |p: Point2, q: Point2| (p[0] > q[0]) | ((p[0] == q[0]) & (p[1] > q[1]));
     let origin = [0.0; 2];
-    if is_above(a, b) {
-        is_above(a, w) && is_above(a, origin) && wb > 0.0
-    } else {
-        is_above(b, w) && is_above(b, origin) && aw > 0.0
-    }
+    let with_a = is_above(a, w) & is_above(a, origin) & (wb > 0.0);
+    let with_b = is_above(b, w) & is_above(b, origin) & (aw > 0.0);
+    let a_is_above = is_above(a, b);
+    (a_is_above & with_a) | (!a_is_above & with_b)
 }

@@ -35,6 +35,9 @@ use rest::Rest;
 /// Fewer points are triangulated by insertion.
 const POINTS_MIN: usize = 9;
 
+/// If more of the points are not surrounded, insertion of all is faster.
+const REST_SHARE_MAX: f64 = 0.4;
+
 /// The finder of grids with its buffers.
 #[derive(Debug, Default)]
 pub(super) struct Grid {
@@ -66,7 +69,7 @@ impl Grid {
         self.cover.find_cells(frame);
         arithmetic.run(self.cover.quadrangles(points), counts);
         self.rest.collect(&self.cover, points);
-        let is_worth_it = 2 * self.rest.points.len() <= points.len();
+        let is_worth_it = self.rest.points.len() as f64 <= REST_SHARE_MAX * points.len() as f64;
         if !is_worth_it {
             duplicates.clear();
         }
