@@ -151,6 +151,21 @@ class Installer:
         (tree,) = [path for path in place.iterdir() if path.is_dir() and path.name != "lists"]
         return tree, archive.name.split("_")[1].split(".orig")[0].split("+")[0]
 
+    def checkout(self, name, url, variable):
+        """The folder with the sources of a program that is in no registry of packages: that of the environment
+        `variable`, or a clone.
+        """
+        given = os.environ.get(variable)
+        place = pathlib.Path(given).resolve() if given else self.folder / f"checkout-{name}"
+        if given and not place.is_dir():
+            raise Missing(f"{variable}: {place} is no folder")
+        if not place.is_dir():
+            try:
+                call("git", "clone", "--quiet", "--depth", "1", url, place)
+            except Missing as reason:
+                raise Missing(f"{reason}; set {variable} to a checkout of {url}") from reason
+        return place
+
     def geogram_flags(self):
         """Flags that link a program to the library in Geogram's Python package, and its version."""
         place, version = self.package("geogram", "--only-binary", "geogram")

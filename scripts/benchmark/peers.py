@@ -4,6 +4,9 @@ import shutil
 
 from installer import UNFUSED, Installer, Missing, Peer, apt_install, call, debian, debian_version
 
+INTEGERS = "yes, of 32-bit integers; other coordinates are rounded to 26 bits"
+DELAUNAY32 = "https://github.com/morishuz/delaunay32"
+
 PEERS = [
     Peer("CGAL", "Debian", "yes", "cgal"),
     Peer("Triangle", "PyPI", "yes", "triangle"),
@@ -12,6 +15,8 @@ PEERS = [
     Peer("delaunator", "crates.io", "orientation only", "delaunator"),
     Peer("spade", "crates.io", "yes", "spade"),
     Peer("startin", "crates.io", "yes", "startin"),
+    Peer("delaunay32", "GitHub", INTEGERS, "delaunay32"),
+    Peer("delaunay32, 2 threads", "GitHub", INTEGERS, "delaunay32_2", threads=2),
     Peer("PDAL", "Debian", "no", "pdal", whole_only=True),
     Peer("Delabella", "none", "adaptive", "delabella"),
 ]
@@ -44,6 +49,15 @@ class Peers2(Installer):
     def geogram(self):
         flags, version = self.geogram_flags()
         return self.compile("geogram", *flags), version
+
+    def delaunay32(self, threads=1):
+        place = self.checkout("delaunay32", DELAUNAY32, "SPMESH_DELAUNAY32")
+        version = (place / "CMakeLists.txt").read_text().split("project(delaunay32 VERSION ")[1].split()[0]
+        flags = [f"-DTHREADS={threads}", f"-I{place / 'include'}", *sorted(place.glob("src/*.cpp")), "-lpthread"]
+        return self.compile("delaunay32", *flags, name=f"delaunay32-{threads}"), version
+
+    def delaunay32_2(self):
+        return self.delaunay32(threads=2)
 
     def pdal(self):
         if not shutil.which("pdal"):

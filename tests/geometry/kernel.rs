@@ -10,7 +10,7 @@ fn triangles(mesh: &Triangles) -> impl Iterator<Item = [u32; 3]> + '_ {
 }
 
 /// Checks every promise of [`Triangles`] except the Delaunay property; returns the set of triangles.
-fn checked(points: &[[f64; 2]], mesh: &Triangles) -> Vec<[u32; 3]> {
+pub(super) fn checked(points: &[[f64; 2]], mesh: &Triangles) -> Vec<[u32; 3]> {
     let dropped: HashSet<u32> = mesh.duplicates.iter().map(|pair| pair[0]).collect();
     let vertices = points.len() - dropped.len();
     for &[duplicate, vertex] in &mesh.duplicates {

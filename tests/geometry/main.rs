@@ -7,6 +7,7 @@ mod constrained;
 #[cfg(feature = "experiments")]
 mod delaunay3_float;
 mod diagram4;
+mod grids;
 mod kernel;
 mod kernel3;
 mod kernel_predicates;

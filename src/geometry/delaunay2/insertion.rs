@@ -164,14 +164,9 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
     /// product of the ends of the opposite side.
     #[inline(always)]
     fn find_conflict(&mut self, start: Start, at: Point2) -> (HalfEdge, [TranslatedVertex; 3], [f64; 3]) {
-        let look = |mesh: &Mesh, t| {
-            let corners = mesh.vertices(t).map(|v| TranslatedVertex::new(mesh, v, at));
-            let side = |i: usize, j: usize| cross(corners[i].at, corners[j].at);
-            (t, corners, [side(1, 2), side(2, 0), side(0, 1)])
-        };
         if P::NUMBERS != Numbers::FiniteFloats {
             let t = walk(&self.mesh, start, at);
-            let (t, corners, crosses) = look(&self.mesh, t);
+            let (t, corners, crosses) = look(&self.mesh, t, at);
             let [k, l, m] = corners.map(|corner| corner.lift);
             let value = k * crosses[0] + l * crosses[1] + m * crosses[2];
             if value > ERROR * (k * (l + m) + l * m) {
@@ -179,8 +174,17 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
             }
         }
         let t = walk_exactly(&self.mesh, start.triangle, at, self.predicates);
-        look(&self.mesh, t)
+        look(&self.mesh, t, at)
     }
+}
+
+/// A triangle, its corners relative to `at`, and for each corner the cross product of the ends of the opposite
+/// side.
+#[inline(always)]
+fn look(mesh: &Mesh, t: HalfEdge, at: Point2) -> (HalfEdge, [TranslatedVertex; 3], [f64; 3]) {
+    let corners = mesh.vertices(t).map(|v| TranslatedVertex::new(mesh, v, at));
+    let side = |i: usize, j: usize| cross(corners[i].at, corners[j].at);
+    (t, corners, [side(1, 2), side(2, 0), side(0, 1)])
 }
 
 /// The triangles around the new point, as they are written counterclockwise.
@@ -213,9 +217,12 @@ impl Star {
         mesh.set_neighbour(edge.neighbour, slot);
         mesh.set_neighbour(self.last + 1, slot + 2);
         let end_is_left = cross(edge.end.at, self.then) >= 0.0;
-        if self.is_left_of_then && !end_is_left {
-            self.start = Start { triangle: slot, is_seen: true };
-        }
+        // Which of the triangles it is cannot be predicted: no branch.
+        let is_towards = self.is_left_of_then & !end_is_left;
+        self.start = Start {
+            triangle: std::hint::select_unpredictable(is_towards, slot, self.start.triangle),
+            is_seen: self.start.is_seen | is_towards,
+        };
         self.is_left_of_then = end_is_left;
         self.last = slot;
         self.len += 1;
@@ -250,11 +257,11 @@ fn settle(
         return value > 0.0;
     }
     counts.perturbed += 1;
-    let is_above = |p: Point2, q: Point2| p[0] > q[0] || (p[0] == q[0] && p[1] > q[1]);
+    // None of this can be predicted: no branches.
+    let is_above = |p: Point2, q: Point2| (p[0] > q[0]) | ((p[0] == q[0]) & (p[1] > q[1]));
     let origin = [0.0; 2];
-    if is_above(a, b) {
-        is_above(a, w) && is_above(a, origin) && wb > 0.0
-    } else {
-        is_above(b, w) && is_above(b, origin) && aw > 0.0
-    }
+    let with_a = is_above(a, w) & is_above(a, origin) & (wb > 0.0);
+    let with_b = is_above(b, w) & is_above(b, origin) & (aw > 0.0);
+    let a_is_above = is_above(a, b);
+    (a_is_above & with_a) | (!a_is_above & with_b)
 }

@@ -20,7 +20,7 @@ pub use sequence::{Insertions, Sequence};
 
 use crate::predicates::{Extent, lexicographic};
 use cells::Cells;
-use radix::{Keyed, RadixSort};
+use radix::Keyed;
 use spmesh_core::parallel;
 use std::num::NonZeroUsize;
 
@@ -37,7 +37,7 @@ const FEW: usize = 12;
 /// Shape: 16 bytes per point of the greatest set so far, until it is dropped.
 #[derive(Debug, Default)]
 pub struct SpatialOrder {
-    sort: RadixSort,
+    memory: Vec<u64>,
 }
 
 impl SpatialOrder {
@@ -62,39 +62,50 @@ impl SpatialOrder {
         extent: &Extent<D>,
         curve: Curve,
     ) -> Places<'_> {
-        let items = self.sort.items(points.len());
-        let mut key_bits = 0;
-        if lexicographic(extent.lower, extent.upper).is_lt() {
-            let cells = Cells::of(extent, points.len());
-            key_bits = D as u32 * cells.bits;
-            let key = |point: [f64; D]| curve.key(cells.of_point(point), cells.bits);
-            fill_keys(threads, items, points, key);
-        } else {
-            items.extend((0..points.len() as u32).map(|index| Keyed::new(0, index)));
+        let words = 2 * points.len();
+        if self.memory.len() < words {
+            self.memory = vec![0; words];
         }
-        let sorted = self.sort.sort(key_bits);
-        for_groups(sorted, |group| refine(points, curve, group));
-        Places(sorted.iter())
+        sort_in(&mut self.memory[..words], threads, points, extent, curve)
     }
 }
 
-/// Adds an item for each point, with its key.
+/// [`SpatialOrder::sort_on`] in memory of two words for each point, whose content is arbitrary.
+pub(crate) fn sort_in<'m, const D: usize>(
+    memory: &'m mut [u64],
+    threads: NonZeroUsize,
+    points: &[[f64; D]],
+    extent: &Extent<D>,
+    curve: Curve,
+) -> Places<'m> {
+    let (items, scratch) = bytemuck::cast_slice_mut(memory).split_at_mut(points.len());
+    let mut key_bits = 0;
+    if lexicographic(extent.lower, extent.upper).is_lt() {
+        let cells = Cells::of(extent, points.len());
+        key_bits = D as u32 * cells.bits;
+        let key = |point: [f64; D]| curve.key(cells.of_point(point), cells.bits);
+        fill_keys(threads, items, points, key);
+    } else {
+        (0u32..).zip(&mut *items).for_each(|(index, item)| *item = Keyed::new(0, index));
+    }
+    let sorted = radix::sort(items, scratch, key_bits);
+    for_groups(sorted, |group| refine(points, curve, group));
+    Places(sorted.iter())
+}
+
+/// Makes the item of each point, with its key.
 fn fill_keys<P: Copy + Sync>(
     threads: NonZeroUsize,
-    items: &mut Vec<Keyed>,
+    items: &mut [Keyed],
     points: &[P],
     key: impl Fn(P) -> u32 + Sync,
 ) {
-    if threads == NonZeroUsize::MIN {
-        items.extend((0u32..).zip(points).map(|(index, &point)| Keyed::new(key(point), index)));
-        return;
-    }
-    items.resize(points.len(), Keyed::default());
-    let share = points.len().div_ceil(threads.get());
+    let share = points.len().div_ceil(threads.get()).max(1);
     let shares = items.chunks_mut(share).zip(points.chunks(share)).enumerate();
     parallel::for_each(threads, shares, |(number, (items, points))| {
-        for ((index, item), &point) in (number * share..).zip(items).zip(points) {
-            *item = Keyed::new(key(point), index as u32);
+        let first = (number * share) as u32;
+        for ((index, item), &point) in (first..).zip(items).zip(points) {
+            *item = Keyed::new(key(point), index);
         }
     });
 }

@@ -1,12 +1,14 @@
 //! Radix sort of keys with an index, packed in one word.
 
 use super::counting::sizes_to_starts;
+use bytemuck::{Pod, Zeroable};
 
 const DIGIT_BITS_MAX: u32 = 11;
 const DIGITS_MAX: u32 = u32::BITS.div_ceil(DIGIT_BITS_MAX);
 
 /// A key and the index of what it belongs to: the key is in the upper half.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Pod, Zeroable)]
+#[repr(transparent)]
 pub(super) struct Keyed(u64);
 
 impl Keyed {
@@ -26,48 +28,29 @@ impl Keyed {
     }
 }
 
-/// Reusable buffers of the sort.
-#[derive(Debug, Default)]
-pub(super) struct RadixSort {
-    items: Vec<Keyed>,
-    scratch: Vec<Keyed>,
-}
-
-impl RadixSort {
-    /// The items to be sorted, to be filled before [`RadixSort::sort`]: empty, with room for `count`.
-    pub(super) fn items(&mut self, count: usize) -> &mut Vec<Keyed> {
-        self.items.clear();
-        self.items.reserve_exact(count);
-        &mut self.items
-    }
-
-    /// Sorts the items by keys of `key_bits` bits, keeping the order of those with equal keys.
-    pub(super) fn sort(&mut self, key_bits: u32) -> &mut [Keyed] {
-        let digits = key_bits.div_ceil(DIGIT_BITS_MAX).max(1);
-        let width = key_bits.div_ceil(digits);
-        let digit = |item: Keyed, number: u32| (item.key() >> (number * width)) as usize & ((1 << width) - 1);
-        let mut places = [[0u32; 1 << DIGIT_BITS_MAX]; DIGITS_MAX as usize];
-        for &item in &self.items {
-            for (number, places) in (0..digits).zip(&mut places) {
-                places[digit(item, number)] += 1;
-            }
-        }
-        if self.scratch.len() < self.items.len() {
-            self.scratch.clear();
-            self.scratch.reserve_exact(self.items.len());
-        }
-        self.scratch.resize(self.items.len(), Keyed::default());
+/// Sorts items by keys of `key_bits` bits, keeping the order of those with equal keys; they end up in one of
+/// the two slices, which are equally long.
+pub(super) fn sort<'m>(items: &'m mut [Keyed], scratch: &'m mut [Keyed], key_bits: u32) -> &'m mut [Keyed] {
+    let digits = key_bits.div_ceil(DIGIT_BITS_MAX).max(1);
+    let width = key_bits.div_ceil(digits);
+    let digit = |item: Keyed, number: u32| (item.key() >> (number * width)) as usize & ((1 << width) - 1);
+    let mut places = [[0u32; 1 << DIGIT_BITS_MAX]; DIGITS_MAX as usize];
+    for &item in &*items {
         for (number, places) in (0..digits).zip(&mut places) {
-            sizes_to_starts(&mut places[..1 << width]);
-            for &item in &self.items {
-                let place = &mut places[digit(item, number)];
-                self.scratch[*place as usize] = item;
-                *place += 1;
-            }
-            std::mem::swap(&mut self.items, &mut self.scratch);
+            places[digit(item, number)] += 1;
         }
-        &mut self.items
     }
+    let (mut from, mut to) = (items, scratch);
+    for (number, places) in (0..digits).zip(&mut places) {
+        sizes_to_starts(&mut places[..1 << width]);
+        for &item in &*from {
+            let place = &mut places[digit(item, number)];
+            to[*place as usize] = item;
+            *place += 1;
+        }
+        std::mem::swap(&mut from, &mut to);
+    }
+    from
 }
 
 #[cfg(test)]
@@ -79,15 +62,16 @@ mod tests {
         let mut state = 1u64;
         for bits in [0, 1, 5, 11, 12, 22, 23, 31, 32] {
             for count in [0, 1, 2, 3, 1000, 5000] {
-                let mut sort = RadixSort::default();
-                sort.items(count as usize).extend((0..count).map(|index| {
+                let random = (0..count).map(|index| {
                     state =
                         state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                     Keyed::new((state >> 32).checked_shr(32 - bits).unwrap_or(0) as u32, index)
-                }));
-                let mut expected = sort.items.clone();
+                });
+                let mut items: Vec<Keyed> = random.collect();
+                let mut expected = items.clone();
                 expected.sort_unstable();
-                assert_eq!(sort.sort(bits), expected, "{bits} bits, {count} items");
+                let mut scratch = items.clone();
+                assert_eq!(sort(&mut items, &mut scratch, bits), expected, "{bits} bits, {count} items");
             }
         }
     }

@@ -1,4 +1,6 @@
-//! Rounds of insertion, each of which covers the whole set of points.
+//! Rounds of insertion, each of which covers the whole set of points, or a window of it.
+
+use std::ops::Range;
 
 /// The first round has a number of each block of `1 << FIRST`.
 const FIRST: u32 = 9;
@@ -6,6 +8,11 @@ const FIRST: u32 = 9;
 /// Each round divides the blocks of the one before into `1 << FACTOR` parts, down to single numbers.
 const FACTOR: u32 = 3;
 const _: () = assert!(FIRST.is_multiple_of(FACTOR));
+
+/// Numbers of a window ([`Rounds::in_windows`]): the triangles around as many vertices fit into a cache of the
+/// second level.
+const WINDOW: usize = 1 << 13;
+const _: () = assert!(WINDOW.is_multiple_of(1 << FIRST));
 
 /// No block.
 const NONE: usize = usize::MAX;
@@ -28,6 +35,9 @@ pub struct Rounds {
     /// Of the blocks around `block` that are one of the round before, the one that had its number.
     had: usize,
     count: usize,
+    /// The numbers of the rounds after the first, in part: the next window starts where this one ends.
+    window: Range<usize>,
+    window_len: usize,
     /// How many numbers are still to come.
     left: usize,
 }
@@ -38,7 +48,39 @@ impl Rounds {
     /// Domain: `count` at most 2^32.
     #[must_use]
     pub fn new(count: usize) -> Rounds {
-        Rounds { block: 0, end: count.div_ceil(1 << FIRST), shift: FIRST, had: NONE, count, left: count }
+        Rounds {
+            block: 0,
+            end: count.div_ceil(1 << FIRST),
+            shift: FIRST,
+            had: NONE,
+            count,
+            window: 0..count,
+            window_len: count,
+            left: count,
+        }
+    }
+
+    /// The same rounds, but after the first, each window of 8192 numbers has all its rounds before the next
+    /// window. So these rounds find what they need in a cache.
+    ///
+    /// Domain: `count` at most 2^32.
+    #[must_use]
+    pub fn in_windows(count: usize) -> Rounds {
+        Rounds { window: 0..count.min(WINDOW), window_len: WINDOW, ..Rounds::new(count) }
+    }
+
+    /// Begins the next round, of the whole set or of a window.
+    fn begin(&mut self) {
+        self.shift = match self.shift {
+            0 => {
+                let start = self.window.end;
+                self.window = start..self.count.min(start + self.window_len);
+                FIRST - FACTOR
+            }
+            shift => shift - FACTOR,
+        };
+        self.block = self.window.start >> self.shift;
+        self.end = self.window.end.div_ceil(1 << self.shift);
     }
 }
 
@@ -50,9 +92,7 @@ impl Iterator for Rounds {
         self.left = self.left.checked_sub(1)?;
         loop {
             if self.block == self.end {
-                self.shift -= FACTOR;
-                self.block = 0;
-                self.end = self.count.div_ceil(1 << self.shift);
+                self.begin();
             }
             let block = self.block;
             self.block += 1;
@@ -101,13 +141,27 @@ mod tests {
 
     #[test]
     fn every_number_comes_once() {
-        for count in [0u32, 1, 2, 8, 9, 63, 64, 65, 511, 512, 513, 5000] {
-            let rounds = Rounds::new(count as usize);
-            assert_eq!(rounds.len(), count as usize);
-            let mut numbers: Vec<u32> = rounds.collect();
-            numbers.sort_unstable();
-            assert!(numbers.into_iter().eq(0..count), "{count}");
+        for count in [0u32, 1, 2, 8, 9, 63, 64, 65, 511, 512, 513, 5000, 8192, 8193, 20_000] {
+            for rounds in [Rounds::new(count as usize), Rounds::in_windows(count as usize)] {
+                assert_eq!(rounds.len(), count as usize);
+                let mut numbers: Vec<u32> = rounds.collect();
+                numbers.sort_unstable();
+                assert!(numbers.into_iter().eq(0..count), "{count}");
+            }
         }
+    }
+
+    #[test]
+    fn windows_have_the_rounds_of_the_whole_set_one_after_the_other() {
+        let count = 2 * WINDOW + 3000;
+        let whole: Vec<u32> = Rounds::new(count).collect();
+        let first = count.div_ceil(1 << FIRST);
+        let window = |number: &u32| *number as usize / WINDOW;
+        let mut expected = whole[..first].to_vec();
+        for number in 0..3 {
+            expected.extend(whole[first..].iter().filter(|&n| window(n) == number));
+        }
+        assert_eq!(Rounds::in_windows(count).collect::<Vec<_>>(), expected);
     }
 
     #[test]
