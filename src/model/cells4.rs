@@ -45,6 +45,7 @@ impl Cells4 {
 
     /// Number of cells.
     #[must_use]
+    #[inline]
     pub fn len(&self) -> usize {
         self.starts.len()
     }
@@ -59,6 +60,7 @@ impl Cells4 {
     ///
     /// # Panics
     /// If the list already has 2^32 words (17 GB) or more, or the cell has 2^31 vertices or more.
+    #[inline]
     pub fn push(&mut self, cell: Cell4) {
         let Cell4 { is_infinite, vertices, neighbours } = cell;
         let count = |numbers: &[u32]| u32::try_from(numbers.len()).expect("numbers of 32 bits");
@@ -66,12 +68,14 @@ impl Cells4 {
         self.starts.push(u32::try_from(self.words.len()).expect("at most 2^32 words of cells"));
         self.words.push(count(vertices) | if is_infinite { INFINITE } else { 0 });
         self.words.push(count(neighbours));
-        self.words.extend_from_slice(vertices);
-        self.words.extend_from_slice(neighbours);
+        // Lists are short: calls of `memcpy` would take longer.
+        self.words.extend(vertices.iter().map(|&vertex| vertex));
+        self.words.extend(neighbours.iter().map(|&neighbour| neighbour));
     }
 
     /// The cell of this number.
     #[must_use]
+    #[inline]
     pub fn get(&self, number: usize) -> Cell4<'_> {
         let [vertices, neighbours, rest @ ..] = &self.words[self.starts[number] as usize..] else {
             unreachable!("two words before each cell")

@@ -62,7 +62,7 @@ pub(in crate::diagram4) type Sphere<C> = [C; 6];
 const ROUNDING: f64 = 1.0 / (1u64 << 38) as f64;
 
 /// A point as the vector (x, |x|^2, 1) of in-sphere tests.
-pub(in crate::diagram4) type Lifted = [f64; 6];
+pub(super) type Lifted = [f64; 6];
 
 pub(in crate::diagram4) struct Complex<'a, C> {
     pub(in crate::diagram4) sites: &'a Sites,
@@ -95,7 +95,7 @@ impl<'a, C: Coefficient> Complex<'a, C> {
     }
 
     #[inline(always)]
-    pub(in crate::diagram4) fn lifted(&self, vertex: u32) -> Lifted {
+    pub(super) fn lifted(&self, vertex: u32) -> Lifted {
         let p = self.near[vertex as usize];
         [p[0], p[1], p[2], p[3], lift(&p), 1.0]
     }
@@ -131,7 +131,7 @@ impl<'a, C: Coefficient> Complex<'a, C> {
     }
 
     #[inline(always)]
-    pub(in crate::diagram4) fn value(&self, simplex: usize, p: &Lifted) -> f64 {
+    pub(super) fn value(&self, simplex: usize, p: &Lifted) -> f64 {
         value(&self.spheres[simplex], p)
     }
 
@@ -146,7 +146,7 @@ impl<'a, C: Coefficient> Complex<'a, C> {
     /// integers are exact: zero means on the sphere.
     #[inline(always)]
     pub(super) fn is_clear(&self, value: f64, m: f64) -> bool {
-        (value.abs() > self.rounding) | ((self.rounding == 0.0) & (m != 0.0))
+        (value.abs() > self.rounding) | (self.is_exact() & (m != 0.0))
     }
 
     /// Decides a conflict exactly. For an infinite simplex, the side of its hyperplane decides; for a point
@@ -170,15 +170,37 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         simplex.is_infinite().then(|| simplex_of(simplex.neighbours[simplex.faraway_side()]))
     }
 
+    /// Whether values are free of rounding.
+    #[inline(always)]
+    fn is_exact(&self) -> bool {
+        self.rounding == 0.0
+    }
+
+    /// Whether the neighbour across a facet is on the same sphere, or in the same hyperplane, because the
+    /// opposite vertex is on that of the neighbour. The faraway point, at NaN, is not.
+    #[inline(always)]
+    pub(in crate::diagram4) fn is_cospherical(&self, simplex: usize, side: usize) -> bool {
+        let Simplex { vertices, neighbours } = &self.simplices[simplex];
+        let (vertex, other) = (vertices[side], simplex_of(neighbours[side]));
+        self.value(other, &self.lifted(vertex)).abs() <= self.rounding
+            && (self.is_exact() || self.exact_sign(other, vertex) == Ordering::Equal)
+    }
+
+    /// Prefetches the spheres around a simplex.
+    #[inline(always)]
+    pub(in crate::diagram4) fn fetch_spheres_around(&self, simplex: usize) {
+        for neighbour in &self.simplices[simplex].neighbours {
+            prefetch(&self.spheres, simplex_of(*neighbour));
+        }
+    }
+
     /// The sign of the value of a vertex.
     #[inline(always)]
-    pub(in crate::diagram4) fn sign(&self, simplex: usize, q: u32) -> Ordering {
+    fn sign(&self, simplex: usize, q: u32) -> Ordering {
         let value = self.value(simplex, &self.lifted(q));
-        if value > self.rounding {
-            Ordering::Greater
-        } else if value < -self.rounding {
-            Ordering::Less
-        } else if self.rounding == 0.0 {
+        if value.abs() > self.rounding {
+            if value > 0.0 { Ordering::Greater } else { Ordering::Less }
+        } else if self.is_exact() {
             Ordering::Equal
         } else {
             self.exact_sign(simplex, q)
@@ -249,7 +271,7 @@ impl<'a, C: Coefficient> Complex<'a, C> {
 
 /// The product of a sphere and a point.
 #[inline(always)]
-pub(in crate::diagram4) fn value<C: Coefficient>(sphere: &Sphere<C>, p: &Lifted) -> f64 {
+pub(super) fn value<C: Coefficient>(sphere: &Sphere<C>, p: &Lifted) -> f64 {
     let [a, b, c, d, m, s] = *sphere;
     let product = |x: C, i: usize| x.value() * p[i];
     let (even, odd) = (product(a, 0) + product(c, 2), product(b, 1) + product(d, 3));

@@ -26,7 +26,9 @@ mod locate;
 mod order;
 
 pub(super) use coefficient::Coefficient;
-pub(super) use complex::{Complex, FACETS, Facet, INFINITE, Simplex, facet, facet_of, simplex_of, value};
+pub(super) use complex::{
+    Complex, FACETS, Facet, Simplex, facet, facet_of, simplex_of, without,
+};
 
 pub(super) use order::insertions;
 
