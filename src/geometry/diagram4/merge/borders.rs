@@ -2,12 +2,14 @@
 
 use super::AHEAD;
 use crate::diagram4::simplices::{Coefficient, Complex, FACETS};
+use spmesh_core::prefetch::prefetch;
 
 /// Bits for each simplex: those of facets across which the neighbour is on the same sphere, or in the same
-/// hyperplane, and one of dead simplices.
+/// hyperplane, and those of dead and of visited simplices.
 pub(super) struct Borders(Vec<u8>);
 
 const DEAD: u8 = 1 << FACETS;
+const VISITED: u8 = DEAD << 1;
 
 impl Borders {
     /// Tests all facets. The search for cells, which jumps about in memory, then needs no spheres; this pass
@@ -24,14 +26,27 @@ impl Borders {
         Borders((0..count).map(bits).collect())
     }
 
+    /// Whether a simplex is alive and was not visited before.
     #[inline(always)]
-    pub(super) fn is_dead(&self, simplex: usize) -> bool {
-        self.0[simplex] == DEAD
+    pub(super) fn is_new(&self, simplex: usize) -> bool {
+        self.0[simplex] < DEAD
+    }
+
+    /// Visits a simplex if it `joins`.
+    #[inline(always)]
+    pub(super) fn visit(&mut self, simplex: usize, joins: bool) {
+        self.0[simplex] |= if joins { VISITED } else { 0 };
+    }
+
+    /// Prefetches the bits of a simplex.
+    #[inline(always)]
+    pub(super) fn fetch(&self, simplex: usize) {
+        prefetch(&self.0, simplex);
     }
 
     /// The bits of the facets of a simplex that are inside of a cell.
     #[inline(always)]
     pub(super) fn inner(&self, simplex: usize) -> u8 {
-        self.0[simplex] & !DEAD
+        self.0[simplex] & (DEAD - 1)
     }
 }

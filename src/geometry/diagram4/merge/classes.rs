@@ -8,9 +8,6 @@ use super::ranks::sort_distinct;
 use crate::diagram4::simplices::{FACETS, Facet, Simplex, facet, facet_of, simplex_of, without};
 use spmesh_core::prefetch::prefetch;
 
-/// The class of a simplex that has none yet.
-const NO_CLASS: u32 = u32::MAX;
-
 /// The simplices of each cell: a class.
 pub(super) struct Classes {
     /// The class of each simplex.
@@ -28,14 +25,12 @@ pub(super) struct Classes {
 
 impl Classes {
     /// Finds the classes of simplices; `sites` has the site of each vertex.
-    pub(super) fn new(simplices: &[Simplex], sites: &[u32], borders: &Borders) -> Classes {
+    pub(super) fn new(simplices: &[Simplex], sites: &[u32], borders: Borders) -> Classes {
         let count = simplices.len();
-        let mut of = vec![NO_CLASS; count];
-        of[0] = 0;
         let mut search = Search {
             simplices,
             borders,
-            of,
+            of: vec![0; count],
             // One place more, because a neighbour is written before it is known whether it joins.
             members: vec![0; count + 1],
             end: 0,
@@ -47,10 +42,7 @@ impl Classes {
         for is_infinite in [false, true] {
             for seed in 0..count {
                 search.fetch_around((seed + AHEAD).min(count - 1));
-                if search.of[seed] != NO_CLASS
-                    || borders.is_dead(seed)
-                    || simplices[seed].is_infinite() != is_infinite
-                {
+                if !search.borders.is_new(seed) || simplices[seed].is_infinite() != is_infinite {
                     continue;
                 }
                 let class = starts.len() as u32 - 1;
@@ -113,7 +105,7 @@ impl Classes {
 /// The search for classes.
 struct Search<'a> {
     simplices: &'a [Simplex],
-    borders: &'a Borders,
+    borders: Borders,
     of: Vec<u32>,
     /// Those of all classes so far, and the class that is being made.
     members: Vec<Facet>,
@@ -141,7 +133,7 @@ impl Search<'_> {
         for (side, &neighbour) in self.simplices[simplex].neighbours.iter().enumerate() {
             let other = if inner >> side & 1 == 0 { 0 } else { simplex_of(neighbour) };
             prefetch(self.simplices, other);
-            prefetch(&self.of, other);
+            self.borders.fetch(other);
         }
     }
 
@@ -150,6 +142,7 @@ impl Search<'_> {
     #[inline(always)]
     fn flood(&mut self, seed: usize, class: u32, is_infinite: bool, vertices: &mut Lists) {
         let start = self.end;
+        self.borders.visit(seed, true);
         self.of[seed] = class;
         self.members[start] = facet(seed, 0);
         self.end += 1;
@@ -164,16 +157,17 @@ impl Search<'_> {
         while next < self.end {
             let at = simplex_of(self.members[next]);
             next += 1;
+            self.of[at] = class;
             let (inner, neighbours) = (self.borders.inner(at), self.simplices[at].neighbours);
             for (side, neighbour) in neighbours.into_iter().enumerate() {
                 // Whether a neighbour joins is unpredictable: without branches, and with simplex 0, which never
                 // joins, in place of those across a border.
                 let other = if inner >> side & 1 == 0 { 0 } else { simplex_of(neighbour) };
-                let mut joins = self.of[other] == NO_CLASS;
+                let mut joins = self.borders.is_new(other);
                 if is_infinite {
                     joins = joins && inside(self, other) == inside(self, seed);
                 }
-                self.of[other] = if joins { class } else { self.of[other] };
+                self.borders.visit(other, joins);
                 self.members[self.end] = neighbour;
                 self.end += usize::from(joins);
                 prefetch(self.simplices, other);

@@ -24,8 +24,8 @@ pub(super) fn cells<C: Coefficient>(complex: Complex<C>, stats: &mut Stats) -> C
     let Complex { simplices, order: sites, spheres, .. } = complex;
     // Free the spheres, a third of the memory or more.
     drop(spheres);
-    let classes = Classes::new(&simplices, &sites, &borders);
-    drop((borders, sites));
+    let classes = Classes::new(&simplices, &sites, borders);
+    drop(sites);
     (stats.simplices, stats.infinite_simplices) = classes.simplices();
     let neighbours = classes.neighbours(&simplices);
     drop(simplices);
