@@ -2,11 +2,11 @@
 
 use super::AHEAD;
 use super::borders::Borders;
-use super::lists::Lists;
 use super::marks::Marks;
 use super::ranks::sort_distinct;
 use crate::diagram4::simplices::{FACETS, Facet, Simplex, facet, facet_of, simplex_of, without};
 use spmesh_core::prefetch::prefetch;
+use spmesh_model::cells4::Lists4;
 
 /// The simplices of each cell: a class.
 pub(super) struct Classes {
@@ -18,7 +18,7 @@ pub(super) struct Classes {
     /// Start of each class among the members, and the end of the last.
     starts: Vec<u32>,
     /// The sites of the vertices of each class, in increasing order.
-    pub(super) vertices: Lists,
+    vertices: Lists4,
     /// Number of classes of finite simplices.
     pub(super) finite: usize,
 }
@@ -37,7 +37,7 @@ impl Classes {
             listed: Marks::new(sites.len()),
         };
         let mut starts = vec![0];
-        let mut vertices = Lists::with_capacity(count / 2, FACETS * count);
+        let mut vertices = Lists4::with_capacity(count / 2, FACETS * count);
         let mut finite = 0;
         for is_infinite in [false, true] {
             for seed in 0..count {
@@ -68,10 +68,10 @@ impl Classes {
         (finite, self.members.len() as u64 - finite)
     }
 
-    /// The classes around each class, in any order.
-    pub(super) fn neighbours(&self, simplices: &[Simplex]) -> Lists {
+    /// The vertices of each class, and the classes around each, in any order.
+    pub(super) fn lists(self, simplices: &[Simplex]) -> (Lists4, Lists4) {
         let count = self.vertices.len();
-        let mut lists = Lists::with_capacity(count, FACETS * self.members.len());
+        let mut lists = Lists4::with_capacity(count, FACETS * self.members.len());
         let mut met = Marks::new(count);
         let around = |place: usize| {
             if let Some(&later) = self.members.get(place + 2 * AHEAD) {
@@ -98,7 +98,7 @@ impl Classes {
             }
             lists.end();
         }
-        lists
+        (self.vertices, lists)
     }
 }
 
@@ -117,7 +117,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// Lists the finite vertices of the first simplex of a class.
     #[inline(always)]
-    fn list_first(&mut self, vertices: &mut Lists, seed: usize, is_infinite: bool) {
+    fn list_first(&mut self, vertices: &mut Lists4, seed: usize, is_infinite: bool) {
         let simplex = &self.simplices[seed];
         if is_infinite {
             vertices.extend(without(simplex.vertices, simplex.faraway_side()));
@@ -140,7 +140,7 @@ impl Search<'_> {
     /// Makes a class of all simplices around a seed on its sphere, or in its hyperplane and beyond the same
     /// finite cell. Lists their vertices after those of the seed.
     #[inline(always)]
-    fn flood(&mut self, seed: usize, class: u32, is_infinite: bool, vertices: &mut Lists) {
+    fn flood(&mut self, seed: usize, class: u32, is_infinite: bool, vertices: &mut Lists4) {
         let start = self.end;
         self.borders.visit(seed, true);
         self.of[seed] = class;

@@ -2,7 +2,6 @@
 
 mod borders;
 mod classes;
-mod lists;
 mod marks;
 mod order;
 mod ranks;
@@ -11,7 +10,7 @@ use super::Stats;
 use super::simplices::{Coefficient, Complex};
 use borders::Borders;
 use classes::Classes;
-use spmesh_model::cells4::{Cell4, Cells4};
+use spmesh_model::cells4::{Cells4, Lists4};
 
 /// The cells of the diagram, in canonical order.
 ///
@@ -21,35 +20,31 @@ use spmesh_model::cells4::{Cell4, Cells4};
 /// facets of simplices of one cell that are in one hyperplane (thesis 4.3.6).
 pub(super) fn cells<C: Coefficient>(complex: Complex<C>, stats: &mut Stats) -> Cells4 {
     let borders = Borders::of(&complex);
-    let Complex { simplices, order: sites, spheres, .. } = complex;
+    let Complex { simplices, order: sites, spheres, near, .. } = complex;
     // Free the spheres, a third of the memory or more.
-    drop(spheres);
+    drop((spheres, near));
     let classes = Classes::new(&simplices, &sites, borders);
     drop(sites);
     (stats.simplices, stats.infinite_simplices) = classes.simplices();
-    let neighbours = classes.neighbours(&simplices);
+    let finite = classes.finite;
+    let (vertices, mut neighbours) = classes.lists(&simplices);
     drop(simplices);
-    let Classes { vertices, finite, .. } = classes;
     let order = order::canonical(&vertices, finite);
+    renumber(&mut neighbours, &order);
+    Cells4::from_lists(vertices, neighbours, &order, finite)
+}
+
+/// Replaces classes by their places in an order, and sorts each list.
+fn renumber(neighbours: &mut Lists4, order: &[u32]) {
     let mut places = vec![0; order.len()];
-    for (place, &class) in (0u32..).zip(&order) {
+    for (place, &class) in (0u32..).zip(order) {
         places[class as usize] = place;
     }
-    let mut cells = Cells4::with_capacity(order.len(), vertices.numbers() + neighbours.numbers());
-    let mut renumbered = Vec::new();
-    for (number, &class) in order.iter().enumerate() {
-        if let Some(&later) = order.get(number + AHEAD) {
-            vertices.fetch(later as usize);
-            neighbours.fetch(later as usize);
-        }
-        let class = class as usize;
-        renumbered.clear();
-        renumbered.extend(neighbours.get(class).iter().map(|&other| places[other as usize]));
-        ranks::sort_distinct(&mut renumbered);
-        let is_infinite = class >= finite;
-        cells.push(Cell4 { is_infinite, vertices: vertices.get(class), neighbours: &renumbered });
+    for class in 0..neighbours.len() {
+        let list = neighbours.get_mut(class);
+        list.iter_mut().for_each(|other| *other = places[*other as usize]);
+        ranks::sort_distinct(list);
     }
-    cells
 }
 
 /// Simplices or cells to prefetch ahead.

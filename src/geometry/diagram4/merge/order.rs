@@ -1,13 +1,13 @@
 //! The canonical order of cells: finite ones first, each kind by vertices.
 
-use super::lists::Lists;
 use crate::order::sizes_to_starts;
+use spmesh_model::cells4::Lists4;
 
 /// The classes in canonical order of their cells. The first ones are finite.
 ///
 /// Cells are put into groups by their kind and first vertex. Within a group, keys of the next three vertices
 /// decide all but few comparisons; every cell has at least four vertices.
-pub(super) fn canonical(vertices: &Lists, finite: usize) -> Vec<u32> {
+pub(super) fn canonical(vertices: &Lists4, finite: usize) -> Vec<u32> {
     let (finite_ends, mut keys) = grouped(vertices, 0..finite);
     sort(&mut keys, &finite_ends, vertices);
     let mut order: Vec<u32> = keys.into_iter().map(class_of).collect();
@@ -18,7 +18,7 @@ pub(super) fn canonical(vertices: &Lists, finite: usize) -> Vec<u32> {
 }
 
 /// Keys of a range of classes, group by group, and the end of each group.
-fn grouped(vertices: &Lists, classes: std::ops::Range<usize>) -> (Vec<u32>, Vec<u128>) {
+fn grouped(vertices: &Lists4, classes: std::ops::Range<usize>) -> (Vec<u32>, Vec<u128>) {
     let first = |class: usize| vertices.get(class)[0] as usize;
     let greatest = classes.clone().map(first).max().unwrap_or_default();
     let mut ends = vec![0; greatest + 1];
@@ -28,14 +28,15 @@ fn grouped(vertices: &Lists, classes: std::ops::Range<usize>) -> (Vec<u32>, Vec<
     for class in classes {
         let &[a, b, c, d, ..] = vertices.get(class) else { unreachable!("cells have four vertices or more") };
         let end = &mut ends[a as usize];
-        keys[*end as usize] = [b, c, d, class as u32].iter().fold(0, |key, &word| key << 32 | u128::from(word));
+        keys[*end as usize] =
+            [b, c, d, class as u32].iter().fold(0, |key, &word| key << 32 | u128::from(word));
         *end += 1;
     }
     (ends, keys)
 }
 
 /// Sorts the keys of each group.
-fn sort(keys: &mut [u128], ends: &[u32], vertices: &Lists) {
+fn sort(keys: &mut [u128], ends: &[u32], vertices: &Lists4) {
     let mut start = 0;
     for &end in ends {
         let group = &mut keys[start as usize..end as usize];

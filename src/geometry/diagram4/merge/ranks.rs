@@ -42,7 +42,8 @@ mod tests {
         let mut random = Random::new(1);
         for length in 0..40 {
             for _ in 0..20 {
-                let mut numbers: Vec<u32> = (0..length).map(|i| i * 50_000_000 + random.below(1 << 20) as u32).collect();
+                let mut numbers: Vec<u32> =
+                    (0..length).map(|i| i * 50_000_000 + random.below(1 << 20) as u32).collect();
                 let expected = numbers.clone();
                 random.shuffle(&mut numbers);
                 sort_distinct(&mut numbers);

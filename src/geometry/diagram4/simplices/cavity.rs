@@ -66,7 +66,8 @@ impl Cavity {
             let row = |s: [f64; 6]| L::new(token, [s[0], s[1], s[2], s[3]]);
             let [x, y, z, t] = L::columns([row(a) * head, row(b) * head, row(c) * head, row(d) * head]);
             let m = [a[4], b[4], c[4], d[4]];
-            let (lifted, s) = (L::new(token, m) * L::new(token, [p[4]; LANES]), L::new(token, [a[5], b[5], c[5], d[5]]));
+            let (lifted, s) =
+                (L::new(token, m) * L::new(token, [p[4]; LANES]), L::new(token, [a[5], b[5], c[5], d[5]]));
             let values = (((x + y) + (z + t)) + (lifted + s)).array();
             let mut inside = values.map(|value| value < 0.0);
             let unclear = |lane: usize| (m[lane] >= 0.0) & !complex.is_clear(values[lane], m[lane]);

@@ -139,7 +139,11 @@ impl<'a, C: Coefficient> Complex<'a, C> {
     #[inline(always)]
     pub(super) fn is_in_conflict(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
         let value = self.value(simplex, p);
-        if self.is_clear(value, self.determinant(simplex).value()) { value < 0.0 } else { self.decide(simplex, q, p) }
+        if self.is_clear(value, self.determinant(simplex).value()) {
+            value < 0.0
+        } else {
+            self.decide(simplex, q, p)
+        }
     }
 
     /// Whether the sign of a value is conclusive, for a sphere with the determinant m. Values of small

@@ -62,7 +62,7 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         }
         for number in 1..complex.simplices.len() {
             let [a, b, c, d, last] = complex.simplices[number].vertices;
-            let [sphere, ..] = 
+            let [sphere, ..] =
                 complex.spheres_of::<Portable>((), &complex.near[last as usize], &[[a, b, c, d]; LANES]);
             complex.spheres.push(sphere);
         }

@@ -31,7 +31,7 @@ pub(in crate::diagram4) fn insertions(sites: &Sites) -> Result<Vec<u32>> {
 /// With fewer sites, sublattices still save simplices, but no time, because there are more rounds.
 fn is_grid(sites: &Sites, extent: &Extent<4>) -> bool {
     let box_points: f64 = (0..4).map(|axis| extent.upper[axis] - extent.lower[axis] + 1.0).product();
-    sites.exactness != Exactness::Big && sites.points.len() as f64 >= std::env::var("TH").map_or(0.5, |x| x.parse().unwrap()) * box_points
+    sites.exactness != Exactness::Big && sites.points.len() as f64 >= 0.5 * box_points
 }
 
 /// A biased randomized insertion order: a few points first, then those between.
