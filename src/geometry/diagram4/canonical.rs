@@ -2,9 +2,6 @@
 
 use spmesh_model::cells4::{Cell4, Cells4};
 
-/// Cells to prefetch ahead.
-const AHEAD: usize = 8;
-
 /// Sorts cells, finite ones first, each kind by vertices, and renumbers neighbours.
 ///
 /// Domain: vertices in increasing order, neighbours in any order.
@@ -14,12 +11,9 @@ pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
     for (place, &number) in (0u32..).zip(&order) {
         places[number as usize] = place;
     }
-    let mut cells = Cells4::with_capacity(unordered.len(), unordered.numbers());
+    let mut cells = Cells4::default();
     let mut neighbours = Vec::new();
-    for (place, &number) in order.iter().enumerate() {
-        if let Some(&later) = order.get(place + AHEAD) {
-            unordered.fetch(later as usize);
-        }
+    for &number in &order {
         let cell = unordered.get(number as usize);
         neighbours.clear();
         neighbours.extend(cell.neighbours.iter().map(|&other| places[other as usize]));

@@ -9,6 +9,7 @@
 //! triangulates, and `merge` joins cospherical simplices to cells. `direct`, an experiment, does both at once
 //! as the thesis does.
 
+#[cfg(feature = "experiments")]
 mod canonical;
 mod determinant;
 #[cfg(feature = "experiments")]

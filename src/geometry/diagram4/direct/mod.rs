@@ -14,7 +14,7 @@ mod tuple;
 use super::Stats;
 use super::canonical::canonical;
 use super::exact::Exactness;
-use super::simplices::{INFINITE, insertions};
+use super::simplices::insertions;
 use super::sites::Sites;
 use crate::predicates::Extent;
 use crate::predicates::exact_integers::integers_of;
@@ -24,6 +24,9 @@ use spmesh_core::error::Result;
 use spmesh_model::cells4::{Cell4, Cells4, Point4};
 use std::time::Instant;
 use tuple::{Integer, Tuple};
+
+/// The faraway point.
+const INFINITE: u32 = u32::MAX;
 
 /// Greatest difference of integer coordinates with which all combinations fit into 128 bits.
 ///

@@ -10,8 +10,8 @@ pub(in crate::diagram4) trait Coefficient: Copy + Debug + Default + PartialOrd {
     /// Converts a coefficient.
     fn of(value: f64) -> Self;
 
-    /// Converts the determinant of a simplex, which is positive.
-    fn determinant(value: f64) -> Self;
+    /// Converts the determinant of a simplex: positive, or zero if the simplex is infinite.
+    fn determinant(value: f64, is_infinite: bool) -> Self;
 
     /// The coefficient as an f64, for in-sphere tests.
     fn value(self) -> f64;
@@ -27,8 +27,8 @@ impl Coefficient for f64 {
 
     /// Rounding can make the determinant of an almost flat simplex zero or negative: clamp it.
     #[inline(always)]
-    fn determinant(value: f64) -> f64 {
-        value.max(f64::MIN_POSITIVE)
+    fn determinant(value: f64, is_infinite: bool) -> f64 {
+        if is_infinite { 0.0 } else { value.max(f64::MIN_POSITIVE) }
     }
 
     #[inline(always)]
@@ -49,7 +49,7 @@ impl Coefficient for i32 {
     }
 
     #[inline(always)]
-    fn determinant(value: f64) -> i32 {
+    fn determinant(value: f64, _: bool) -> i32 {
         i32::of(value)
     }
 

@@ -2,15 +2,16 @@
 
 use super::coefficient::Coefficient;
 use super::lanes::{LANES, Lanes};
-use crate::diagram4::determinant::{difference, dot, lift, normal, sphere};
+use crate::diagram4::determinant::{difference, dot, lift, lifted_sphere};
 use crate::diagram4::exact::{in_sphere, orientation};
 use crate::diagram4::sites::Sites;
 use spmesh_core::prefetch::prefetch;
 use spmesh_model::cells4::Point4;
 use std::cmp::Ordering;
 
-/// The faraway point (thesis 4.3), vertex of the infinite simplices, which lie beyond the hull.
-pub(in crate::diagram4) const INFINITE: u32 = u32::MAX;
+/// The faraway point (thesis 4.3), vertex of the infinite simplices, which lie beyond the hull. Points are
+/// vertices from 1.
+pub(in crate::diagram4) const INFINITE: u32 = 0;
 
 /// Facets, and vertices, of a simplex: facet i is opposite to vertex i.
 pub(in crate::diagram4) const FACETS: usize = 5;
@@ -43,6 +44,7 @@ pub(super) const SIMPLICES_MAX: usize = 1 << 28;
 /// beyond the facet of the hull.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::diagram4) struct Simplex {
+    /// In increasing order, but for the first two, whose order makes the simplex positive.
     pub(in crate::diagram4) vertices: [u32; FACETS],
     /// For each facet, the same facet as seen from the neighbouring simplex.
     pub(in crate::diagram4) neighbours: [Facet; FACETS],
@@ -64,8 +66,9 @@ pub(super) type Lifted = [f64; 6];
 
 pub(in crate::diagram4) struct Complex<'a, C> {
     pub(in crate::diagram4) sites: &'a Sites,
-    /// The site of each vertex; vertices are numbered in order of insertion.
+    /// The site of each vertex; vertices are numbered in order of insertion, from 1.
     pub(in crate::diagram4) order: Vec<u32>,
+    /// The point of each vertex; NaN for the faraway point.
     pub(in crate::diagram4) near: Vec<Point4>,
     /// The first is a dummy: see [`NO_NEIGHBOUR`].
     pub(in crate::diagram4) simplices: Vec<Simplex>,
@@ -77,8 +80,10 @@ pub(in crate::diagram4) struct Complex<'a, C> {
 }
 
 impl<'a, C: Coefficient> Complex<'a, C> {
-    pub(super) fn new(sites: &'a Sites, order: Vec<u32>) -> Complex<'a, C> {
-        let near = order.iter().map(|&number| sites.near(number)).collect();
+    pub(super) fn new(sites: &'a Sites, mut order: Vec<u32>) -> Complex<'a, C> {
+        let faraway = std::iter::once([f64::NAN; 4]);
+        let near = faraway.chain(order.iter().map(|&number| sites.near(number))).collect();
+        order.insert(INFINITE as usize, u32::MAX);
         let rounding = if sites.exactness.is_double() { 0.0 } else { ROUNDING };
         let (simplices, spheres) = (vec![Simplex::default()], vec![[C::DEAD; 6]]);
         Complex { sites, order, near, simplices, spheres, free: Vec::new(), rounding }
@@ -89,6 +94,7 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         self.sites.points[self.order[vertex as usize] as usize]
     }
 
+    #[inline(always)]
     pub(super) fn lifted(&self, vertex: u32) -> Lifted {
         let p = self.near[vertex as usize];
         [p[0], p[1], p[2], p[3], lift(&p), 1.0]
@@ -126,24 +132,25 @@ impl<'a, C: Coefficient> Complex<'a, C> {
 
     #[inline(always)]
     pub(super) fn value(&self, simplex: usize, p: &Lifted) -> f64 {
-        let s = self.spheres[simplex].map(C::value);
-        let even = s[0] * p[0] + s[2] * p[2] + s[4] * p[4];
-        let odd = s[1] * p[1] + s[3] * p[3] + s[5] * p[5];
-        even + odd
+        value(&self.spheres[simplex], p)
     }
 
     /// Whether vertex `q`, at `p`, is inside the sphere of a simplex.
     #[inline(always)]
     pub(super) fn is_in_conflict(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
         let value = self.value(simplex, p);
-        if self.is_clear(value, simplex) { value < 0.0 } else { self.decide(simplex, q, p) }
+        if self.is_clear(value, self.determinant(simplex).value()) {
+            value < 0.0
+        } else {
+            self.decide(simplex, q, p)
+        }
     }
 
-    /// Whether the sign of a value is conclusive. Values of small integers are exact: zero means on the
-    /// sphere.
+    /// Whether the sign of a value is conclusive, for a sphere with the determinant m. Values of small
+    /// integers are exact: zero means on the sphere.
     #[inline(always)]
-    pub(super) fn is_clear(&self, value: f64, simplex: usize) -> bool {
-        value.abs() > self.rounding || (self.rounding == 0.0 && !self.is_infinite(simplex))
+    pub(super) fn is_clear(&self, value: f64, m: f64) -> bool {
+        (value.abs() > self.rounding) | (self.is_exact() & (m != 0.0))
     }
 
     /// Decides a conflict exactly. For an infinite simplex, the side of its hyperplane decides; for a point
@@ -161,21 +168,43 @@ impl<'a, C: Coefficient> Complex<'a, C> {
     }
 
     /// The finite simplex across the hull from an infinite one.
+    #[inline(always)]
     pub(in crate::diagram4) fn neighbour_inside(&self, simplex: usize) -> Option<usize> {
-        let Simplex { vertices, neighbours, .. } = &self.simplices[simplex];
-        let side = vertices.iter().position(|&vertex| vertex == INFINITE)?;
-        Some(simplex_of(neighbours[side]))
+        let simplex = &self.simplices[simplex];
+        simplex.is_infinite().then(|| simplex_of(simplex.neighbours[simplex.faraway_side()]))
+    }
+
+    /// Whether values are free of rounding.
+    #[inline(always)]
+    fn is_exact(&self) -> bool {
+        self.rounding == 0.0
+    }
+
+    /// Whether the neighbour across a facet is on the same sphere, or in the same hyperplane, because the
+    /// opposite vertex is on that of the neighbour. The faraway point, at NaN, is not.
+    #[inline(always)]
+    pub(in crate::diagram4) fn is_cospherical(&self, simplex: usize, side: usize) -> bool {
+        let Simplex { vertices, neighbours } = &self.simplices[simplex];
+        let (vertex, other) = (vertices[side], simplex_of(neighbours[side]));
+        self.value(other, &self.lifted(vertex)).abs() <= self.rounding
+            && (self.is_exact() || self.exact_sign(other, vertex) == Ordering::Equal)
+    }
+
+    /// Prefetches the spheres around a simplex.
+    #[inline(always)]
+    pub(in crate::diagram4) fn fetch_spheres_around(&self, simplex: usize) {
+        for neighbour in &self.simplices[simplex].neighbours {
+            prefetch(&self.spheres, simplex_of(*neighbour));
+        }
     }
 
     /// The sign of the value of a vertex.
     #[inline(always)]
-    pub(in crate::diagram4) fn sign(&self, simplex: usize, q: u32) -> Ordering {
+    fn sign(&self, simplex: usize, q: u32) -> Ordering {
         let value = self.value(simplex, &self.lifted(q));
-        if value > self.rounding {
-            Ordering::Greater
-        } else if value < -self.rounding {
-            Ordering::Less
-        } else if self.rounding == 0.0 {
+        if value.abs() > self.rounding {
+            if value > 0.0 { Ordering::Greater } else { Ordering::Less }
+        } else if self.is_exact() {
             Ordering::Equal
         } else {
             self.exact_sign(simplex, q)
@@ -184,68 +213,86 @@ impl<'a, C: Coefficient> Complex<'a, C> {
 
     #[inline(never)]
     fn exact_sign(&self, simplex: usize, q: u32) -> Ordering {
-        let vertices = self.simplices[simplex].vertices;
+        let Simplex { vertices, .. } = self.simplices[simplex];
         let point = self.point(q);
         let exactness = self.sites.exactness;
-        match vertices.iter().position(|&vertex| vertex == INFINITE) {
-            None => in_sphere(exactness, vertices.map(|vertex| self.point(vertex)), point),
-            Some(side) => {
-                let facet = without(vertices, side).map(|vertex| self.point(vertex));
-                let sign = orientation(exactness, facet, point);
-                if side % 2 == 0 { sign.reverse() } else { sign }
-            }
+        if !self.simplices[simplex].is_infinite() {
+            return in_sphere(exactness, vertices.map(|vertex| self.point(vertex)), point);
         }
+        let side = self.simplices[simplex].faraway_side();
+        let facet = without(vertices, side).map(|vertex| self.point(vertex));
+        let sign = orientation(exactness, facet, point);
+        if side == 0 { sign.reverse() } else { sign }
     }
 
-    /// The spheres of simplices that all have a vertex at `o`, or hyperplanes of infinite ones; `sides` gives
-    /// the place of that vertex in each.
+    /// The spheres of simplices of four vertices each and, as the last, the one at `o`; hyperplanes of
+    /// infinite ones.
+    ///
+    /// The row of a vertex is (x, |x|^2), seen from `o`. That of the faraway point, which is the first or the
+    /// second, is (0, 1), the limit of rows of points far away, divided by their lift.
     #[inline(always)]
-    pub(super) fn spheres_of(
+    pub(super) fn spheres_of<L: Lanes>(
         &self,
+        token: L::Token,
         o: &Point4,
-        simplices: [&[u32; FACETS]; LANES],
-        sides: [usize; LANES],
+        facets: &[[u32; 4]; LANES],
     ) -> [Sphere<C>; LANES] {
-        let facets = [
-            without(*simplices[0], sides[0]),
-            without(*simplices[1], sides[1]),
-            without(*simplices[2], sides[2]),
-            without(*simplices[3], sides[3]),
-        ];
-        let origin = o.map(|x| Lanes([x; LANES]));
-        let corners = [0, 1, 2, 3].map(|i| difference(self.corners(facets.map(|facet| facet[i])), &origin));
-        // Moving the common vertex to the front passes as many others as its place.
-        let signs = Lanes(sides.map(|side| if side % 2 == 0 { 1.0 } else { -1.0 }));
-        let (n, m) = sphere(corners);
-        let s = m * lift(&origin) - dot(&n, &origin);
+        let splat = |x: f64| L::new(token, [x; LANES]);
+        let origin = [splat(o[0]), splat(o[1]), splat(o[2]), splat(o[3])];
+        let vectors = |i: usize| self.vectors(token, facets, i, &origin);
+        let (a, b, c, d) = (vectors(0), vectors(1), vectors(2), vectors(3));
+        let (a_lift, b_lift) = (lift(&a).or(1.0), lift(&b).or(1.0));
+        let finite = |[x, y, z, t]: [L; 4]| [x.or(0.0), y.or(0.0), z.or(0.0), t.or(0.0)];
+        let (a, b) = (finite(a), finite(b));
+        let (n, m) = lifted_sphere([(&a, a_lift), (&b, b_lift), (&c, lift(&c)), (&d, lift(&d))]);
+        let s = (m * lift(&origin) - dot(&n, &origin)).array();
         let twice = m + m;
-        let shifted = |axis: usize| signs * (n[axis] - twice * origin[axis]);
-        let columns = [shifted(0), shifted(1), shifted(2), shifted(3), signs * m, signs * s];
-        std::array::from_fn(|lane| {
-            if facets[lane].contains(&INFINITE) {
-                return self.hyperplane(simplices[lane]).map(C::of);
-            }
-            let [a, b, c, d, m, s] = columns.map(|column| column.0[lane]);
-            [C::of(a), C::of(b), C::of(c), C::of(d), C::determinant(m), C::of(s)]
-        })
+        let shifted = |axis: usize| n[axis] - twice * origin[axis];
+        let n = L::columns([shifted(0), shifted(1), shifted(2), shifted(3)]);
+        let m = m.array();
+        let sphere = |lane: usize| -> Sphere<C> {
+            let [x, y, z, t] = n[lane].array();
+            let is_infinite = facets[lane][0].min(facets[lane][1]) == INFINITE;
+            let m = C::determinant(m[lane], is_infinite);
+            [C::of(x), C::of(y), C::of(z), C::of(t), m, C::of(s[lane])]
+        };
+        [sphere(0), sphere(1), sphere(2), sphere(3)]
     }
 
-    /// The points of four vertices, axis by axis; an arbitrary point for the faraway point.
+    /// The vectors from an origin to a vertex of each facet, axis by axis.
     #[inline(always)]
-    fn corners(&self, vertices: [u32; LANES]) -> [Lanes; 4] {
-        let last = self.near.len() - 1;
-        let [a, b, c, d] = vertices.map(|vertex| &self.near[last.min(vertex as usize)]);
-        [0, 1, 2, 3].map(|axis| Lanes([a[axis], b[axis], c[axis], d[axis]]))
+    fn vectors<L: Lanes>(
+        &self,
+        token: L::Token,
+        facets: &[[u32; 4]; LANES],
+        i: usize,
+        origin: &[L; 4],
+    ) -> [L; 4] {
+        let near = |lane: usize| L::new(token, self.near[facets[lane][i] as usize]);
+        difference(L::columns([near(0), near(1), near(2), near(3)]), origin)
+    }
+}
+
+/// The product of a sphere and a point.
+#[inline(always)]
+pub(super) fn value<C: Coefficient>(sphere: &Sphere<C>, p: &Lifted) -> f64 {
+    let [a, b, c, d, m, s] = *sphere;
+    let product = |x: C, i: usize| x.value() * p[i];
+    let (even, odd) = (product(a, 0) + product(c, 2), product(b, 1) + product(d, 3));
+    (even + product(m, 4)) + (odd + product(s, 5))
+}
+
+impl Simplex {
+    /// Whether the faraway point is a vertex.
+    #[inline(always)]
+    pub(in crate::diagram4) fn is_infinite(&self) -> bool {
+        self.vertices[0].min(self.vertices[1]) == INFINITE
     }
 
-    #[inline(never)]
-    fn hyperplane(&self, vertices: &[u32; FACETS]) -> [f64; 6] {
-        let side = vertices.iter().position(|&vertex| vertex == INFINITE).unwrap_or_default();
-        let [o, a, b, c] = without(*vertices, side).map(|vertex| self.near[vertex as usize]);
-        let n = normal([a, b, c].map(|p| difference(p, &o)).each_ref());
-        // Moving the faraway point to the end passes 4 - side others; values beyond the hull are negative.
-        let n = if side % 2 == 0 { n.map(|x| -x) } else { n };
-        [n[0], n[1], n[2], n[3], 0.0, -dot(&n, &o)]
+    /// The place of the faraway point in an infinite simplex: it is the least vertex.
+    #[inline(always)]
+    pub(in crate::diagram4) fn faraway_side(&self) -> usize {
+        usize::from(self.vertices[1] == INFINITE)
     }
 }
 

@@ -2,10 +2,16 @@
 
 use super::cavity::Cavity;
 use super::coefficient::Coefficient;
-use super::complex::{Complex, FACETS, Facet, INFINITE, SIMPLICES_MAX, Simplex, facet, facet_of, simplex_of};
-use super::lanes::LANES;
+use super::complex::{
+    Complex, FACETS, Facet, INFINITE, SIMPLICES_MAX, Simplex, facet, facet_of, simplex_of, without,
+};
+#[cfg(target_arch = "x86_64")]
+use super::lanes::Avx2;
+use super::lanes::{LANES, Lanes, Portable};
 use super::links::Links;
 use crate::diagram4::exact::orientation;
+#[cfg(target_arch = "x86_64")]
+use crate::processor::Avx2Fma;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use std::cmp::Ordering;
 
@@ -30,7 +36,7 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
 
     fn insert_first(&mut self) {
         let complex = &mut self.complex;
-        let mut vertices = [0, 1, 2, 3, 4];
+        let mut vertices = [1, 2, 3, 4, 5];
         let [a, b, c, d, e] = vertices.map(|vertex| complex.point(vertex));
         let exactness = complex.sites.exactness;
         if orientation(exactness, [a, b, c, d], e) == Ordering::Less {
@@ -38,7 +44,7 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         }
         // Simplex 1 is finite. Simplex i + 2 is its neighbour at facet i: the faraway point replaces vertex
         // i, and the other vertices keep their places.
-        let mut all = vec![(vertices, std::array::from_fn(|side| facet(side + 2, side)))];
+        complex.simplices.push(Simplex { vertices, neighbours: std::array::from_fn(|i| facet(i + 2, i)) });
         for side in 0..FACETS {
             let mut vertices = vertices;
             vertices[side] = INFINITE;
@@ -46,17 +52,18 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
             // lacks k and has vertex i in its own place.
             let mut neighbours: [Facet; FACETS] =
                 std::array::from_fn(|other| facet(if other == side { 1 } else { other + 2 }, side));
-            // Replacing a vertex by a point across the facet turns the orientation: swap two vertices.
-            let (i, j) = if side < 2 { (2, 3) } else { (0, 1) };
-            vertices.swap(i, j);
-            neighbours.swap(i, j);
-            all.push((vertices, neighbours));
-        }
-        for (vertices, neighbours) in all {
-            let common = vertices.iter().position(|&vertex| vertex != INFINITE).unwrap_or_default();
-            let o = complex.near[vertices[common] as usize];
-            let [sphere, ..] = complex.spheres_of(&o, [&vertices; LANES], [common; LANES]);
+            let swaps = sort(&mut vertices, &mut neighbours);
+            // Replacing a vertex by a point across the facet turns the orientation.
+            if swaps % 2 == 0 {
+                vertices.swap(0, 1);
+                neighbours.swap(0, 1);
+            }
             complex.simplices.push(Simplex { vertices, neighbours });
+        }
+        for number in 1..complex.simplices.len() {
+            let [a, b, c, d, last] = complex.simplices[number].vertices;
+            let [sphere, ..] =
+                complex.spheres_of::<Portable>((), &complex.near[last as usize], &[[a, b, c, d]; LANES]);
             complex.spheres.push(sphere);
         }
         fix_sides(&mut complex.simplices);
@@ -68,39 +75,39 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
     /// Too many simplices.
     pub(super) fn run(&mut self) -> Result<()> {
         #[cfg(target_arch = "x86_64")]
-        if crate::processor::Avx2Fma::detect().is_some() {
+        if let Some(token) = Avx2Fma::detect() {
             // SAFETY: the token proves that the processor has AVX2.
-            return unsafe { self.run_avx2() };
+            return unsafe { self.run_avx2(token) };
         }
-        self.run_portable()
+        self.run_with::<Portable>(())
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn run_avx2(&mut self) -> Result<()> {
-        self.run_portable()
+    fn run_avx2(&mut self, token: Avx2Fma) -> Result<()> {
+        self.run_with::<Avx2>(token)
     }
 
     #[inline(always)]
-    fn run_portable(&mut self) -> Result<()> {
+    fn run_with<L: Lanes>(&mut self, token: L::Token) -> Result<()> {
         let mut start = 1;
-        for q in 5..self.complex.order.len() as u32 {
-            start = self.insert(q, start)?;
+        for q in 6..self.complex.order.len() as u32 {
+            start = self.insert::<L>(token, q, start)?;
         }
         Ok(())
     }
 
     /// Inserts vertex `q`; returns a simplex to start from for a point nearby.
     #[inline(always)]
-    fn insert(&mut self, q: u32, start: usize) -> Result<usize> {
+    fn insert<L: Lanes>(&mut self, token: L::Token, q: u32, start: usize) -> Result<usize> {
         let p = self.complex.lifted(q);
         let found = self.complex.locate(q, &p, start);
-        self.cavity.find(&mut self.complex, q, found);
+        self.cavity.find::<C, L>(token, &mut self.complex, q, found);
         self.allocate()?;
-        self.make_star(q);
+        self.make_star::<L>(token, q);
         self.tests += (self.cavity.dead().len() + self.cavity.border().len()) as u64;
         self.created += self.star.len() as u64;
-        self.complex.free.extend_from_slice(self.cavity.dead());
+        self.complex.free.extend(self.cavity.dead().iter().map(|&dead| simplex_of(dead) as u32));
         Ok(self.star[0] as usize)
     }
 
@@ -126,31 +133,57 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
     /// Makes a simplex of each facet of the border and the new point, in the allocated places, and links
     /// them.
     #[inline(always)]
-    fn make_star(&mut self, q: u32) {
+    fn make_star<L: Lanes>(&mut self, token: L::Token, q: u32) {
         let o = self.complex.near[q as usize];
         self.links.clear(self.star.len());
         for (facets, star) in self.cavity.border().chunks(LANES).zip(self.star.chunks(LANES)) {
-            let facets: [Facet; LANES] = std::array::from_fn(|lane| facets[lane.min(facets.len() - 1)]);
-            let sides = facets.map(facet_of);
-            let vertices = facets.map(|facet| {
-                let dead = &self.complex.simplices[simplex_of(facet)].vertices;
-                std::array::from_fn(|i| if i == facet_of(facet) { q } else { dead[i] })
-            });
-            let spheres =
-                self.complex.spheres_of(&o, [&vertices[0], &vertices[1], &vertices[2], &vertices[3]], sides);
+            let last = facets.len() - 1;
+            let vertices = |lane: usize| self.facet_vertices(facets[lane.min(last)]);
+            let vertices = [vertices(0), vertices(1), vertices(2), vertices(3)];
+            let spheres = self.complex.spheres_of::<L>(token, &o, &vertices);
             for (lane, &new) in star.iter().enumerate() {
-                let (new, side) = (new as usize, sides[lane]);
-                let simplices = &mut self.complex.simplices;
-                let outer = simplices[simplex_of(facets[lane])].neighbours[side];
-                simplices[simplex_of(outer)].neighbours[facet_of(outer)] = facet(new, side);
+                let (new, simplices) = (new as usize, &mut self.complex.simplices);
+                let outer = simplices[simplex_of(facets[lane])].neighbours[facet_of(facets[lane])];
+                simplices[simplex_of(outer)].neighbours[facet_of(outer)] = facet(new, LAST);
                 self.complex.spheres[new] = spheres[lane];
+                let [a, b, c, d] = vertices[lane];
                 let simplex = &mut simplices[new];
-                simplex.vertices = vertices[lane];
-                simplex.neighbours[side] = outer;
-                self.links.link(simplices, new, &vertices[lane], side);
+                simplex.vertices = [a, b, c, d, q];
+                simplex.neighbours[LAST] = outer;
+                self.links.link(simplices, new, &vertices[lane]);
             }
         }
     }
+
+    /// The vertices of a facet of the border, in the order that makes a positive simplex with the new point
+    /// as the last.
+    ///
+    /// The new point, greater than all others, replaces the vertex opposite to the facet, and goes to the
+    /// end, past all vertices after it. The first two vertices are swapped if that turns the simplex.
+    #[inline(always)]
+    fn facet_vertices(&self, facet: Facet) -> [u32; 4] {
+        let side = facet_of(facet);
+        let [a, b, c, d] = without(self.complex.simplices[simplex_of(facet)].vertices, side);
+        if side % 2 == 0 { [a, b, c, d] } else { [b, a, c, d] }
+    }
+}
+
+/// The place of the new point in its simplices.
+const LAST: usize = FACETS - 1;
+
+/// Sorts the vertices of a simplex, and its neighbours alike; returns the number of swaps.
+fn sort(vertices: &mut [u32; FACETS], neighbours: &mut [Facet; FACETS]) -> usize {
+    let mut swaps = 0;
+    for end in (1..FACETS).rev() {
+        for i in 0..end {
+            if vertices[i] > vertices[i + 1] {
+                vertices.swap(i, i + 1);
+                neighbours.swap(i, i + 1);
+                swaps += 1;
+            }
+        }
+    }
+    swaps
 }
 
 /// Corrects the side of each neighbour.

@@ -1,7 +1,7 @@
 //! Links the simplices of a star: two are neighbours if they have three vertices besides the centre in
 //! common.
 
-use super::complex::{FACETS, Facet, NO_NEIGHBOUR, Simplex, facet, facet_of, simplex_of};
+use super::complex::{Facet, NO_NEIGHBOUR, Simplex, facet, facet_of, simplex_of};
 
 /// Slots per simplex of a star, at least. The table holds two triangles per simplex.
 const SLOTS: usize = 4;
@@ -38,25 +38,22 @@ impl Links {
 
     /// Links a simplex of the star with those at its triangles that came before it, if they have come.
     ///
-    /// `side` is that of the facet opposite to the centre. A facet without neighbour so far is linked to
-    /// [`NO_NEIGHBOUR`], whose own links are written but mean nothing. That saves a branch on which of the
-    /// two came first, which is unpredictable.
+    /// `vertices` are those besides the centre, in increasing order but for the first two. A facet without
+    /// neighbour so far is linked to [`NO_NEIGHBOUR`], whose own links are written but mean nothing. That
+    /// saves a branch on which of the two came first, which is unpredictable.
     #[inline(always)]
-    pub(super) fn link(
-        &mut self,
-        simplices: &mut [Simplex],
-        new: usize,
-        vertices: &[u32; FACETS],
-        side: usize,
-    ) {
-        let [a, b, c, d] = sorted(vertices, side);
-        for (left_out, [x, y, z]) in [(a, [b, c, d]), (b, [a, c, d]), (c, [a, b, d]), (d, [a, b, c])] {
-            let place = (left_out & PLACE) as usize;
+    pub(super) fn link(&mut self, simplices: &mut [Simplex], new: usize, &[a, b, c, d]: &[u32; 4]) {
+        let (least, second) = (a.min(b), a.max(b));
+        let mut link = |place: usize, triangle: [u32; 3]| {
             let here = facet(new, place);
-            let there = self.meet([x, y, z].map(|vertex| vertex & !PLACE), here);
+            let there = self.meet(triangle, here);
             simplices[new].neighbours[place] = there;
             simplices[simplex_of(there)].neighbours[facet_of(there)] = here;
-        }
+        };
+        link(0, [b, c, d]);
+        link(1, [a, c, d]);
+        link(2, [least, second, d]);
+        link(3, [least, second, c]);
     }
 
     /// Stores a facet at a triangle, and returns the facet stored there before.
@@ -87,28 +84,6 @@ fn hash([x, y, z]: [u32; 3]) -> u64 {
     ((u64::from(x) << 32 | u64::from(y)) ^ u64::from(z).wrapping_mul(MIX)).wrapping_mul(MIX)
 }
 
-/// Bits of the place of a vertex in its simplex.
-const PLACE: u32 = 7;
-
-/// The vertices of a simplex but one, in increasing order, each above the bits of its place.
-#[inline(always)]
-fn sorted(vertices: &[u32; FACETS], side: usize) -> [u32; 4] {
-    let mut words: [u32; 4] = std::array::from_fn(|i| {
-        let place = i + usize::from(i >= side);
-        vertices[place] << 3 | place as u32
-    });
-    let mut order = |i: usize, j: usize| {
-        let (less, more) = (words[i].min(words[j]), words[i].max(words[j]));
-        (words[i], words[j]) = (less, more);
-    };
-    order(0, 1);
-    order(2, 3);
-    order(0, 2);
-    order(1, 3);
-    order(1, 2);
-    words
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,7 +94,7 @@ mod tests {
         // Few slots, so that triangles collide.
         links.clear(16);
         let triangles: Vec<[u32; 3]> =
-            (0..4u32).flat_map(|i| (0..8).map(move |j| [i * 8, 800 + j * 8, !PLACE])).collect();
+            (0..4u32).flat_map(|i| (0..8).map(move |j| [i * 8, 800 + j * 8, u32::MAX])).collect();
         for (number, &triangle) in (1..).zip(&triangles) {
             assert_eq!(links.meet(triangle, number), 0, "no one has been there");
         }
@@ -128,18 +103,5 @@ mod tests {
         }
         links.clear(16);
         assert_eq!(links.meet(triangles[0], 1), 0, "the table is empty again");
-    }
-
-    #[test]
-    fn vertices_are_sorted_with_their_places() {
-        let vertices = [7, u32::MAX, 3, 9, 0];
-        for side in 0..FACETS {
-            let words = sorted(&vertices, side);
-            assert!(words.is_sorted());
-            let mut places: Vec<usize> = words.iter().map(|word| (word & PLACE) as usize).collect();
-            assert!(words.iter().all(|word| word >> 3 == vertices[(word & PLACE) as usize] << 3 >> 3));
-            places.sort_unstable();
-            assert!(places.iter().copied().eq((0..FACETS).filter(|&place| place != side)));
-        }
     }
 }

@@ -26,7 +26,7 @@ mod locate;
 mod order;
 
 pub(super) use coefficient::Coefficient;
-pub(super) use complex::{Complex, FACETS, Facet, INFINITE, Simplex, facet, facet_of, simplex_of};
+pub(super) use complex::{Complex, FACETS, Facet, Simplex, facet, facet_of, simplex_of, without};
 
 pub(super) use order::insertions;
 
