@@ -228,3 +228,17 @@ fn damaged_streams_are_refused() {
     assert_eq!(refused.kind(), ErrorKind::Usage);
     assert!(refused.to_string().contains("with --octree"), "{refused}");
 }
+
+/// All points wait for the root, which several threads triangulate: there are enough for three.
+#[test]
+fn a_shared_root_has_the_same_bytes() {
+    let mut random = Random::new(7);
+    let points = of(&mut random, Family::Uniform, 75_000);
+    let input = stream_of(3, &points, Coordinates::F64, Tagging::None, &mut random);
+    let (one, _) = tetrahedralize(&input, &every_node(1)).unwrap();
+    assert_eq!(read_mesh(&one).0, expected(&points));
+    for threads in [2, 3] {
+        let (shared, _) = tetrahedralize(&input, &every_node(threads)).unwrap();
+        assert!(one == shared, "{threads} threads");
+    }
+}
