@@ -193,7 +193,7 @@ impl<'scope, W: Write + Send + 'scope> WorkerPool<'scope, W> {
                 let mut worker = Worker::<B, D>::new(rules);
                 let solve = |job| {
                     let give_back = |raw| buffers.raw.give_back(raw);
-                    worker.solve(job, buffers.blocks.take(), give_back, &mut |_| Ok(()))
+                    worker.solve(job, buffers.blocks.take(), give_back, None)
                 };
                 work(solve, &inner, &leaves, &done);
                 worker.counts()
