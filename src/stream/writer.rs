@@ -23,6 +23,7 @@ use super::patch_blocks::PatchBlocks;
 use super::rules4::Rules4;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
+use spmesh_core::wide::{Loop, run_wide};
 use spmesh_model::bounds::Point;
 use spmesh_model::cells::CellCode;
 
@@ -366,7 +367,7 @@ fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()
 pub fn encode_points(header: &Header, points: &[Point], bytes: &mut Vec<u8>) -> Result<()> {
     let all_fit = match (header.coordinates, header.coordinates_per_point()) {
         (Coordinates::I32 { .. }, 2) => append::<2, 4>(points, bytes, i32_bytes),
-        (Coordinates::I32 { .. }, _) => append::<3, 4>(points, bytes, i32_bytes),
+        (Coordinates::I32 { .. }, _) => run_wide(Integers { values: points.as_flattened(), bytes }),
         (Coordinates::F64, 2) => append::<2, 8>(points, bytes, f64_bytes),
         (Coordinates::F64, _) => append::<3, 8>(points, bytes, f64_bytes),
     };
@@ -382,6 +383,30 @@ fn i32_bytes(value: f64) -> ([u8; 4], bool) {
 
 fn f64_bytes(value: f64) -> ([u8; 8], bool) {
     (value.to_le_bytes(), value.is_finite())
+}
+
+/// Appends values as 32-bit integers; returns whether all of them fit.
+struct Integers<'a> {
+    values: &'a [f64],
+    bytes: &'a mut Vec<u8>,
+}
+
+impl Loop for Integers<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        let start = self.bytes.len();
+        self.bytes.resize(start + 4 * self.values.len(), 0);
+        let (fields, _) = self.bytes[start..].as_chunks_mut();
+        let mut misfits = 0;
+        for (field, &value) in fields.iter_mut().zip(self.values) {
+            let (encoded, fits) = i32_bytes(value);
+            *field = encoded;
+            misfits |= u64::from(!fits);
+        }
+        misfits == 0
+    }
 }
 
 /// Appends the first `AXES` coordinates of each point as `WIDTH` bytes each; returns whether all of them fit.

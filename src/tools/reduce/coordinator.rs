@@ -39,7 +39,7 @@ const POINTS_PER_WORKER: usize = 1 << 16;
 const JOBS_PER_WORKER: usize = 3;
 
 /// Pieces of the input that are read ahead.
-const PIECES_AHEAD: usize = 3;
+const PIECES_AHEAD: usize = 2;
 
 /// Buffers of each kind that wait to be used again.
 const POOL_LEN: usize = 16;

@@ -1,5 +1,6 @@
 //! Whether a circumscribing disk lies in a box: the common case, decided without a division.
 
+use spmesh_core::wide::{Loop, run_wide};
 use spmesh_geometry::predicates::circle::CircleBounds;
 use spmesh_model::bounds::Region;
 
@@ -55,40 +56,12 @@ impl Disks {
                     (lanes[0][lane], lanes[1][lane]) = (point[0], point[1]);
                 }
             }
-            let are_far_inside = self.are_far_inside(&lanes);
+            let are_far_inside = run_wide(FarInside { disks: self, triangles: &lanes });
             for (lane, kept) in kept.iter_mut().enumerate() {
                 let [a, b, c] = [0, 1, 2].map(|corner| [lanes[corner][0][lane], lanes[corner][1][lane]]);
                 *kept = *kept && (are_far_inside[lane] || self.bounds.disk_inside(a, b, c, &self.region));
             }
         }
-    }
-
-    /// [`Disks::is_far_inside`] for many triangles: the corners, their axes, and the triangles.
-    fn are_far_inside(&self, triangles: &Lanes) -> [bool; LANES] {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2.
-            return unsafe { self.are_far_inside_avx2(triangles) };
-        }
-        self.each_far_inside(triangles)
-    }
-
-    /// The same with wider registers: the operations and so the answers are the same.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn are_far_inside_avx2(&self, triangles: &Lanes) -> [bool; LANES] {
-        self.each_far_inside(triangles)
-    }
-
-    /// A loop without branches, which the compiler vectorizes.
-    #[inline(always)]
-    fn each_far_inside(&self, [a, b, c]: &Lanes) -> [bool; LANES] {
-        let mut are_far_inside = [false; LANES];
-        for (lane, is_far_inside) in are_far_inside.iter_mut().enumerate() {
-            let corner = |corner: &[[f64; LANES]; 2]| [corner[0][lane], corner[1][lane]];
-            *is_far_inside = self.is_far_inside(corner(a), corner(b), corner(c));
-        }
-        are_far_inside
     }
 
     /// Whether twice the radius is certainly less than the distance from `a` to each side. The disk is then
@@ -120,6 +93,27 @@ impl Disks {
             & (distance > 0.0)
             & (smallest > SMALLEST)
             & (m_x * m_x + m_y * m_y < reach * reach * (1.0 - ERROR))
+    }
+}
+
+/// [`Disks::is_far_inside`] for many triangles.
+struct FarInside<'a> {
+    disks: &'a Disks,
+    triangles: &'a Lanes,
+}
+
+impl Loop for FarInside<'_> {
+    type Output = [bool; LANES];
+
+    #[inline(always)]
+    fn run(self) -> [bool; LANES] {
+        let [a, b, c] = self.triangles;
+        let mut are_far_inside = [false; LANES];
+        for (lane, is_far_inside) in are_far_inside.iter_mut().enumerate() {
+            let corner = |corner: &[[f64; LANES]; 2]| [corner[0][lane], corner[1][lane]];
+            *is_far_inside = self.disks.is_far_inside(corner(a), corner(b), corner(c));
+        }
+        are_far_inside
     }
 }
 
