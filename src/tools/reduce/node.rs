@@ -250,7 +250,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     /// plan; the others are active. If no other point exists, `everything` is final.
     ///
     /// # Errors
-    /// As [`PatchBuilder::simplex`].
+    /// As [`PatchBuilder::close`].
     fn split(
         &mut self,
         points: &Residual<D>,
@@ -276,7 +276,9 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
                 if is_final && builder.is_planned() {
                     builder.plan(bulk.corners(simplex).as_ref());
                 } else if is_final {
-                    builder.simplex(bulk.corners(simplex).as_ref(), points, code, blocks, None)?;
+                    if builder.add(bulk.corners(simplex).as_ref()) {
+                        builder.close(points, code, blocks)?;
+                    }
                 } else if *state == SimplexState::Open {
                     *state = SimplexState::Active;
                     self.active.push(simplex);
@@ -335,7 +337,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     /// Writes the final simplices that were planned, after hidden points.
     ///
     /// # Errors
-    /// As [`PatchBuilder::simplex`].
+    /// As [`PatchBuilder::close`] and `flush`.
     fn write_planned(
         &mut self,
         points: &Residual<D>,
@@ -349,8 +351,10 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         builder.isolated(self.bulk.hidden().iter().copied(), points, code, blocks, Some(flush))?;
         for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
             if self.simplex_states[simplex as usize] == SimplexState::Open {
-                let corners = self.bulk.corners(simplex);
-                builder.simplex(corners.as_ref(), points, code, blocks, Some(flush))?;
+                if builder.add(self.bulk.corners(simplex).as_ref()) {
+                    builder.close(points, code, blocks)?;
+                    flush(blocks)?;
+                }
             }
         }
         Ok(())

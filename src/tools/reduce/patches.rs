@@ -142,30 +142,16 @@ impl<const D: usize> PatchBuilder<D> {
         of_vertex[v as usize] = KEPT;
     }
 
-    /// Adds a final simplex, in the order in which they were planned if there is a plan. Only then may there be
-    /// `flush`.
-    ///
-    /// # Errors
-    /// As [`PatchBlocks::push`] and `flush`.
-    #[inline]
-    pub(super) fn simplex(
-        &mut self,
-        simplex: &[u32],
-        points: &Residual<D>,
-        code: PointCode,
-        blocks: &mut PatchBlocks,
-        flush: Option<&mut Flush>,
-    ) -> Result<()> {
+    /// Adds a final simplex, in the order in which they were planned if there is a plan. Returns whether the patch is
+    /// full and must be closed.
+    #[inline(always)]
+    pub(super) fn add(&mut self, simplex: &[u32]) -> bool {
         let first = self.corners.len();
         self.corners.extend_from_slice(simplex);
         for at in first..first + simplex.len() {
             self.corners[at] = self.index(self.corners[at]);
         }
-        if self.corners.len() < (D + 1) * self.simplices_max {
-            return Ok(());
-        }
-        self.close(points, code, blocks)?;
-        flush.map_or(Ok(()), |flush| flush(blocks))
+        self.corners.len() >= (D + 1) * self.simplices_max
     }
 
     /// Adds vertices that are in no simplex and finalized here, in patches of their own.
@@ -226,7 +212,7 @@ impl<const D: usize> PatchBuilder<D> {
     }
 
     /// Index of `v` in the patch. Adds it if it is new to the patch. Without a branch, which would be hard to predict.
-    #[inline]
+    #[inline(always)]
     fn index(&mut self, v: u32) -> u32 {
         let code = &mut self.codes[v as usize];
         let is_new = *code < self.first_code;
@@ -241,7 +227,12 @@ impl<const D: usize> PatchBuilder<D> {
     ///
     /// # Errors
     /// As [`PatchBlocks::push`].
-    fn close(&mut self, points: &Residual<D>, code: PointCode, blocks: &mut PatchBlocks) -> Result<()> {
+    pub(super) fn close(
+        &mut self,
+        points: &Residual<D>,
+        code: PointCode,
+        blocks: &mut PatchBlocks,
+    ) -> Result<()> {
         if self.vertex_count == 0 {
             return Ok(());
         }
