@@ -7,7 +7,7 @@ use std::os::unix::fs::FileExt;
 use memmap2::{Advice, Mmap, MmapOptions};
 
 use super::TemporaryFile;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// Bytes that are mapped at a time; more, if more are wanted at once. Longer windows would only make the process
 /// look larger.
@@ -78,8 +78,8 @@ impl Windows<'_> {
     /// If the file cannot be read, or is too short.
     pub fn bytes(&mut self, what: &str, offset: u64, len: usize) -> Result<&[u8]> {
         if offset.checked_add(len as u64).is_none_or(|end| end > self.file.len) {
-            let cause = std::io::Error::from(std::io::ErrorKind::UnexpectedEof);
-            return Err(Error::io(what, cause).of_input(&self.file.name));
+            let message = format!("{what}: {len} bytes at {offset} of a file of {} bytes", self.file.len);
+            return Err(Error::new(ErrorKind::Io, message).of_input(&self.file.name));
         }
         #[cfg(target_os = "linux")]
         if let Some(start) = self.map(offset, len) {
@@ -120,7 +120,6 @@ impl Windows<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::ErrorKind;
     use crate::random::Random;
 
     #[test]
