@@ -135,3 +135,28 @@ impl Loop for Numbers<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spmesh_core::random::Random;
+
+    #[test]
+    fn a_batch_has_the_cells_of_its_points_one_by_one() {
+        let mut random = Random::new(5);
+        for dims in [2, 3] {
+            let tree = CellTree::new(dims, 10, [-512.0; 3], 1024.0).expect("the tree is exact");
+            let grid = CellGrid::new(&tree, 10).expect("cells of side 1");
+            let (mut cells, mut numbers) = (vec![CellCode(9); 50], vec![7; 50]);
+            for count in [100, 0, 1, 7, 33] {
+                let coordinate = |random: &mut Random| (random.below(4096) as f64 - 2048.0) / 4.0;
+                let points: Vec<Point> =
+                    (0..count).map(|_| std::array::from_fn(|_| coordinate(&mut random))).collect();
+                grid.find_cells(&points, &mut cells);
+                grid.find_numbers(&points, &mut numbers);
+                assert!(cells.iter().copied().eq(points.iter().map(|&point| tree.cell_of(point, 10))));
+                assert!(numbers.iter().copied().eq(points.iter().map(|&point| grid.number_of(point))));
+            }
+        }
+    }
+}

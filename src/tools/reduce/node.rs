@@ -350,11 +350,10 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         }
         builder.isolated(self.bulk.hidden().iter().copied(), points, code, blocks, Some(flush))?;
         for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
-            if self.simplex_states[simplex as usize] == SimplexState::Open {
-                if builder.add(self.bulk.corners(simplex).as_ref()) {
-                    builder.close(points, code, blocks)?;
-                    flush(blocks)?;
-                }
+            let is_final = self.simplex_states[simplex as usize] == SimplexState::Open;
+            if is_final && builder.add(self.bulk.corners(simplex).as_ref()) {
+                builder.close(points, code, blocks)?;
+                flush(blocks)?;
             }
         }
         Ok(())
