@@ -3,6 +3,7 @@
 use clap::Parser;
 
 use super::reduction::{Shared, Tool};
+use spmesh_core::system;
 use spmesh_reduce::Duplicates;
 
 const EXAMPLES: &str = "\
@@ -75,5 +76,6 @@ const TOOL: Tool<2> = Tool {
 /// As [`spmesh_reduce::triangulate`] and [`spmesh_reduce::merge_triangles`], and if an input or the output
 /// cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::give_back_large_blocks();
     TOOL.run(&flags.shared, flags.duplicates.into(), false)
 }

@@ -220,6 +220,7 @@ enum Spool {
 /// Everything that reading, finalizing and writing fail with.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    system::give_back_large_blocks();
     if let Some(plan) = &flags.plan.plan {
         return planning::make(&flags, plan);
     }

@@ -11,3 +11,4 @@ pub mod random;
 pub mod system;
 pub mod temporary;
 pub mod upstream;
+pub mod wide;

@@ -76,12 +76,20 @@ pub fn widen_pipe(_file: &impl AsFd) {}
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const LARGE_BLOCK: libc::c_int = 1 << 18;
 
+/// Free memory at the end of a heap that stays with the process, in bytes: decoders of LAZ and nodes of a reduction
+/// allocate it again and again.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+const KEPT_LEN: libc::c_int = 4 << 20;
+
 /// From now on, large blocks of memory go back to the system when they are freed. By default, glibc raises
 /// its threshold when the first large blocks are freed, and then keeps blocks of that size for each thread.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn give_back_large_blocks() {
-    // SAFETY: the call takes integers and only changes where later blocks lie.
-    unsafe { libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE_BLOCK) };
+    // SAFETY: the calls take integers and only change where later blocks lie and which free memory is kept.
+    unsafe {
+        libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE_BLOCK);
+        libc::mallopt(libc::M_TRIM_THRESHOLD, KEPT_LEN);
+    }
 }
 
 /// Does nothing: other systems give large blocks back on their own.

@@ -21,13 +21,7 @@ pub(super) const PATCH_FIXED_LEN: usize = 24;
 pub(super) fn points(header: &Header, bytes: &[u8], points: &mut Vec<Point>) -> Result<Option<Bounds>> {
     points.clear();
     let _ = whole_records(bytes, header.point_len())?;
-    let decode = match (header.coordinates, header.coordinates_per_point()) {
-        (Coordinates::F64, 2) => decode::<8, 2>,
-        (Coordinates::F64, _) => decode::<8, 3>,
-        (Coordinates::I32 { .. }, 2) => decode::<4, 2>,
-        (Coordinates::I32 { .. }, _) => decode::<4, 3>,
-    };
-    decode(bytes, points);
+    decoder(header)(bytes, points);
     check_places(header, points)
 }
 
@@ -183,18 +177,16 @@ fn point(header: &Header, record: &[u8]) -> Result<Point> {
 
 /// Appends points that this process encoded with [`super::encode_points`]; they are not checked.
 pub fn decode_points(header: &Header, bytes: &[u8], points: &mut Vec<Point>) {
-    let axes = header.coordinates_per_point();
-    let records = bytes.chunks_exact(header.point_len());
-    let decode = |record: &[u8], width: usize, value: fn(&[u8]) -> f64| {
-        let mut point = [0.0; 3];
-        point[..axes].iter_mut().zip(record.chunks_exact(width)).for_each(|(to, from)| *to = value(from));
-        point
-    };
-    match header.coordinates {
-        Coordinates::F64 => points.extend(records.map(|record| decode(record, 8, LE::read_f64))),
-        Coordinates::I32 { .. } => {
-            points.extend(records.map(|record| decode(record, 4, |bytes| f64::from(LE::read_i32(bytes)))));
-        }
+    decoder(header)(bytes, points);
+}
+
+/// What appends the points of whole records.
+fn decoder(header: &Header) -> fn(&[u8], &mut Vec<Point>) {
+    match (header.coordinates, header.coordinates_per_point()) {
+        (Coordinates::F64, 2) => decode::<8, 2>,
+        (Coordinates::F64, _) => decode::<8, 3>,
+        (Coordinates::I32 { .. }, 2) => decode::<4, 2>,
+        (Coordinates::I32 { .. }, _) => decode::<4, 3>,
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod configurations;
 mod constraints;
+mod encode;
 mod four;
 mod functions;
 mod parts;
@@ -14,13 +15,14 @@ use super::block::{Frame, Tag};
 use super::compression::Compressor;
 use super::configuration_rules::ConfigurationRules;
 use super::constraints::ConstraintRules;
-use super::coordinates::Coordinates;
 use super::event::{Patch, Totals};
 use super::functions::{FunctionRules, check_end};
 use super::header::Header;
 use super::kind::Kind;
 use super::patch_blocks::PatchBlocks;
 use super::rules4::Rules4;
+use encode::encode_point;
+pub use encode::encode_points;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_model::bounds::Point;
@@ -340,66 +342,4 @@ fn check_len(payload_len: usize) -> Result<()> {
 
 fn write_error(cause: std::io::Error) -> Error {
     Error::io("writing the stream", cause)
-}
-
-/// Appends the stored form of `point`.
-///
-/// # Errors
-/// [`spmesh_core::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
-fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
-    for &value in &point[..header.coordinates_per_point()] {
-        if !header.coordinates.can_store(value) {
-            return Err(Error::malformed(format!("coordinate {value} does not fit the stream's encoding")));
-        }
-        match header.coordinates {
-            Coordinates::F64 => bytes.extend_from_slice(&value.to_le_bytes()),
-            Coordinates::I32 { .. } => bytes.extend_from_slice(&(value as i32).to_le_bytes()),
-        }
-    }
-    Ok(())
-}
-
-/// Appends the stored form of all `points`, each as by `encode_point`.
-///
-/// # Errors
-/// [`spmesh_core::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
-pub fn encode_points(header: &Header, points: &[Point], bytes: &mut Vec<u8>) -> Result<()> {
-    let all_fit = match (header.coordinates, header.coordinates_per_point()) {
-        (Coordinates::I32 { .. }, 2) => append::<2, 4>(points, bytes, i32_bytes),
-        (Coordinates::I32 { .. }, _) => append::<3, 4>(points, bytes, i32_bytes),
-        (Coordinates::F64, 2) => append::<2, 8>(points, bytes, f64_bytes),
-        (Coordinates::F64, _) => append::<3, 8>(points, bytes, f64_bytes),
-    };
-    if all_fit {
-        return Ok(());
-    }
-    points.iter().try_for_each(|&point| encode_point(header, point, &mut Vec::new()))
-}
-
-fn i32_bytes(value: f64) -> ([u8; 4], bool) {
-    ((value as i32).to_le_bytes(), f64::from(value as i32) == value)
-}
-
-fn f64_bytes(value: f64) -> ([u8; 8], bool) {
-    (value.to_le_bytes(), value.is_finite())
-}
-
-/// Appends the first `AXES` coordinates of each point as `WIDTH` bytes each; returns whether all of them fit.
-#[inline(always)]
-fn append<const AXES: usize, const WIDTH: usize>(
-    points: &[Point],
-    bytes: &mut Vec<u8>,
-    encode: impl Fn(f64) -> ([u8; WIDTH], bool),
-) -> bool {
-    let start = bytes.len();
-    bytes.resize(start + points.len() * AXES * WIDTH, 0);
-    let mut all_fit = true;
-    for (record, point) in bytes[start..].chunks_exact_mut(AXES * WIDTH).zip(points) {
-        for (field, &value) in record.chunks_exact_mut(WIDTH).zip(point) {
-            let (encoded, fits) = encode(value);
-            field.copy_from_slice(&encoded);
-            all_fit &= fits;
-        }
-    }
-    all_fit
 }

@@ -1,5 +1,6 @@
 //! Temporary files.
 
+mod frozen;
 mod names;
 mod records;
 
@@ -9,6 +10,7 @@ use std::os::unix::fs::FileExt;
 use std::path::Path;
 
 use crate::error::{Error, Result};
+pub use frozen::{FrozenFile, Windows};
 pub(crate) use names::Name;
 pub use names::remove_names_at_signals;
 pub use records::Records;

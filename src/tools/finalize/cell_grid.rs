@@ -4,6 +4,7 @@
 //! depends on the level once; the rest is a few operations without branches, so that a loop over a batch is
 //! vectorized. Both find the same cell for every point (`tests/cell_grid.rs`).
 
+use spmesh_core::wide::{Loop, run_wide};
 use spmesh_model::bits::{spread2, spread3};
 use spmesh_model::bounds::Point;
 use spmesh_model::cells::{CellCode, CellTree};
@@ -56,6 +57,18 @@ impl CellGrid {
         CellCode(1 << (self.dims * self.level) | morton)
     }
 
+    /// Sets `cells` to the cell of each point.
+    pub(super) fn find_cells(&self, points: &[Point], cells: &mut Vec<CellCode>) {
+        cells.resize(points.len(), CellCode(0));
+        run_wide(Cells { grid: *self, points, cells });
+    }
+
+    /// Sets `numbers` to the row-major index of the cell of each point.
+    pub(super) fn find_numbers(&self, points: &[Point], numbers: &mut Vec<u32>) {
+        numbers.resize(points.len(), 0);
+        run_wide(Numbers { grid: *self, points, numbers });
+    }
+
     /// Row-major index of the cell that holds `point`, below `2^(dims * level)`, which must be less than
     /// 2^32. For a point outside of the cube, any index below that bound.
     #[inline(always)]
@@ -67,5 +80,83 @@ impl CellGrid {
         }
         let mask = ((1u64 << (self.dims * self.level)) - 1) as u32;
         (number << self.level | self.index(0, point[0])) & mask
+    }
+}
+
+struct Cells<'a> {
+    grid: CellGrid,
+    points: &'a [Point],
+    cells: &'a mut [CellCode],
+}
+
+impl Loop for Cells<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Cells { grid, points, cells } = self;
+        // With the number of dimensions known, the loop has no branch.
+        if grid.dims == 2 {
+            let grid = CellGrid { dims: 2, ..grid };
+            for (cell, &point) in cells.iter_mut().zip(points) {
+                *cell = grid.cell_of(point);
+            }
+        } else {
+            let grid = CellGrid { dims: 3, ..grid };
+            for (cell, &point) in cells.iter_mut().zip(points) {
+                *cell = grid.cell_of(point);
+            }
+        }
+    }
+}
+
+struct Numbers<'a> {
+    grid: CellGrid,
+    points: &'a [Point],
+    numbers: &'a mut [u32],
+}
+
+impl Loop for Numbers<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Numbers { grid, points, numbers } = self;
+        if grid.dims == 2 {
+            let grid = CellGrid { dims: 2, ..grid };
+            for (number, &point) in numbers.iter_mut().zip(points) {
+                *number = grid.number_of(point);
+            }
+        } else {
+            let grid = CellGrid { dims: 3, ..grid };
+            for (number, &point) in numbers.iter_mut().zip(points) {
+                *number = grid.number_of(point);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spmesh_core::random::Random;
+
+    #[test]
+    fn a_batch_has_the_cells_of_its_points_one_by_one() {
+        let mut random = Random::new(5);
+        for dims in [2, 3] {
+            let tree = CellTree::new(dims, 10, [-512.0; 3], 1024.0).expect("the tree is exact");
+            let grid = CellGrid::new(&tree, 10).expect("cells of side 1");
+            let (mut cells, mut numbers) = (vec![CellCode(9); 50], vec![7; 50]);
+            for count in [100, 0, 1, 7, 33] {
+                let coordinate = |random: &mut Random| (random.below(4096) as f64 - 2048.0) / 4.0;
+                let points: Vec<Point> =
+                    (0..count).map(|_| std::array::from_fn(|_| coordinate(&mut random))).collect();
+                grid.find_cells(&points, &mut cells);
+                grid.find_numbers(&points, &mut numbers);
+                assert!(cells.iter().copied().eq(points.iter().map(|&point| tree.cell_of(point, 10))));
+                assert!(numbers.iter().copied().eq(points.iter().map(|&point| grid.number_of(point))));
+            }
+        }
     }
 }

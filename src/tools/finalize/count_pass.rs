@@ -42,13 +42,15 @@ struct BatchCells {
 impl BatchCells {
     fn prepare(&mut self, tree: &CellTree, points: &[Point]) {
         self.bounds = bounds_of(points);
-        self.cells.clear();
         match CellGrid::new(tree, tree.depth()) {
-            Some(grid) => self.cells.extend(points.iter().map(|&point| grid.cell_of(point))),
-            None => self.cells.extend(points.iter().map(|&point| match tree.contains(point) {
-                true => tree.cell_of(point, tree.depth()),
-                false => CellCode(0),
-            })),
+            Some(grid) => grid.find_cells(points, &mut self.cells),
+            None => {
+                self.cells.clear();
+                self.cells.extend(points.iter().map(|&point| match tree.contains(point) {
+                    true => tree.cell_of(point, tree.depth()),
+                    false => CellCode(0),
+                }));
+            }
         }
         // Most batches lie inside as a whole, which the corners of their box prove.
         self.outside = 0;

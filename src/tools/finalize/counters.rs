@@ -68,22 +68,32 @@ impl Counters {
     /// # Errors
     /// [`ErrorKind::Memory`] if the counters of a fixed level do not fit.
     pub(super) fn add(&mut self, deepest: &[CellCode]) -> Result<()> {
-        for &CellCode(code) in deepest.iter().filter(|cell| cell.0 > 0) {
-            self.add_count(CellCode(code >> (self.tree.dims() * (self.tree.depth() - self.level))), 1);
+        let mut rest = deepest;
+        while let Some((&CellCode(first), later)) = rest.split_first() {
+            if first == 0 {
+                rest = later;
+                continue;
+            }
+            let shift = u32::from(self.tree.dims() * (self.tree.depth() - self.level));
+            let key = first >> shift >> PAGE_BITS;
+            let page = match self.last {
+                Some((last, page)) if last == key => page,
+                _ => self.page(key),
+            };
+            // Points follow each other on a page.
+            let page = &mut self.pages[page];
+            let is_on_page = |cell: &&CellCode| cell.0 >> shift >> PAGE_BITS == key && cell.0 > 0;
+            let mut counted = 0;
+            for cell in rest.iter().take_while(is_on_page) {
+                page[(cell.0 >> shift) as usize % PAGE_CELLS] += 1;
+                counted += 1;
+            }
+            rest = &rest[counted..];
             if self.pages.len() > self.pages_max {
                 self.coarsen_to_fit()?;
             }
         }
         Ok(())
-    }
-
-    fn add_count(&mut self, cell: CellCode, count: u64) {
-        let (key, slot) = (cell.0 >> PAGE_BITS, cell.0 as usize % PAGE_CELLS);
-        let page = match self.last {
-            Some((last, page)) if last == key => page,
-            _ => self.page(key),
-        };
-        self.pages[page][slot] += count;
     }
 
     fn page(&mut self, key: u64) -> usize {

@@ -58,11 +58,11 @@ impl Locator {
     /// # Errors
     /// If a point lies in no leaf: it was not counted, so the input has changed.
     pub(super) fn locate(&self, points: &[Point], found: &mut Vec<u32>) -> Result<()> {
-        found.clear();
         let Some(Grids { table, deepest }) = self.grids else {
             return self.search_all(points, found);
         };
-        found.extend(points.iter().map(|&point| self.table[table.number_of(point) as usize]));
+        table.find_numbers(points, found);
+        found.iter_mut().for_each(|found| *found = self.table[*found as usize]);
         let mut last = 0;
         for (leaf, &point) in found.iter_mut().zip(points) {
             if *leaf >= DIVIDED {
@@ -81,6 +81,7 @@ impl Locator {
     /// # Errors
     /// As [`Locator::locate`].
     fn search_all(&self, points: &[Point], found: &mut Vec<u32>) -> Result<()> {
+        found.clear();
         let mut last = 0;
         for &point in points {
             last = self.search(self.tree.cell_of(point, self.tree.depth()).0, last)?;

@@ -8,12 +8,15 @@ use std::path::{Path, PathBuf};
 
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::system;
-use spmesh_core::temporary::TemporaryFile;
+use spmesh_core::temporary::{FrozenFile, TemporaryFile, Windows};
 use spmesh_io::source::{Description, PointReader};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Header, Kind, decode_points, encode_points};
 
 const BLOCK_HEADER_LEN: usize = 8;
+
+/// The operation, for messages.
+const READING: &str = "reading points back";
 
 /// Bytes after which an automatic spool checks the free space again.
 const SPACE_CHECK_LEN: u64 = 16 << 20;
@@ -40,7 +43,7 @@ fn header_of(description: &Description) -> Header {
 
 /// Points in a temporary file, in input order.
 pub(super) struct Spool {
-    file: TemporaryFile,
+    file: FrozenFile,
     header: Header,
     bytes: u64,
     points: u64,
@@ -48,12 +51,6 @@ pub(super) struct Spool {
 }
 
 impl Spool {
-    fn create(folder: &Path, description: &Description) -> Result<Spool> {
-        let file = TemporaryFile::create(Some(folder))?;
-        let header = header_of(description);
-        Ok(Spool { file, header, bytes: 0, points: 0, invalid: 0 })
-    }
-
     /// Number of points.
     pub(super) fn points(&self) -> u64 {
         self.points
@@ -66,7 +63,28 @@ impl Spool {
 
     /// Starts a pass over the points.
     pub(super) fn read(&self) -> SpoolReader<'_> {
-        SpoolReader { spool: self, at: 0, payload: Vec::new(), rows: Vec::new() }
+        SpoolReader { spool: self, windows: self.file.windows(), at: 0, rows: Vec::new() }
+    }
+}
+
+/// A spool while it is written.
+struct SpoolWriter {
+    file: TemporaryFile,
+    header: Header,
+    bytes: u64,
+    points: u64,
+}
+
+impl SpoolWriter {
+    fn create(folder: &Path, description: &Description) -> Result<SpoolWriter> {
+        let file = TemporaryFile::create(Some(folder))?;
+        Ok(SpoolWriter { file, header: header_of(description), bytes: 0, points: 0 })
+    }
+
+    /// Ends the spool of an input with so many points that are not finite.
+    fn finish(self, invalid: u64) -> Result<Spool> {
+        let SpoolWriter { file, header, bytes, points } = self;
+        Ok(Spool { file: file.freeze()?, header, bytes, points, invalid })
     }
 
     /// Appends points, then their rows.
@@ -89,34 +107,29 @@ impl Spool {
 /// One pass over a spool.
 pub(super) struct SpoolReader<'a> {
     spool: &'a Spool,
+    windows: Windows<'a>,
     at: u64,
-    payload: Vec<u8>,
     rows: Vec<u8>,
 }
 
 impl SpoolReader<'_> {
-    fn read_exact(&mut self, len: usize) -> Result<()> {
-        self.payload.resize(len, 0);
-        self.spool.file.read_at("reading points back", &mut self.payload, self.at)?;
-        self.at += len as u64;
-        Ok(())
-    }
-
     fn read_block(&mut self, batch: &mut Vec<Point>) -> Result<()> {
-        self.read_exact(BLOCK_HEADER_LEN)?;
-        let (len, checksum) = self.payload.split_at(4);
+        let head = self.windows.bytes(READING, self.at, BLOCK_HEADER_LEN)?;
+        self.at += BLOCK_HEADER_LEN as u64;
+        let (len, checksum) = head.split_at(4);
         let number = |bytes: &[u8]| u32::from_le_bytes(bytes.try_into().expect("four bytes"));
         let (len, checksum) = (number(len), number(checksum));
         if u64::from(len) > self.spool.bytes - self.at {
             return Err(damaged());
         }
-        self.read_exact(len as usize)?;
-        if crc32c::crc32c(&self.payload) != checksum {
+        let payload = self.windows.bytes(READING, self.at, len as usize)?;
+        self.at += u64::from(len);
+        if crc32c::crc32c(payload) != checksum {
             return Err(damaged());
         }
         let header = &self.spool.header;
-        let points = self.payload.len() / header.record_len();
-        let (points, rows) = self.payload.split_at(points * header.point_len());
+        let points = payload.len() / header.record_len();
+        let (points, rows) = payload.split_at(points * header.point_len());
         decode_points(header, points, batch);
         self.rows.extend_from_slice(rows);
         Ok(())
@@ -195,7 +208,7 @@ pub(super) struct Tee<'a> {
     reader: Box<dyn PointReader + 'a>,
     plan: SpoolPlan,
     /// The file, or why there is none.
-    spool: Result<Spool>,
+    spool: Result<SpoolWriter>,
     block: Vec<u8>,
     next_space_check: u64,
 }
@@ -210,7 +223,7 @@ impl<'a> Tee<'a> {
         plan: SpoolPlan,
         description: &Description,
     ) -> Result<Self> {
-        let spool = Spool::create(&plan.folder, description);
+        let spool = SpoolWriter::create(&plan.folder, description);
         match spool {
             Err(error) if plan.is_strict => Err(error),
             spool => Ok(Tee { reader, plan, spool, block: Vec::new(), next_space_check: SPACE_CHECK_LEN }),
@@ -220,7 +233,7 @@ impl<'a> Tee<'a> {
     /// The spool of a whole pass, or the reason why there is none.
     pub(super) fn finish(self) -> Result<Spool> {
         let invalid = self.reader.invalid();
-        self.spool.map(|spool| Spool { invalid, ..spool })
+        self.spool?.finish(invalid)
     }
 
     fn keep(&mut self, batch: &[Point]) -> Result<()> {

@@ -114,6 +114,14 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// outside of it can be in conflict with.
     fn is_inside(&self, simplex: u32, points: &Residual<D>, balls: &Self::Balls) -> bool;
 
+    /// Keeps those of the `kept` simplices, from the `first` on in the order of [`Bulk::nth`], whose ball certainly
+    /// lies inside, as by [`Bulk::is_inside`].
+    fn keep_inside(&self, first: usize, kept: &mut [bool], points: &Residual<D>, balls: &Self::Balls) {
+        for (k, kept) in (first..).zip(kept).filter(|(_, kept)| **kept) {
+            *kept = self.is_inside(self.nth(k), points, balls);
+        }
+    }
+
     /// Decisions of the predicates so far.
     fn counts(&self) -> &PredicateCounts;
 }

@@ -39,7 +39,7 @@ const POINTS_PER_WORKER: usize = 1 << 16;
 const JOBS_PER_WORKER: usize = 3;
 
 /// Pieces of the input that are read ahead.
-const PIECES_AHEAD: usize = 3;
+const PIECES_AHEAD: usize = 2;
 
 /// Buffers of each kind that wait to be used again.
 const POOL_LEN: usize = 16;
@@ -193,7 +193,7 @@ impl<'scope, W: Write + Send + 'scope> WorkerPool<'scope, W> {
                 let mut worker = Worker::<B, D>::new(rules);
                 let solve = |job| {
                     let give_back = |raw| buffers.raw.give_back(raw);
-                    worker.solve(job, buffers.blocks.take(), give_back, &mut |_| Ok(()))
+                    worker.solve(job, buffers.blocks.take(), give_back, None)
                 };
                 work(solve, &inner, &leaves, &done);
                 worker.counts()

@@ -1,5 +1,6 @@
 //! Whether a circumscribing disk lies in a box: the common case, decided without a division.
 
+use spmesh_core::wide::{Loop, run_wide};
 use spmesh_geometry::predicates::circle::CircleBounds;
 use spmesh_model::bounds::Region;
 
@@ -13,6 +14,12 @@ const SHORTENED: f64 = 1.0 / (1u64 << 45) as f64;
 /// Smaller magnitudes go to the full test, because underflow could matter. The limit of [`CircleBounds`] is
 /// far smaller.
 const SMALLEST: f64 = 1e-100;
+
+/// Triangles that are tested together.
+const LANES: usize = 32;
+
+/// The corners of so many triangles, by corner and axis.
+type Lanes = [[[f64; LANES]; 2]; 3];
 
 /// Decides whether disks certainly lie in a region, exactly as [`CircleBounds::disk_inside`] does.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +39,31 @@ impl Disks {
         self.is_far_inside(a, b, c) || self.bounds.disk_inside(a, b, c, &self.region)
     }
 
+    /// Keeps those of the `kept` triangles whose disk certainly lies in the region, as by [`Disks::inside`]. The
+    /// corners of a triangle are the numbers of points in `at`.
+    pub(super) fn keep_inside(
+        &self,
+        corners: impl ExactSizeIterator<Item = [u32; 3]>,
+        at: &[[f64; 2]],
+        kept: &mut [bool],
+    ) {
+        let mut lanes = [[[0.0; LANES]; 2]; 3];
+        let mut corners = corners.map(|corners| corners.map(|v| at[v as usize]));
+        for kept in kept.chunks_mut(LANES) {
+            // The last lanes may be left over from triangles before; they do not matter.
+            for (lane, triangle) in corners.by_ref().take(kept.len()).enumerate() {
+                for (lanes, point) in lanes.iter_mut().zip(triangle) {
+                    (lanes[0][lane], lanes[1][lane]) = (point[0], point[1]);
+                }
+            }
+            let are_far_inside = run_wide(FarInside { disks: self, triangles: &lanes });
+            for (lane, kept) in kept.iter_mut().enumerate() {
+                let [a, b, c] = [0, 1, 2].map(|corner| [lanes[corner][0][lane], lanes[corner][1][lane]]);
+                *kept = *kept && (are_far_inside[lane] || self.bounds.disk_inside(a, b, c, &self.region));
+            }
+        }
+    }
+
     /// Whether twice the radius is certainly less than the distance from `a` to each side. The disk is then
     /// inside, and by such a margin that the full test agrees.
     ///
@@ -40,7 +72,7 @@ impl Disks {
     /// the error terms of the full test. So `|d| > E n_d` leaves `d` a relative error below 2^-28, and `|m| +
     /// E n` exceeds the sum in the full test of `m`, its error, and the errors of the quotient. The factor at
     /// the end covers the rest.
-    #[inline]
+    #[inline(always)]
     fn is_far_inside(&self, a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> bool {
         let (bx, by) = (b[0] - a[0], b[1] - a[1]);
         let (cx, cy) = (c[0] - a[0], c[1] - a[1]);
@@ -64,8 +96,29 @@ impl Disks {
     }
 }
 
+/// [`Disks::is_far_inside`] for many triangles.
+struct FarInside<'a> {
+    disks: &'a Disks,
+    triangles: &'a Lanes,
+}
+
+impl Loop for FarInside<'_> {
+    type Output = [bool; LANES];
+
+    #[inline(always)]
+    fn run(self) -> [bool; LANES] {
+        let [a, b, c] = self.triangles;
+        let mut are_far_inside = [false; LANES];
+        for (lane, is_far_inside) in are_far_inside.iter_mut().enumerate() {
+            let corner = |corner: &[[f64; LANES]; 2]| [corner[0][lane], corner[1][lane]];
+            *is_far_inside = self.disks.is_far_inside(corner(a), corner(b), corner(c));
+        }
+        are_far_inside
+    }
+}
+
 /// The lesser of two numbers: one instruction, unlike `f64::min`, which has a rule for NaN.
-#[inline]
+#[inline(always)]
 fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
@@ -120,6 +173,31 @@ mod tests {
             }
         }
         assert!(quick > full / 2, "the quick test decides {quick} of {full}");
+    }
+
+    #[test]
+    fn many_triangles_at_once_get_the_answers_of_one_by_one() {
+        let mut random = Random(11);
+        let region = Region { min: [0.0; 2], max: [1.0; 2] };
+        for bounds in [CircleBounds::FLOAT, CircleBounds::INTEGER] {
+            let disks = Disks::new(bounds, region);
+            for count in [0, 1, LANES - 1, LANES, LANES + 1, 5 * LANES + 7] {
+                let at: Vec<[f64; 2]> = (0..3 * count).map(|_| random.point([0.5; 2], 1.1)).collect();
+                let triangles = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+                let mut kept: Vec<bool> = (0..count).map(|_| random.unit() < 0.7).collect();
+                let expected: Vec<bool> = kept
+                    .iter()
+                    .zip(triangles.clone())
+                    .map(|(&kept, triangle)| {
+                        let [a, b, c] = triangle.map(|v| at[v as usize]);
+                        kept && disks.inside(a, b, c)
+                    })
+                    .collect();
+                disks.keep_inside(triangles, &at, &mut kept);
+                assert_eq!(kept, expected, "{count} triangles");
+                assert!(count < 100 || (expected.contains(&true) && expected.contains(&false)));
+            }
+        }
     }
 
     #[test]

@@ -77,7 +77,7 @@ fn join<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     sequencer.open(&[]);
     let mut solver = Solver::<B, D>::new(rules);
     let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
-    let solved = solver.solve(NODE, &mut residual, &region, PatchBlocks::default(), flush);
+    let solved = solver.solve(NODE, &mut residual, &region, PatchBlocks::default(), Some(flush));
     let mut solved = solved.map_err(|error| origins.locate(error, solver.misfit()))?;
     residual = std::mem::take(&mut solved.residual);
     let active = residual.active;

@@ -33,6 +33,7 @@ mod duplicates;
 mod join;
 mod merge;
 mod merging;
+mod misfit;
 mod node;
 mod origins;
 mod partial;

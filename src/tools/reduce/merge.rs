@@ -85,7 +85,7 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     sequencer.open(&[LEFT]);
     let mut solver = Solver::<B, D>::new(rules);
     let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
-    let solved = solver.solve(MERGED, &mut residual, &region, PatchBlocks::default(), flush);
+    let solved = solver.solve(MERGED, &mut residual, &region, PatchBlocks::default(), Some(flush));
     let mut solved = solved.map_err(|error| origins.locate(error, solver.misfit()))?;
     residual = std::mem::take(&mut solved.residual);
     let active = residual.active;

@@ -2,6 +2,7 @@
 
 use super::bulk::{Bulk, Facet, WallSide};
 use super::duplicates::Duplicates;
+use super::misfit::{Misfit, overlap};
 use super::patches::{Flush, PatchBuilder};
 use super::residual::Residual;
 use super::sides::Sides;
@@ -40,6 +41,9 @@ impl<const D: usize> Rules<D> {
         &self.coordinates
     }
 }
+
+/// Simplices that are tested together.
+const BATCH: usize = 128;
 
 /// Stands for the index of a point that is not in the residual.
 const NO_POINT: u32 = u32::MAX;
@@ -93,14 +97,6 @@ impl<const D: usize> Solved<D> {
     }
 }
 
-/// What of the points does not fit, after an error: numbers of points or of a wall.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Misfit {
-    Point(u32),
-    Points([u32; 2]),
-    Wall(usize),
-}
-
 /// Triangulates one node after the other, in buffers that are used again.
 pub(super) struct Solver<B, const D: usize> {
     rules: Rules<D>,
@@ -140,7 +136,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
 
     /// Triangulates the points of node `number`, and finds the simplices that are final in `region`, outside
     /// of which other points may lie. Nodes are numbered in the order in which they are written. The memory
-    /// of `blocks` is used again. `flush` may take patches as they come; the others are in the result.
+    /// of `blocks` is used again. If there is `flush`, it may take patches as they come; the others are in the result.
     ///
     /// # Errors
     /// Those of `flush`; [`spmesh_core::error::ErrorKind::Malformed`] if coinciding points are forbidden or
@@ -152,7 +148,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         points: &mut Residual<D>,
         region: &Region<D>,
         mut blocks: PatchBlocks,
-        flush: &mut Flush,
+        mut flush: Option<&mut Flush>,
     ) -> Result<Solved<D>> {
         blocks.clear();
         self.bulk.triangulate(points, self.rules.weights)?;
@@ -165,9 +161,17 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         self.rules.duplicates.settle(points, duplicates, coordinates, *weights)?;
         self.find_holes(&points.walls)?;
         let everything = *region == Region::EVERYTHING && !self.rules.is_partial;
-        self.split(points, region, everything);
+        self.builder.start(points.len(), self.rules.code, self.bulk.hidden().len(), flush.is_some());
+        let hidden = self.bulk.hidden().iter().copied();
+        if !self.builder.is_planned() {
+            self.builder.isolated(hidden, points, self.rules.code, &mut blocks, None)?;
+        }
+        self.split(points, region, everything, &mut blocks)?;
         self.find_point_states(points, everything);
-        self.write_patches(points, &mut blocks, flush)?;
+        if let Some(flush) = &mut flush {
+            self.write_planned(points, &mut blocks, flush)?;
+        }
+        self.write_rest(points, &mut blocks, flush)?;
         self.find_walls(points, everything);
         let (residual, references) = self.residual(number, points);
         let merged = self.bulk.duplicates().len() as u64;
@@ -248,24 +252,46 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         Ok(())
     }
 
-    /// Splits the simplices outside of holes: final ones are planned for patches, the others are active. If
-    /// no other point exists, `everything` is final.
-    fn split(&mut self, points: &Residual<D>, region: &Region<D>, everything: bool) {
+    /// Splits the simplices outside of holes: final ones are planned for patches, or added to them if there is no
+    /// plan; the others are active. If no other point exists, `everything` is final.
+    ///
+    /// # Errors
+    /// As [`PatchBuilder::close`].
+    fn split(
+        &mut self,
+        points: &Residual<D>,
+        region: &Region<D>,
+        everything: bool,
+        blocks: &mut PatchBlocks,
+    ) -> Result<()> {
         let balls = B::balls(&self.rules.coordinates, *region, self.rules.weights);
-        self.builder.start(points.len(), self.rules.code, self.bulk.hidden().len());
+        let (bulk, builder, code) = (&self.bulk, &mut self.builder, self.rules.code);
         self.active.clear();
-        for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
-            let state = &mut self.simplex_states[simplex as usize];
-            if *state == SimplexState::Hole {
-                continue;
+        let mut are_final = [false; BATCH];
+        for first in (0..bulk.len()).step_by(BATCH) {
+            let are_final = &mut are_final[..BATCH.min(bulk.len() - first)];
+            for (k, is_final) in (first..).zip(&mut *are_final) {
+                *is_final = self.simplex_states[bulk.nth(k) as usize] == SimplexState::Open;
             }
-            if everything || self.bulk.is_inside(simplex, points, &balls) {
-                self.builder.plan(self.bulk.corners(simplex).as_ref());
-            } else {
-                *state = SimplexState::Active;
-                self.active.push(simplex);
+            if !everything {
+                bulk.keep_inside(first, are_final, points, &balls);
+            }
+            for (k, &mut is_final) in (first..).zip(are_final) {
+                let simplex = bulk.nth(k);
+                let state = &mut self.simplex_states[simplex as usize];
+                if is_final && builder.is_planned() {
+                    builder.plan(bulk.corners(simplex).as_ref());
+                } else if is_final {
+                    if builder.add(bulk.written(simplex).as_ref()) {
+                        builder.close(points, code, blocks)?;
+                    }
+                } else if *state == SimplexState::Open {
+                    *state = SimplexState::Active;
+                    self.active.push(simplex);
+                }
             }
         }
+        Ok(())
     }
 
     /// Whether the infinite simplex at a facet of the hull is one of all points of this node, and not final.
@@ -314,18 +340,42 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         self.point_states = point_states;
     }
 
-    /// Writes the final simplices, and the points that are finalized here without being in one: first hidden
-    /// points, at last vertices of the hull whose simplices were all written below, and at the root the
-    /// points of an input without simplices.
+    /// Writes the final simplices that were planned, after hidden points.
     ///
     /// # Errors
-    /// Those of `flush`; [`spmesh_core::error::ErrorKind::Malformed`] if a point has no simplex outside of
-    /// the holes: no node leaves such a point.
-    fn write_patches(
+    /// As [`PatchBuilder::close`] and `flush`.
+    fn write_planned(
         &mut self,
         points: &Residual<D>,
         blocks: &mut PatchBlocks,
         flush: &mut Flush,
+    ) -> Result<()> {
+        let (builder, code) = (&mut self.builder, self.rules.code);
+        for (v, _) in (0..).zip(&self.point_states).filter(|&(_, &state)| state == PointState::Residual) {
+            builder.keep(v);
+        }
+        builder.isolated(self.bulk.hidden().iter().copied(), points, code, blocks, Some(flush))?;
+        for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
+            let is_final = self.simplex_states[simplex as usize] == SimplexState::Open;
+            if is_final && builder.add(self.bulk.written(simplex).as_ref()) {
+                builder.close(points, code, blocks)?;
+                flush(blocks)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the points that are finalized here without being in a simplex: vertices of the hull whose simplices
+    /// were all written below, and at the root the points of an input without simplices.
+    ///
+    /// # Errors
+    /// Those of `flush`; [`spmesh_core::error::ErrorKind::Malformed`] if a point has no simplex outside of
+    /// the holes: no node leaves such a point.
+    fn write_rest(
+        &mut self,
+        points: &Residual<D>,
+        blocks: &mut PatchBlocks,
+        flush: Option<&mut Flush>,
     ) -> Result<()> {
         let (builder, code) = (&mut self.builder, self.rules.code);
         let mut unused = Vec::new();
@@ -344,13 +394,9 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
                 _ => {}
             }
         }
-        builder.isolated(self.bulk.hidden().iter().copied(), points, code, blocks, flush)?;
-        for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
-            if self.simplex_states[simplex as usize] == SimplexState::Open {
-                builder.simplex(self.bulk.written(simplex).as_ref(), points, code, blocks, flush)?;
-            }
-        }
-        builder.isolated(unused.into_iter(), points, code, blocks, flush)
+        builder.isolated(unused.into_iter(), points, code, blocks, flush)?;
+        builder.finish(blocks);
+        Ok(())
     }
 
     /// Finds the walls: facets between a simplex that is not active and an active or infinite one.
@@ -405,11 +451,4 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         residual.left = count;
         (residual, references)
     }
-}
-
-fn overlap<const D: usize>(points: &Residual<D>, point: u32, vertex: u32) -> Error {
-    let [a, b] = [point, vertex].map(|i| points.point(i as usize));
-    Error::malformed(format!(
-        "point {a:?} coincides with {b:?} of another cell or tile (stored coordinates): regions overlap"
-    ))
 }

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::node::Misfit;
+use super::misfit::Misfit;
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_stream::{Event, StreamReader};
 

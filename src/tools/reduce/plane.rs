@@ -108,6 +108,11 @@ impl Bulk<2> for Plane {
         disks.inside(a, b, c)
     }
 
+    fn keep_inside(&self, first: usize, kept: &mut [bool], points: &Residual<2>, disks: &Disks) {
+        let triangles = &self.triangulation.triangles()[first..][..kept.len()];
+        disks.keep_inside(triangles.iter().map(|triangle| triangle.vertices), &points.at, kept);
+    }
+
     fn counts(&self) -> &PredicateCounts {
         self.kernel.counts()
     }

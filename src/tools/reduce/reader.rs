@@ -11,6 +11,10 @@ use spmesh_model::bounds::Region;
 use spmesh_model::cells::CellCode;
 use spmesh_stream::{Event, StreamReader};
 
+/// Points after which a piece tells how many were read: a message for each block would wake the coordinator five
+/// times for each cell.
+const REPORTED: u64 = 1 << 16;
+
 /// The next piece of the stream.
 #[derive(Debug)]
 pub(super) enum Piece<const D: usize> {
@@ -51,13 +55,15 @@ pub(super) struct CellReader<R: Read, const D: usize> {
     /// Tags that were read and not passed on.
     tags: VecDeque<CellCode>,
     cells: u64,
+    /// Points at the last [`Piece::Points`].
+    reported: u64,
 }
 
 impl<R: Read, const D: usize> CellReader<R, D> {
     /// A reader that leaves out points outside of `region`.
     pub(super) fn new(reader: StreamReader<R>, region: Region<D>, merging: Merging) -> Self {
         let buffer = CellBuffer::new(reader.header().tree, region, merging);
-        CellReader { reader, buffer, tags: VecDeque::new(), cells: 0 }
+        CellReader { reader, buffer, tags: VecDeque::new(), cells: 0, reported: 0 }
     }
 
     /// The next piece; must not be called after the end. `fresh` gives empty residuals whose memory is used
@@ -80,7 +86,11 @@ impl<R: Read, const D: usize> CellReader<R, D> {
                         taken.map_err(|e| self.reader.locate(e))?;
                     }
                     self.reader.give_back(points);
-                    return Ok(Piece::Points { read: self.reader.totals().points, held: self.buffer.held() });
+                    let read = self.reader.totals().points;
+                    if read - self.reported >= REPORTED {
+                        self.reported = read;
+                        return Ok(Piece::Points { read, held: self.buffer.held() });
+                    }
                 }
                 Some(Event::Cells(cells)) => self.tags.extend(cells),
                 Some(Event::End(_)) | None => return Ok(Piece::End(Box::new(self.ended()))),

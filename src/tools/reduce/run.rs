@@ -287,8 +287,7 @@ fn alone<B: Bulk<D>, R: Read, W: Write, const D: usize>(
             }
             let Some(job) = run.next_job()? else { break };
             let (number, cell) = (job.number, job.cell);
-            let solved =
-                worker.solve(job, std::mem::take(&mut blocks), |points| fresh = points, &mut |_| Ok(()));
+            let solved = worker.solve(job, std::mem::take(&mut blocks), |points| fresh = points, None);
             run.schedule.solved(number, solved.map_err(|e| run.locate(e, cell))?);
         }
         if let Some(ended) = ended {

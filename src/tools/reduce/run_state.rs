@@ -100,7 +100,7 @@ impl<const D: usize> Run<D> {
             let (number, cell) = (job.number, job.cell);
             sequencer.open(&children);
             let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
-            let solved = worker.solve(job, PatchBlocks::default(), drop, flush);
+            let solved = worker.solve(job, PatchBlocks::default(), drop, Some(flush));
             self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
             // One node with points, followed by the nodes above it, which have none.
             while let Some(output) = self.schedule.next_output() {

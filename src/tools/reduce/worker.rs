@@ -24,8 +24,8 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
     }
 
     /// Triangulates a node, or passes its points up if the node would leave most of them. The memory of
-    /// `blocks` is used again; `give_back` gets the memory of raw points, and `flush` may take patches as
-    /// they come.
+    /// `blocks` is used again; `give_back` gets the memory of raw points, and `flush`, if there is
+    /// one, may take patches as they come.
     ///
     /// # Errors
     /// As [`Solver::solve`].
@@ -34,7 +34,7 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
         job: Job<D>,
         blocks: PatchBlocks,
         give_back: impl FnOnce(Residual<D>),
-        flush: &mut Flush,
+        flush: Option<&mut Flush>,
     ) -> Result<Solved<D>> {
         let Job { number, region, is_root, mut raw, parts, .. } = job;
         if parts.is_empty() {
