@@ -197,17 +197,23 @@ impl Cover {
         next
     }
 
+    /// The half-edges beyond the sides of a cell, or `NONE`.
+    #[inline(always)]
+    fn beyond_sides(&self, cell: usize) -> [HalfEdge; 4] {
+        [
+            self.side(cell - self.width, 2),
+            self.side(cell + 1, 3),
+            self.side(cell + self.width, 0),
+            self.side(cell - 1, 1),
+        ]
+    }
+
     /// Writes the triangles of a cell that has all corners.
     #[inline(always)]
     fn write_cell(&self, writer: &mut Writer, cell: usize, quad: Quad) {
         let corners = self.corners(cell);
         let first = self.first[cell] * WORDS as u32;
-        let sides = [
-            self.side(cell - self.width, 2),
-            self.side(cell + 1, 3),
-            self.side(cell + self.width, 0),
-            self.side(cell - 1, 1),
-        ];
+        let sides = self.beyond_sides(cell);
         writer.quad(quad, first, corners.map(|node| self.points[node]), sides, |_| NONE);
     }
 
@@ -219,12 +225,7 @@ impl Cover {
         if quad != 0 {
             let corners = self.corners(node);
             let first = self.first[node] * WORDS as u32;
-            let sides = [
-                self.side(node - self.width, 2),
-                self.side(node + 1, 3),
-                self.side(node + self.width, 0),
-                self.side(node - 1, 1),
-            ];
+            let sides = self.beyond_sides(node);
             let beyond = |k| self.diagonal(node, (k + 2) % 4);
             writer.quad(quad, first, corners.map(|node| self.points[node]), sides, beyond);
         }
