@@ -144,8 +144,8 @@ fn every_gap_of_nine_nodes() {
     }
 }
 
-/// Sides of the cells of such grids differ by rounding, but cells are rectangles. If they are turned, cells are
-/// only nearly so.
+/// Sides of the cells of such grids differ by rounding, but cells are rectangles. If they are turned, cells
+/// are only nearly so.
 #[test]
 fn grids_of_decimals() {
     let cases = [(0.1, 0.0), (0.3, 431_234.7), (1e-3, 5e6), (1.0 / 3.0, 1e15), (0.7, 0.0)];

@@ -178,8 +178,8 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
     }
 }
 
-/// A triangle, its corners relative to `at`, and for each corner the cross product of the ends of the opposite
-/// side.
+/// A triangle, its corners relative to `at`, and for each corner the cross product of the ends of the
+/// opposite side.
 #[inline(always)]
 fn look(mesh: &Mesh, t: HalfEdge, at: Point2) -> (HalfEdge, [TranslatedVertex; 3], [f64; 3]) {
     let corners = mesh.vertices(t).map(|v| TranslatedVertex::new(mesh, v, at));

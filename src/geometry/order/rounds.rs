@@ -9,8 +9,8 @@ const FIRST: u32 = 9;
 const FACTOR: u32 = 3;
 const _: () = assert!(FIRST.is_multiple_of(FACTOR));
 
-/// Numbers of a window ([`Rounds::in_windows`]): the triangles around as many vertices fit into a cache of the
-/// second level.
+/// Numbers of a window ([`Rounds::in_windows`]): the triangles around as many vertices fit into a cache of
+/// the second level.
 const WINDOW: usize = 1 << 13;
 const _: () = assert!(WINDOW.is_multiple_of(1 << FIRST));
 

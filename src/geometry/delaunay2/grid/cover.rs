@@ -197,18 +197,27 @@ impl Cover {
         next
     }
 
+    /// The half-edges beyond the sides of a cell, or `NONE`.
+    #[inline(always)]
+    fn beyond_sides(&self, cell: usize) -> [HalfEdge; 4] {
+        [
+            self.side(cell - self.width, 2),
+            self.side(cell + 1, 3),
+            self.side(cell + self.width, 0),
+            self.side(cell - 1, 1),
+        ]
+    }
+
     /// Writes the triangles of a cell that has all corners.
     #[inline(always)]
     fn write_cell(&self, writer: &mut Writer, cell: usize, quad: Quad) {
         let corners = self.corners(cell);
         let first = self.first[cell] * WORDS as u32;
-        let sides = [
-            self.side(cell - self.width, 2),
-            self.side(cell + 1, 3),
-            self.side(cell + self.width, 0),
-            self.side(cell - 1, 1),
-        ];
+        let sides = self.beyond_sides(cell);
         writer.quad(quad, first, corners.map(|node| self.points[node]), sides, |_| NONE);
+        // The first triangle has corner 0. That is enough: a point whose own cell lacks a corner is noted
+        // with that cell, with a quadrangle, or with the rest.
+        writer.triangle_of_vertex[self.points[cell] as usize] = self.first[cell];
     }
 
     /// Writes the triangles of a cell and those around its node.
@@ -219,21 +228,20 @@ impl Cover {
         if quad != 0 {
             let corners = self.corners(node);
             let first = self.first[node] * WORDS as u32;
-            let sides = [
-                self.side(node - self.width, 2),
-                self.side(node + 1, 3),
-                self.side(node + self.width, 0),
-                self.side(node - 1, 1),
-            ];
+            let sides = self.beyond_sides(node);
             let beyond = |k| self.diagonal(node, (k + 2) % 4);
-            writer.quad(quad, first, corners.map(|node| self.points[node]), sides, beyond);
+            let corners = corners.map(|node| self.points[node]);
+            writer.quad(quad, first, corners, sides, beyond);
+            writer.note(quad, first, corners);
         }
         let (quad, first) = self.quadrangle(node);
         if quad != 0 {
             let corners = self.neighbours(node);
             let cells = self.cells(node);
             let sides = [0, 1, 2, 3].map(|i| self.diagonal(cells[i], (i + 2) % 4));
-            writer.quad(quad, first, corners.map(|node| self.points[node]), sides, |_| NONE);
+            let corners = corners.map(|node| self.points[node]);
+            writer.quad(quad, first, corners, sides, |_| NONE);
+            writer.note(quad, first, corners);
         }
     }
 }
@@ -271,8 +279,14 @@ impl Writer<'_> {
                 sides[k],
                 0,
             ]);
-            for vertex in [a, b, c] {
-                self.triangle_of_vertex[vertex as usize] = number_of(t);
+        }
+    }
+
+    /// Notes a triangle for all corners of the triangles of a quadrangle.
+    fn note(&mut self, quad: Quad, first: HalfEdge, corners: [u32; 4]) {
+        for k in (0..4).filter(|&k| has(quad, k)) {
+            for vertex in [corners[k], corners[(k + 1) % 4], corners[(k + 3) % 4]] {
+                self.triangle_of_vertex[vertex as usize] = number_of(first + long_side(quad, k));
             }
         }
     }

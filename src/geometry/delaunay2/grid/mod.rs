@@ -1,21 +1,21 @@
 //! Points on the nodes of a grid, with few tests and no walks.
 //!
-//! A *grid* has columns and rows at any distances; each point lies in a column and in a row, and most *nodes*,
-//! where they cross, have a point. Rasters, gridded soundings and elevation models are such points. The axes
-//! of the grid may be turned by 45 degrees.
+//! A *grid* has columns and rows at any distances; each point lies in a column and in a row, and most
+//! *nodes*, where they cross, have a point. Rasters, gridded soundings and elevation models are such points.
+//! The axes of the grid may be turned by 45 degrees.
 //!
-//! The circle of a *cell* between neighbouring columns and rows has no point inside: between the columns there
-//! is none, nor between the rows, and every point inside of the circle is in one of the two. Nor is there any
-//! on the circle but the corners. Hence, in the canonical triangulation:
+//! The circle of a *cell* between neighbouring columns and rows has no point inside: between the columns
+//! there is none, nor between the rows, and every point inside of the circle is in one of the two. Nor is
+//! there any on the circle but the corners. Hence, in the canonical triangulation:
 //!
 //! 1. A cell with all corners is two triangles. The corner of greatest rank decides the tie: the diagonal
 //!    joins its two neighbours. This is the same in all cells.
-//! 2. A cell with three corners is the triangle of these and some rest; two corners of a cell are joined by an
-//!    edge.
+//! 2. A cell with three corners is the triangle of these and some rest; two corners of a cell are joined by
+//!    an edge.
 //! 3. So a node without a point, whose four neighbours have points, is in a quadrangle of four edges without
 //!    other points. One in-circle test decides its diagonal. Cells and such quadrangles are *covered*.
-//! 4. A triangle that is not covered has its corners at points that are not surrounded by covered ones. So the
-//!    triangulation of these points alone has that triangle, and the borders of what is covered
+//! 4. A triangle that is not covered has its corners at points that are not surrounded by covered ones. So
+//!    the triangulation of these points alone has that triangle, and the borders of what is covered
 //!    ([canonical.md](../../../../docs/theory/canonical.md), section 5): the kernel triangulates them by
 //!    insertion, and what is covered is cut out. A point is surrounded if its four neighbours have points or
 //!    are in quadrangles.

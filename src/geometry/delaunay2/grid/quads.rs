@@ -1,5 +1,5 @@
-//! The triangles that two pairs of opposite corners make: those of a cell of the grid, and those around a node
-//! without a point.
+//! The triangles that two pairs of opposite corners make: those of a cell of the grid, and those around a
+//! node without a point.
 //!
 //! Corners of a quadrangle are numbered counterclockwise; side i joins corners i and i + 1, all modulo 4.
 //! Triangle k has corners k, k + 1 and k + 3; it lacks corner k + 2. A quadrangle has two opposite triangles,
