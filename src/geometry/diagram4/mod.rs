@@ -66,7 +66,7 @@ pub enum Route {
 /// in big integers where the rounded value is inconclusive.
 ///
 /// Cost: proportional to the number of simplices of a triangulation of the cells: 64 bytes per simplex if
-/// coordinates are integers that differ by at most 26, otherwise 88.
+/// coordinates are integers that differ by at most 26, otherwise 88; and then up to 100 while cells are made.
 ///
 /// # Errors
 /// Malformed, if a coordinate is not finite. Usage, if there are too many points, or all lie in a hyperplane;

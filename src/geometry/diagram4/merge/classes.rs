@@ -12,8 +12,8 @@ use spmesh_model::cells4::Lists4;
 pub(super) struct Classes {
     /// The class of each simplex.
     of: Vec<u32>,
-    /// The simplices of each class, one class after the other, finite classes first. Each is given by the facet
-    /// through which the search reached it; the vertex opposite to that facet may be new to the class.
+    /// The simplices of each class, one class after the other, finite classes first. Each is given by the
+    /// facet through which the search reached it; the vertex opposite to that facet may be new to the class.
     members: Vec<Facet>,
     /// Start of each class among the members, and the end of the last.
     starts: Vec<u32>,
@@ -160,8 +160,8 @@ impl Search<'_> {
             self.of[at] = class;
             let (inner, neighbours) = (self.borders.inner(at), self.simplices[at].neighbours);
             for (side, neighbour) in neighbours.into_iter().enumerate() {
-                // Whether a neighbour joins is unpredictable: without branches, and with simplex 0, which never
-                // joins, in place of those across a border.
+                // Whether a neighbour joins is unpredictable: without branches, and with simplex 0, which
+                // never joins, in place of those across a border.
                 let other = if inner >> side & 1 == 0 { 0 } else { simplex_of(neighbour) };
                 let mut joins = self.borders.is_new(other);
                 if is_infinite {

@@ -1,5 +1,5 @@
-//! Sorts short lists without branches: most cells have five to sixteen vertices, in an order that no processor
-//! predicts.
+//! Sorts short lists without branches: most cells have five to sixteen vertices, in an order that no
+//! processor predicts.
 
 /// Sorts distinct numbers below 2^31.
 #[inline(always)]

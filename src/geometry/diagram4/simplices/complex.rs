@@ -120,16 +120,6 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         }
     }
 
-    /// Whether the simplex is alive and finite.
-    pub(in crate::diagram4) fn is_finite(&self, simplex: usize) -> bool {
-        self.determinant(simplex) > C::default()
-    }
-
-    /// Whether the simplex is alive and infinite.
-    pub(in crate::diagram4) fn is_infinite(&self, simplex: usize) -> bool {
-        self.determinant(simplex) == C::default()
-    }
-
     #[inline(always)]
     pub(super) fn value(&self, simplex: usize, p: &Lifted) -> f64 {
         value(&self.spheres[simplex], p)

@@ -196,3 +196,45 @@ fn fix_sides(all: &mut [Simplex]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagram4::Stats;
+    use crate::diagram4::simplices::triangulate;
+    use crate::diagram4::sites::{Sites, distinct};
+    use spmesh_core::random::Random;
+    use spmesh_model::cells4::Point4;
+
+    /// Checks all simplices of a triangulation of random points with coordinates below `side`.
+    fn check<C: Coefficient>(side: u64) {
+        let mut random = Random::new(side);
+        let points: Vec<Point4> = (0..300).map(|_| [(); 4].map(|()| random.below(side) as f64)).collect();
+        let sites = Sites::new(distinct(points, None).0);
+        let complex = triangulate::<C>(&sites, &mut Stats::default()).unwrap();
+        let alive = (0..complex.simplices.len()).filter(|&number| !complex.is_dead(number));
+        for (number, simplex) in alive.map(|number| (number, complex.simplices[number])) {
+            let [a, b, rest @ ..] = simplex.vertices;
+            assert!(a != b && a.max(b) < rest[0] && rest.is_sorted_by(|x, y| x < y), "{simplex:?}");
+            for (side, &neighbour) in simplex.neighbours.iter().enumerate() {
+                let other = &complex.simplices[simplex_of(neighbour)];
+                assert_eq!(other.neighbours[facet_of(neighbour)], facet(number, side));
+                let mut facets = [simplex.vertices, other.vertices];
+                (facets[0][side], facets[1][facet_of(neighbour)]) = (u32::MAX, u32::MAX);
+                facets.iter_mut().for_each(|facet| facet.sort_unstable());
+                assert_eq!(facets[0], facets[1]);
+            }
+            if !simplex.is_infinite() {
+                let [a, b, c, d, e] = simplex.vertices.map(|vertex| complex.point(vertex));
+                assert_eq!(orientation(sites.exactness, [a, b, c, d], e), Ordering::Greater);
+            }
+        }
+    }
+
+    #[test]
+    fn simplices_are_sorted_positive_and_linked() {
+        check::<i32>(6);
+        check::<f64>(100);
+        check::<f64>(1 << 20);
+    }
+}

@@ -92,9 +92,9 @@ mod avx2 {
     /// Evaluates instructions of AVX2 on registers, or with a token.
     macro_rules! instructions {
         ($($code:tt)*) => {
-            // SAFETY: the code below uses it only where an `Avx2` or an `Avx2Fma` exists, so the processor has
-            // AVX2; the instructions on registers have no other precondition, and the store writes to an array
-            // of four numbers.
+            // SAFETY: the code below uses it only where an `Avx2` or an `Avx2Fma` exists, so the processor
+            // has AVX2; the instructions on registers have no other precondition, and the store writes to an
+            // array of four numbers.
             unsafe { $($code)* }
         };
     }

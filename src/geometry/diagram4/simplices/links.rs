@@ -4,7 +4,7 @@
 use super::complex::{Facet, NO_NEIGHBOUR, Simplex, facet, facet_of, simplex_of};
 
 /// Slots per simplex of a star, at least. The table holds two triangles per simplex.
-const SLOTS: usize = 4;
+const SLOTS: usize = 8;
 
 /// A triangle of the border of a cavity, and the first facet of the star at it.
 #[derive(Debug, Clone, Copy)]
