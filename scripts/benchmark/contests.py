@@ -83,7 +83,7 @@ class Contest:
         """Peers with results, the fastest first; in 3D and 4D only those on one thread, as ours is."""
         names = {OURS, IN_PARTS, DECODER, FROM_LAZ, ALONE.format(1), ALONE.format(2)}
         ran = [c for c in self.contestants if c.name not in names and c.runs and self.seconds(c)]
-        return sorted((c for c in ran if self.dims in (0, 2) or "threads" not in c.name), key=self.seconds)
+        return sorted((c for c in ran if self.dims == 0 or self.is_pipe or "threads" not in c.name), key=self.seconds)
 
     def ratio(self, over, under, value=None):
         """The ratio of two contestants in seconds, or in another value of a run; None if there is none."""
