@@ -1,7 +1,7 @@
 //! Times the 3D kernel, on one thread unless `--threads` names more.
 //!
-//! `kernel3_time POINTS` is our contestant in `scripts/bench`: one run with fresh buffers; `--threads N` is the
-//! same on N threads. With `--parts` it also times the parts of insertions, the columns of thesis table 3.3;
+//! `kernel3_time POINTS` is our contestant in `scripts/bench`: one run with fresh buffers; `--threads N` is
+//! the same on N threads. With `--parts` it also times the parts of insertions, the columns of thesis table 3.3;
 //! this takes additional time. With `--weighted`, each point has a fourth number, its weight.
 //! `kernel3_time POINTS --way WAY` inserts in `rounds`, in one `pass` along the curve or at `random`; or, if
 //! built with `--features experiments`, in floating point as the program of the thesis: `float`, or

@@ -76,8 +76,8 @@ pub fn widen_pipe(_file: &impl AsFd) {}
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const LARGE_BLOCK: libc::c_int = 1 << 18;
 
-/// Free memory at the end of a heap that stays with the process, in bytes: decoders of LAZ and nodes of a reduction
-/// allocate it again and again.
+/// Free memory at the end of a heap that stays with the process, in bytes: decoders of LAZ and nodes of a
+/// reduction allocate it again and again.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const KEPT_LEN: libc::c_int = 4 << 20;
 
@@ -113,8 +113,8 @@ pub fn save_address_space() {
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
 pub fn save_address_space() {}
 
-/// From now on, a write beyond the largest file that this process may make (`ulimit -f`) fails as on a full disk.
-/// Without this call a signal ends the process without a message.
+/// From now on, a write beyond the largest file that this process may make (`ulimit -f`) fails as on a full
+/// disk. Without this call a signal ends the process without a message.
 #[cfg(unix)]
 pub fn report_large_files() {
     // SAFETY: ignoring a signal runs no code.
@@ -201,8 +201,8 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     Some(found.f_bavail.saturating_mul(found.f_frsize))
 }
 
-/// Bytes of memory that this process can have at most: those of the machine with its swap space, or the limit of
-/// the process (`ulimit -v`). `None` if the system does not tell.
+/// Bytes of memory that this process can have at most: those of the machine with its swap space, or the limit
+/// of the process (`ulimit -v`). `None` if the system does not tell.
 #[must_use]
 pub fn memory_limit() -> Option<u64> {
     let number = |word: &str| word.parse::<u64>().ok();

@@ -9,8 +9,8 @@ pub trait Loop {
     fn run(self) -> Self::Output;
 }
 
-/// Runs a loop with AVX2 if the processor has it. The operations, and so the results, are the same: products and
-/// sums are not fused.
+/// Runs a loop with AVX2 if the processor has it. The operations, and so the results, are the same: products
+/// and sums are not fused.
 #[inline]
 pub fn run_wide<L: Loop>(task: L) -> L::Output {
     #[cfg(target_arch = "x86_64")]

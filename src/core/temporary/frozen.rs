@@ -9,8 +9,8 @@ use memmap2::{Advice, Mmap, MmapOptions};
 use super::TemporaryFile;
 use crate::error::{Error, ErrorKind, Result};
 
-/// Bytes that are mapped at a time; more, if more are wanted at once. Longer windows would only make the process
-/// look larger.
+/// Bytes that are mapped at a time; more, if more are wanted at once. Longer windows would only make the
+/// process look larger.
 #[cfg(target_os = "linux")]
 const WINDOW_LEN: u64 = 1 << 20;
 
@@ -20,8 +20,8 @@ const ALIGNMENT: u64 = 1 << 16;
 
 /// A file that no one writes to any more.
 ///
-/// Invariant: nothing changes the bytes or the length. The file has no name, so that no other process opens it;
-/// and this type keeps the only descriptor, neither writes to it nor lends it.
+/// Invariant: nothing changes the bytes or the length. The file has no name, so that no other process opens
+/// it; and this type keeps the only descriptor, neither writes to it nor lends it.
 #[derive(Debug)]
 pub struct FrozenFile {
     file: File,
@@ -61,8 +61,8 @@ impl FrozenFile {
 
 /// Reads a file piece by piece. Pieces in ascending order cost least.
 ///
-/// Memory: one window, in which the pages of the file count as memory of the process; or, where the system does not
-/// map the file, a copy of the last piece.
+/// Memory: one window, in which the pages of the file count as memory of the process; or, where the system
+/// does not map the file, a copy of the last piece.
 #[derive(Debug)]
 pub struct Windows<'f> {
     file: &'f FrozenFile,
@@ -92,8 +92,8 @@ impl Windows<'_> {
         Ok(&self.copied)
     }
 
-    /// Makes the window hold `len` bytes from `offset` on, which are in the file, and tells where it has them. `None`
-    /// if the system does not map the file, or cannot read it: reading will tell why.
+    /// Makes the window hold `len` bytes from `offset` on, which are in the file, and tells where it has
+    /// them. `None` if the system does not map the file, or cannot read it: reading will tell why.
     #[cfg(target_os = "linux")]
     fn map(&mut self, offset: u64, len: usize) -> Option<usize> {
         let is_held = |&(start, ref mapped): &(u64, Mmap)| {
@@ -106,9 +106,9 @@ impl Windows<'_> {
             let end = (start + WINDOW_LEN).max(offset + len as u64).min(self.file.len);
             let mut options = MmapOptions::new();
             options.offset(start).len(usize::try_from(end - start).ok()?);
-            // SAFETY: by the invariant of the file, the bytes do not change while they are mapped, and all of them
-            // lie within its length, so that no access is beyond the end. A page that the disk fails to read would
-            // raise SIGBUS, too: all are read below, where such a failure is an error.
+            // SAFETY: by the invariant of the file, the bytes do not change while they are mapped, and all of
+            // them lie within its length, so that no access is beyond the end. A page that the disk fails to
+            // read would raise SIGBUS, too: all are read below, where such a failure is an error.
             let mapped = unsafe { options.map(&self.file.file) }.ok()?;
             mapped.advise(Advice::PopulateRead).ok()?;
             self.mapped = Some((start, mapped));

@@ -27,7 +27,8 @@ pub(super) struct Build<'a, 's, W> {
 }
 
 impl<W: Weights> Build<'_, '_, W> {
-    /// Inserts the vertices: all but those refused, or, if there is no more room, all until the one refused last.
+    /// Inserts the vertices: all but those refused, or, if there is no more room, all until the one refused
+    /// last.
     ///
     /// Inlined, like everything that it calls with lanes, into one function per kind of processor.
     #[inline(always)]

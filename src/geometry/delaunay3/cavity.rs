@@ -17,8 +17,8 @@ pub(super) struct Face {
 }
 
 impl Face {
-    /// A facet with corners of these numbers, counterclockwise as the new point sees them, and the facet of the
-    /// tetrahedron beyond.
+    /// A facet with corners of these numbers, counterclockwise as the new point sees them, and the facet of
+    /// the tetrahedron beyond.
     #[inline(always)]
     pub(super) fn new([a, b, c]: [u32; 3], beyond: Facet) -> Face {
         Face { first: u64::from(a) | u64::from(b) << 32, last: u64::from(c) | u64::from(beyond) << 32 }
@@ -60,8 +60,8 @@ const SPARE: usize = 8;
 
 /// The known part of a cavity and of its border. The next insertion reuses the buffers.
 ///
-/// The lists are longer than what is in them. What is behind is of an earlier insertion: numbers of vertices that
-/// are in the lists, and facets that are in the complex.
+/// The lists are longer than what is in them. What is behind is of an earlier insertion: numbers of vertices
+/// that are in the lists, and facets that are in the complex.
 #[derive(Debug)]
 pub(super) struct Cavity {
     /// Facets through which its tetrahedra were found, and how many there are; that of the first one is any.
@@ -149,10 +149,10 @@ impl Cavity {
         frame: &Frame<'_, L, W>,
     ) -> [Finding; 4] {
         let (vertices, neighbours) = (complex.corners(t), complex.neighbours(t));
-        for i in 0..4 {
-            let place = complex.place_of_number(vertices[i]);
-            complex.numbers[place] = i as u32;
-            self.rows[i] = frame.row(vertices[i], &complex.vertices[vertices[i] as usize]);
+        for (number, vertex) in vertices.into_iter().enumerate() {
+            let place = complex.place_of_number(vertex);
+            complex.numbers[place] = number as u32;
+            self.rows[number] = frame.row(vertex, &complex.vertices[vertex as usize]);
         }
         self.vertices[..4].copy_from_slice(&vertices);
         self.vertices[4] = NO_VERTEX;

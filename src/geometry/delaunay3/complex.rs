@@ -17,7 +17,8 @@ pub(super) const TETRAHEDRA_PER_VERTEX: usize = 9;
 /// Flag of each vertex of a deleted tetrahedron: with it, a number is above those of all vertices.
 pub(super) const DELETED: u32 = 1 << 31;
 
-/// Flag of each vertex of a frozen tetrahedron, which stays as it is while parts change: see [`super::parts`].
+/// Flag of each vertex of a frozen tetrahedron, which stays as it is while parts change: see
+/// [`super::parts`].
 pub(super) const FROZEN: u32 = 1 << 30;
 
 /// A vertex without flags.
@@ -28,8 +29,8 @@ const _: () = assert!(MAX_POINTS < VERTEX as usize);
 /// vertex.
 pub(super) type Facet = u32;
 
-/// For a facet that is entered, and for the place, as a bit, of the first of its corners as seen by who enters: the
-/// corners in that order.
+/// For a facet that is entered, and for the place, as a bit, of the first of its corners as seen by who
+/// enters: the corners in that order.
 static ENTERED: [[[u8; 4]; 16]; 4] = entered();
 
 const fn entered() -> [[[u8; 4]; 16]; 4] {
@@ -45,8 +46,8 @@ const fn entered() -> [[[u8; 4]; 16]; 4] {
     table
 }
 
-/// The corners a, b, c of a tetrahedron that is entered through `facet`, of which a is the given vertex, in the order
-/// seen by who enters.
+/// The corners a, b, c of a tetrahedron that is entered through `facet`, of which a is the given vertex, in
+/// the order seen by who enters.
 #[inline(always)]
 pub(super) fn facets_behind(corners: [u32; 4], facet: Facet, a: u32) -> [usize; 3] {
     let [f, g, h, _] = ENTERED[corner(facet)][places(corners, a)];
@@ -105,8 +106,8 @@ pub(super) struct Complex<'s> {
 }
 
 impl Complex<'_> {
-    /// Writes the first tetrahedron, positively oriented, and the four infinite ones around it, at the start of the
-    /// room, which is empty.
+    /// Writes the first tetrahedron, positively oriented, and the four infinite ones around it, at the start
+    /// of the room, which is empty.
     pub(super) fn begin(&mut self, first: [u32; 4]) {
         let infinite = self.infinite();
         let outer = TETRAHEDRON_FACETS.map(|corners| {
@@ -193,8 +194,8 @@ impl Complex<'_> {
         self.words.set(facet as usize + FIRST_NEIGHBOUR, other);
     }
 
-    /// The facets beyond a tetrahedron that is entered through `facet`: across from its corners a, b, c, of which a
-    /// is the given vertex, with its flags, in the order seen by who enters.
+    /// The facets beyond a tetrahedron that is entered through `facet`: across from its corners a, b, c, of
+    /// which a is the given vertex, with its flags, in the order seen by who enters.
     #[inline(always)]
     pub(super) fn neighbours_behind(&self, facet: Facet, a: u32) -> [Facet; 3] {
         let t = tetrahedron_of(facet);

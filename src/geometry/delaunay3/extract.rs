@@ -4,8 +4,8 @@ use super::complex::{DELETED, Facet};
 use super::tetrahedralization::{NONE, Tetrahedron, WORDS};
 use bytemuck::cast_slice_mut;
 
-/// Leaves the finite tetrahedra in the array; returns the number of facets of the hull. Tells `see` the vertices of
-/// each finite tetrahedron.
+/// Leaves the finite tetrahedra in the array; returns the number of facets of the hull. Tells `see` the
+/// vertices of each finite tetrahedron.
 #[inline]
 pub(super) fn extract(
     tetrahedra: &mut Vec<Tetrahedron>,

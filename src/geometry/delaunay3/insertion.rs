@@ -150,12 +150,12 @@ impl<L: Lanes, W: Weights> Insertion<'_, '_, L, W> {
         }
     }
 
-    /// Adds the tetrahedron beyond a facet to the cavity, or the facet to its border, where the filter does not know,
-    /// or the tetrahedron is frozen.
+    /// Adds the tetrahedron beyond a facet to the cavity, or the facet to its border, where the filter does
+    /// not know, or the tetrahedron is frozen.
     ///
     /// # Errors
-    /// If it is frozen and in conflict. An infinite one counts as in conflict: that may depend on a tetrahedron that
-    /// is not here.
+    /// If it is frozen and in conflict. An infinite one counts as in conflict: that may depend on a
+    /// tetrahedron of another part.
     #[cold]
     #[inline(never)]
     fn settle(&mut self, at: Site, (face, known): Finding) -> Result<(), FrozenConflict> {

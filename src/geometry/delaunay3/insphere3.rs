@@ -13,8 +13,8 @@ pub(super) struct Frame<'w, L: Lanes, W> {
     /// The new point.
     pub(super) origin: Site,
     pub(super) weights: &'w W,
-    /// The vertex at infinity: its row is the direction upwards, which makes the test of an infinite tetrahedron the
-    /// sign of a volume. The bound of the filter holds all the more.
+    /// The vertex at infinity: its row is the direction upwards, which makes the test of an infinite
+    /// tetrahedron the sign of a volume. The bound of the filter holds all the more.
     pub(super) infinite: u32,
     /// Its lift: of about the size of others, for the sake of the filter; integer if coordinates are.
     pub(super) infinite_lift: f64,
@@ -80,11 +80,11 @@ impl<L: Lanes, W: Weights> Frame<'_, L, W> {
         [L::new(token, x), L::new(token, y), L::new(token, z), L::new(token, lift)]
     }
 
-    /// The tests of the three tetrahedra beyond the facets dbc, adc, abd of a tetrahedron, in this order, given
-    /// the rows of its corners, and in columns those of the vertices e opposite to the facets.
+    /// The tests of the three tetrahedra beyond the facets dbc, adc, abd of a tetrahedron, in this order,
+    /// given the rows of its corners, and in columns those of the vertices e opposite to the facets.
     ///
-    /// In the lane of a facet without p, which is a, b or c, let n and m be the next two corners. With the new
-    /// point as origin, the determinant of the rows (x, lift) of d, n, m and e has the sign wanted:
+    /// In the lane of a facet without p, which is a, b or c, let n and m be the next two corners. With the
+    /// new point as origin, the determinant of the rows (x, lift) of d, n, m and e has the sign wanted:
     ///
     /// e . (d x (m' n - n' m) + d' n x m) - e' d . (n x m), where ' is the lift.
     #[inline(always)]

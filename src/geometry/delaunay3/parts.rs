@@ -1,17 +1,17 @@
 //! Insertion on several threads: each has a part of the complex, which others do not touch.
 //!
-//! The vertices, in order along the curve, are cut into ranges, one for each thread. A tetrahedron whose finite
-//! vertices are all in one range belongs to this part. Tetrahedra with vertices of several ranges belong to none; they
-//! lie between the parts, as neighbours have three vertices in common, and are *frozen*. A thread inserts points of
-//! its own range. If a frozen tetrahedron is in conflict with a point, the point is refused, and inserted when all
-//! threads are done. Otherwise the cavity and all around it are in the part, or frozen, and new tetrahedra are the
-//! part's as well: their vertices are those of the cavity and the point. So parts fit together whatever the threads
-//! did, and are Delaunay wherever no point is missing. The tetrahedralization is canonical: it does not depend on the
-//! order of insertion.
+//! The vertices, in order along the curve, are cut into ranges, one for each thread. A tetrahedron whose
+//! finite vertices are all in one range belongs to this part. Tetrahedra with vertices of several ranges
+//! belong to none; they lie between the parts, as neighbours have three vertices in common, and are *frozen*.
+//! A thread inserts points of its own range. If a frozen tetrahedron is in conflict with a point, the point
+//! is refused, and inserted when all threads are done. Otherwise the cavity and all around it are in the
+//! part, or frozen, and new tetrahedra are the part's as well: their vertices are those of the cavity and the
+//! point. So parts fit together whatever the threads did, and are Delaunay wherever no point is missing. The
+//! tetrahedralization is canonical: it does not depend on the order of insertion.
 //!
-//! All parts are in one array. A thread reads and writes words of its own tetrahedra. Of frozen ones it reads the
-//! vertices, which nobody writes, and it reads and writes the words of neighbours in its part, which are no
-//! neighbours of other parts.
+//! All parts are in one array. A thread reads and writes words of its own tetrahedra. Of frozen ones it reads
+//! the vertices, which nobody writes, and it reads and writes the words of neighbours in its part, which are
+//! no neighbours of other parts.
 
 use super::build::Build;
 use super::complex::{Complex, DELETED, TETRAHEDRA_PER_VERTEX};
@@ -74,9 +74,9 @@ pub(super) fn insert<W: Weights>(
     let room = there + rooms.iter().sum::<usize>();
     whole.tetrahedra.reserve_exact(room - there);
     whole.room = whole.room.max(room);
-    // SAFETY: facets of neighbours are words of tetrahedra in the array, and each part has room of its own, which it
-    // uses in order: what is before its first fresh place was written. That parts do not touch each other's words is
-    // said above. Nothing else uses the array while they exist.
+    // SAFETY: facets of neighbours are words of tetrahedra in the array, and each part has room of its own,
+    // which it uses in order: what is before its first fresh place was written. That parts do not touch each
+    // other's words is said above. Nothing else uses the array while they exist.
     let words = unsafe { Words::of(&mut whole.tetrahedra) };
     let mut free = std::mem::take(&mut whole.free);
     let (mut jobs, mut first) = (Vec::new(), there);
@@ -107,9 +107,9 @@ pub(super) fn insert<W: Weights>(
     Ok(refused)
 }
 
-/// Room for tetrahedra that a part needs for so many more vertices, given which share of all vertices is inserted:
-/// they are evenly spread along the curve, and there will be as many tetrahedra per vertex as there are now. If it is
-/// not enough, points are refused.
+/// Room for tetrahedra that a part needs for so many more vertices, given which share of all vertices is
+/// inserted: they are evenly spread along the curve, and there will be as many tetrahedra per vertex as there
+/// are now. If it is not enough, points are refused.
 fn room(part: &Part, share: f64, count: usize) -> usize {
     let now = share * part.own.len() as f64;
     let likely = (part.size as f64 * (now + count as f64) / now) as usize;

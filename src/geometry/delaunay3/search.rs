@@ -1,13 +1,13 @@
 //! The search of a cavity, from its first tetrahedron on.
 //!
-//! The search has no branch that depends on the geometry, because a processor could not predict it. A tetrahedron
-//! joins the cavity, and is marked, as soon as it is found in conflict; so it is found once. Then the three
-//! tetrahedra beyond its other facets are tested together. Each of these facets is written behind two lists, the
-//! cavity's and the border's, and the result of the test moves the end of one of them: of none if the
-//! tetrahedron beyond is in the cavity already.
+//! The search has no branch that depends on the geometry, because a processor could not predict it. A
+//! tetrahedron joins the cavity, and is marked, as soon as it is found in conflict; so it is found once. Then
+//! the three tetrahedra beyond its other facets are tested together. Each of these facets is written behind
+//! two lists, the cavity's and the border's, and the result of the test moves the end of one of them: of none
+//! if the tetrahedron beyond is in the cavity already.
 //!
-//! The tests of a tetrahedron are begun before the results for the tetrahedron before it are used, so that the
-//! processor has something to do while it waits for them.
+//! The tests of a tetrahedron are begun before the results for the tetrahedron before it are used, so that
+//! the processor has something to do while it waits for them.
 
 use super::cavity::{Cavity, Face, Finding, NO_VERTEX};
 use super::complex::{
@@ -62,9 +62,9 @@ pub(super) fn search<L: Lanes, W: Weights>(
     complex: &mut Complex<'_>,
     frame: &Frame<'_, L, W>,
 ) -> Stop {
-    // SAFETY: corners of tetrahedra are vertices, with flags, and those of tetrahedra of a cavity are of the part or at
-    // infinity. The numbers of vertices in facets are below `count`, and `room`, which is compared with `found` before
-    // a tetrahedron adds its neighbours, leaves room for all lists: see `Cavity`.
+    // SAFETY: corners of tetrahedra are vertices, with flags, and those of tetrahedra of a cavity are of the
+    // part or at infinity. The numbers of vertices in facets are below `count`, and `room`, which is compared
+    // with `found` before a tetrahedron adds its neighbours, leaves room for all lists: see `Cavity`.
     let mut search = unsafe {
         Search {
             words: &mut complex.words,
@@ -135,8 +135,8 @@ impl Search<'_, '_> {
         Neighbours { faces, signs }
     }
 
-    /// The neighbours of the next tetrahedron will be needed. (A facet behind the end of the list is one of an
-    /// earlier insertion.)
+    /// The neighbours of the next tetrahedron will be needed. (A facet behind the end of the list is one of
+    /// an earlier insertion.)
     #[inline(always)]
     fn prefetch_neighbours(&self, facet: Facet) {
         let first = tetrahedron_of(facet) as usize + FIRST_NEIGHBOUR;

@@ -48,8 +48,8 @@ impl Star {
     #[inline(always)]
     fn write_by_table(&mut self, complex: &mut Complex<'_>, cavity: &Cavity, q: u32) {
         let wanted = cavity.border().len();
-        // SAFETY: there are `wanted` facets, and slots; the corners of facets have numbers below that of vertices,
-        // which is at most STRIDE.
+        // SAFETY: there are `wanted` facets, and slots; the corners of facets have numbers below that of
+        // vertices, which is at most STRIDE.
         let (mut left, slots, border, vertices) = unsafe {
             let (border, vertices) = (&cavity.border[..], &cavity.vertices[..]);
             (

@@ -82,8 +82,9 @@ impl Whole {
             vertices: &self.vertices,
             own: 0..finite,
             numbers: std::mem::take(&mut self.numbers),
-            // SAFETY: facets of neighbours are words of tetrahedra in the array, and room is used in order: what is
-            // before the first fresh place was written. Nothing else is made of the array, or uses it.
+            // SAFETY: facets of neighbours are words of tetrahedra in the array, and room is used in order:
+            // what is before the first fresh place was written. Nothing else is made of the array, or uses
+            // it.
             words: unsafe { Words::of(&mut self.tetrahedra) },
             free: std::mem::take(&mut self.free),
             fresh,

@@ -54,8 +54,8 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// sides.
     const PASSES_FEW: bool;
 
-    /// Gives the next node so many threads. Then neither the order of its simplices nor that of their corners depends
-    /// on them.
+    /// Gives the next node so many threads. Then neither the order of its simplices nor that of their corners
+    /// depends on them.
     fn share(&mut self, threads: NonZeroUsize) {
         let _ = threads;
     }
@@ -114,8 +114,8 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// outside of it can be in conflict with.
     fn is_inside(&self, simplex: u32, points: &Residual<D>, balls: &Self::Balls) -> bool;
 
-    /// Keeps those of the `kept` simplices, from the `first` on in the order of [`Bulk::nth`], whose ball certainly
-    /// lies inside, as by [`Bulk::is_inside`].
+    /// Keeps those of the `kept` simplices, from the `first` on in the order of [`Bulk::nth`], whose ball
+    /// certainly lies inside, as by [`Bulk::is_inside`].
     fn keep_inside(&self, first: usize, kept: &mut [bool], points: &Residual<D>, balls: &Self::Balls) {
         for (k, kept) in (first..).zip(kept).filter(|(_, kept)| **kept) {
             *kept = self.is_inside(self.nth(k), points, balls);

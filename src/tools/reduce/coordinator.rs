@@ -18,9 +18,10 @@ use std::thread::{Scope, ScopedJoinHandle};
 use crossbeam_channel::{Receiver, Sender, never, select, select_biased, unbounded};
 
 use super::bulk::Bulk;
-use super::node::{Rules, Solved};
+use super::node::Solved;
 use super::reader::{CellReader, InputSummary, Piece};
 use super::residual::Residual;
+use super::rules::Rules;
 use super::run_state::Run;
 use super::schedule::{Job, Output};
 use super::sequencer::{Outputs, Sequencer};

@@ -39,8 +39,8 @@ impl Disks {
         self.is_far_inside(a, b, c) || self.bounds.disk_inside(a, b, c, &self.region)
     }
 
-    /// Keeps those of the `kept` triangles whose disk certainly lies in the region, as by [`Disks::inside`]. The
-    /// corners of a triangle are the numbers of points in `at`.
+    /// Keeps those of the `kept` triangles whose disk certainly lies in the region, as by [`Disks::inside`].
+    /// The corners of a triangle are the numbers of points in `at`.
     pub(super) fn keep_inside(
         &self,
         corners: impl ExactSizeIterator<Item = [u32; 3]>,

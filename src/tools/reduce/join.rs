@@ -1,5 +1,5 @@
-//! An inner node of a mesh in parts: the residuals of its children become one node, whose final simplices are a
-//! part of their own.
+//! An inner node of a mesh in parts: the residuals of its children become one node, whose final simplices are
+//! a part of their own.
 //!
 //! Other than [`super::merge`], it reads and writes no simplex that a child has written.
 
@@ -8,10 +8,11 @@ use std::io::{Read, Write};
 use super::bulk::Bulk;
 use super::duplicates::Duplicates;
 use super::merge::{check_together, region_of};
-use super::node::{Rules, Solver};
+use super::node::Solver;
 use super::origins::Origins;
 use super::plane::Plane;
 use super::residual::{Residual, UNWRITTEN, foreign_key};
+use super::rules::Rules;
 use super::run::{Options, begin};
 use super::schedule::Output;
 use super::sequencer::Outputs;
@@ -24,15 +25,15 @@ use spmesh_stream::{Event, GlobalId, Header, PatchBlocks, StreamReader};
 /// Number of the only node.
 const NODE: u64 = 0;
 
-/// Triangulates the residuals of the children of a node of a mesh in parts, and writes the triangles that become
-/// final in `options.part`, the box of the node, and what is left. Without an output for the residual, the node is
-/// the root, where all is final. `options.name` is the name of the part.
+/// Triangulates the residuals of the children of a node of a mesh in parts, and writes the triangles that
+/// become final in `options.part`, the box of the node, and what is left. Without an output for the residual,
+/// the node is the root, where all is final. `options.name` is the name of the part.
 ///
 /// Cost and memory: those of one triangulation of the residuals.
 ///
 /// # Errors
-/// Usage, if the inputs are no residuals of the same mesh, or do not fit together; malformed, if one of them is
-/// damaged; I/O, if reading or writing fails.
+/// Usage, if the inputs are no residuals of the same mesh, or do not fit together; malformed, if one of them
+/// is damaged; I/O, if reading or writing fails.
 pub fn join_triangles<R: Read, W: Write>(
     readers: Vec<StreamReader<R>>,
     outputs: Outputs<W>,
@@ -121,8 +122,8 @@ fn header_of<B: Bulk<D>, R: Read, const D: usize>(
     Ok(header)
 }
 
-/// Checks that the boxes of the residuals lie in that of the node. They need not fill it: the plan leaves out boxes
-/// without points.
+/// Checks that the boxes of the residuals lie in that of the node. They need not fill it: the plan leaves out
+/// boxes without points.
 ///
 /// # Errors
 /// Usage, if not.

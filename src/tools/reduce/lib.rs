@@ -42,6 +42,7 @@ mod plan;
 mod plane;
 mod reader;
 mod residual;
+mod rules;
 mod run;
 mod run_state;
 mod sample;

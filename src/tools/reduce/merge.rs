@@ -4,11 +4,12 @@ use std::io::{Read, Write};
 
 use super::bulk::Bulk;
 use super::duplicates::Duplicates;
-use super::node::{Rules, Solver};
+use super::node::Solver;
 use super::origins::Origins;
 use super::partial::Part;
 use super::plane::Plane;
 use super::residual::Residual;
+use super::rules::Rules;
 use super::run::Options;
 use super::schedule::Output;
 use super::sequencer::Sequencer;
@@ -27,9 +28,10 @@ const MERGED: u64 = 1;
 /// Merges the results of partial runs over regions that do not overlap. `progress` is called with the number
 /// of vertices read so far.
 ///
-/// Of the options, `part` and `compress` count. Without a part, the regions must cover all points ([`super::missing_region`] finds gaps), and the result is the whole mesh: the same set of
-/// triangles as one run over all points. With a part, the result is partial again, for that region.
-/// That region must contain the merged ones, and every point in it must lie in one of them.
+/// Of the options, `part` and `compress` count. Without a part, the regions must cover all points
+/// ([`super::missing_region`] finds gaps), and the result is the whole mesh: the same set of triangles as one
+/// run over all points. With a part, the result is partial again, for that region. That region must contain
+/// the merged ones, and every point in it must lie in one of them.
 ///
 /// Cost: linear in the final triangles, which are copied, and one triangulation of the residuals.
 ///
@@ -188,7 +190,8 @@ pub(super) fn region_of<const D: usize>(header: &Header) -> Region<D> {
     header.region.map_or(Region::EVERYTHING, |region| Region::between(region.min, region.max))
 }
 
-/// Copies the final simplices of one input, and adds its residual to `residual`. Calls `note` with each event.
+/// Copies the final simplices of one input, and adds its residual to `residual`. Calls `note` with each
+/// event.
 ///
 /// # Errors
 /// If the input is malformed, or writing fails.

@@ -1,46 +1,15 @@
 //! One node of the reduction: triangulate, drop what lies in holes, split final from not final.
 
 use super::bulk::{Bulk, Facet, WallSide};
-use super::duplicates::Duplicates;
 use super::misfit::{Misfit, overlap};
 use super::patches::{Flush, PatchBuilder};
 use super::residual::Residual;
-use super::sides::Sides;
+use super::rules::Rules;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
-use spmesh_stream::{Coordinates, Header, PatchBlocks, PointCode, Weights};
+use spmesh_stream::PatchBlocks;
 use std::num::NonZeroUsize;
-
-/// The rules that all nodes of a run share.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Rules<const D: usize> {
-    coordinates: Coordinates,
-    code: PointCode,
-    duplicates: Duplicates,
-    /// If points have weights.
-    pub(super) weights: Option<Weights>,
-    /// Whether the run leaves a residual, to be merged with others.
-    pub(super) is_partial: bool,
-    /// Whether to triangulate even nodes that would leave most of their points.
-    pub(super) every_node: bool,
-    /// The box of all points: facets of the hull on one of its sides are final.
-    pub(super) sides: Sides<D>,
-}
-
-impl<const D: usize> Rules<D> {
-    /// The rules for a mesh with the given header.
-    pub(super) fn new(header: &Header, duplicates: Duplicates, is_partial: bool) -> Self {
-        let code = PointCode::of(header);
-        let (coordinates, weights) = (header.coordinates, header.weights());
-        Rules { coordinates, code, duplicates, weights, is_partial, every_node: false, sides: Sides::UNKNOWN }
-    }
-
-    /// The encoding of the coordinates.
-    pub(super) fn coordinates(&self) -> &Coordinates {
-        &self.coordinates
-    }
-}
 
 /// Simplices that are tested together.
 const BATCH: usize = 128;
@@ -136,7 +105,8 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
 
     /// Triangulates the points of node `number`, and finds the simplices that are final in `region`, outside
     /// of which other points may lie. Nodes are numbered in the order in which they are written. The memory
-    /// of `blocks` is used again. If there is `flush`, it may take patches as they come; the others are in the result.
+    /// of `blocks` is used again. If there is `flush`, it may take patches as they come; the others are in
+    /// the result.
     ///
     /// # Errors
     /// Those of `flush`; [`spmesh_core::error::ErrorKind::Malformed`] if coinciding points are forbidden or
@@ -252,8 +222,8 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         Ok(())
     }
 
-    /// Splits the simplices outside of holes: final ones are planned for patches, or added to them if there is no
-    /// plan; the others are active. If no other point exists, `everything` is final.
+    /// Splits the simplices outside of holes: final ones are planned for patches, or added to them if there
+    /// is no plan; the others are active. If no other point exists, `everything` is final.
     ///
     /// # Errors
     /// As [`PatchBuilder::close`].
@@ -365,8 +335,8 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         Ok(())
     }
 
-    /// Writes the points that are finalized here without being in a simplex: vertices of the hull whose simplices
-    /// were all written below, and at the root the points of an input without simplices.
+    /// Writes the points that are finalized here without being in a simplex: vertices of the hull whose
+    /// simplices were all written below, and at the root the points of an input without simplices.
     ///
     /// # Errors
     /// Those of `flush`; [`spmesh_core::error::ErrorKind::Malformed`] if a point has no simplex outside of

@@ -37,16 +37,17 @@ const KEPT: u32 = u32::MAX - 1;
 /// Builds the patches of one node after the other, in buffers that are used again.
 ///
 /// The vertices of a patch have codes that count up over all patches of a node, so that no code has to be
-/// reset. After the last patch, the code of a vertex tells its last patch, and [`PatchBuilder::finish`] finalizes
-/// the vertices of all patches.
+/// reset. After the last patch, the code of a vertex tells its last patch, and [`PatchBuilder::finish`]
+/// finalizes the vertices of all patches.
 ///
-/// Patches that are flushed one by one need to know that earlier. Then all final simplices are planned first, in the
-/// order in which they are written: patches have a fixed number of simplices.
+/// Patches that are flushed one by one need to know that earlier. Then all final simplices are planned first,
+/// in the order in which they are written: patches have a fixed number of simplices.
 #[derive(Default)]
 pub(super) struct PatchBuilder<const D: usize> {
     /// Whether patches are flushed one by one.
     is_planned: bool,
-    /// For each point, the number of the last patch that uses it, [`UNUSED`] or [`KEPT`]; empty without a plan.
+    /// For each point, the number of the last patch that uses it, [`UNUSED`] or [`KEPT`]; empty without a
+    /// plan.
     last: Vec<u32>,
     /// Number of the patch that is planned, and simplices that it still takes.
     planned: u32,
@@ -60,7 +61,8 @@ pub(super) struct PatchBuilder<const D: usize> {
     codes: Vec<u32>,
     /// Code of the first vertex of the patch.
     first_code: u32,
-    /// Vertices of the patch, in order of appearance: so many of the array, which has room for all that a patch takes.
+    /// Vertices of the patch, in order of appearance: so many of the array, which has room for all that a
+    /// patch takes.
     vertices: Vec<u32>,
     vertex_count: usize,
     /// Corners of the simplices of the patch, as indices into `vertices`.
@@ -74,7 +76,8 @@ pub(super) struct PatchBuilder<const D: usize> {
     own_count: u32,
     /// Vertices of the patch in local order, behind those of earlier patches if these are not finalized yet.
     order: Vec<u32>,
-    /// One past the last of `order`, and the first code of the next patch, for each patch that is not finalized yet.
+    /// One past the last of `order`, and the first code of the next patch, for each patch that is not
+    /// finalized yet.
     ends: Vec<[u32; 2]>,
 }
 
@@ -135,15 +138,15 @@ impl<const D: usize> PatchBuilder<D> {
         if self.is_planned { self.last[v as usize] == UNUSED } else { self.codes[v as usize] == 0 }
     }
 
-    /// Keeps `v` from being finalized here, because a node above uses it. Without a plan, call it when all simplices
-    /// are added.
+    /// Keeps `v` from being finalized here, because a node above uses it. Without a plan, call it when all
+    /// simplices are added.
     pub(super) fn keep(&mut self, v: u32) {
         let of_vertex = if self.is_planned { &mut self.last } else { &mut self.codes };
         of_vertex[v as usize] = KEPT;
     }
 
-    /// Adds a final simplex, in the order in which they were planned if there is a plan. Returns whether the patch is
-    /// full and must be closed.
+    /// Adds a final simplex, in the order in which they were planned if there is a plan. Returns whether the
+    /// patch is full and must be closed.
     #[inline(always)]
     pub(super) fn add(&mut self, simplex: &[u32]) -> bool {
         let first = self.corners.len();
@@ -180,8 +183,8 @@ impl<const D: usize> PatchBuilder<D> {
         close(self, blocks)
     }
 
-    /// Finalizes the vertices of all patches, when all are closed and vertices to be kept are known. With a plan,
-    /// that has happened.
+    /// Finalizes the vertices of all patches, when all are closed and vertices to be kept are known. With a
+    /// plan, that has happened.
     pub(super) fn finish(&mut self, blocks: &mut PatchBlocks) {
         let mut start = 0;
         for (patch, [end, next_code]) in self.ends.drain(..).enumerate() {
@@ -211,7 +214,8 @@ impl<const D: usize> PatchBuilder<D> {
         }
     }
 
-    /// Index of `v` in the patch. Adds it if it is new to the patch. Without a branch, which would be hard to predict.
+    /// Index of `v` in the patch. Adds it if it is new to the patch. Without a branch, which would be hard to
+    /// predict.
     #[inline(always)]
     fn index(&mut self, v: u32) -> u32 {
         let code = &mut self.codes[v as usize];
@@ -222,8 +226,9 @@ impl<const D: usize> PatchBuilder<D> {
         *code - self.first_code
     }
 
-    /// Encodes the patch, unless it is empty. Points that this stream does not have yet become new vertices in
-    /// order of appearance, the others are imported. Vertices that are in no later patch and not kept are finalized.
+    /// Encodes the patch, unless it is empty. Points that this stream does not have yet become new vertices
+    /// in order of appearance, the others are imported. Vertices that are in no later patch and not kept are
+    /// finalized.
     ///
     /// # Errors
     /// As [`PatchBlocks::push`].

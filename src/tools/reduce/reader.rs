@@ -11,8 +11,8 @@ use spmesh_model::bounds::Region;
 use spmesh_model::cells::CellCode;
 use spmesh_stream::{Event, StreamReader};
 
-/// Points after which a piece tells how many were read: a message for each block would wake the coordinator five
-/// times for each cell.
+/// Points after which a piece tells how many were read: a message for each block would wake the coordinator
+/// five times for each cell.
 const REPORTED: u64 = 1 << 16;
 
 /// The next piece of the stream.

@@ -5,9 +5,9 @@ use std::num::NonZeroUsize;
 
 use super::budget::Budget;
 use super::bulk::Bulk;
-use super::node::Rules;
 use super::reader::{InputSummary, Piece};
 use super::residual::union;
+use super::rules::Rules;
 use super::schedule::{Job, Schedule};
 use super::sequencer::{Outputs, Sequencer};
 use super::stats::Stats;
@@ -90,7 +90,8 @@ impl<const D: usize> Run<D> {
         sequencer: &mut Sequencer<W>,
         worker: &mut Worker<B, D>,
     ) -> Result<()> {
-        // All other nodes are done, so the threads are idle. What is left behind has an order that depends on them.
+        // All other nodes are done, so the threads are idle. What is left behind has an order that depends on
+        // them.
         if !self.rules.is_partial {
             worker.share(self.threads);
         }

@@ -9,8 +9,8 @@
 //! say so.
 
 use super::bulk::Bulk;
-use super::node::Rules;
 use super::residual::Residual;
+use super::rules::Rules;
 use spmesh_core::error::Result;
 use spmesh_core::random::Random;
 use spmesh_geometry::predicates::PredicateCounts;

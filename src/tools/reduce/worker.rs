@@ -1,9 +1,10 @@
 //! One worker: triangulates one node after the other.
 
 use super::bulk::Bulk;
-use super::node::{Rules, Solved, Solver};
+use super::node::{Solved, Solver};
 use super::patches::Flush;
 use super::residual::{Residual, UNWRITTEN};
+use super::rules::Rules;
 use super::sample::Sample;
 use super::schedule::Job;
 use spmesh_core::error::Result;

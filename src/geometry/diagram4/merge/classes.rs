@@ -40,9 +40,9 @@ impl Classes {
         let mut vertices = Lists4::with_capacity(count / 2, FACETS * count);
         let mut finite = 0;
         for is_infinite in [false, true] {
-            for seed in 0..count {
+            for (seed, simplex) in simplices.iter().enumerate() {
                 search.fetch_around((seed + AHEAD).min(count - 1));
-                if !search.borders.is_new(seed) || simplices[seed].is_infinite() != is_infinite {
+                if !search.borders.is_new(seed) || simplex.is_infinite() != is_infinite {
                     continue;
                 }
                 let class = starts.len() as u32 - 1;

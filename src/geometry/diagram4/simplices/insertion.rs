@@ -54,7 +54,7 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
                 std::array::from_fn(|other| facet(if other == side { 1 } else { other + 2 }, side));
             let swaps = sort(&mut vertices, &mut neighbours);
             // Replacing a vertex by a point across the facet turns the orientation.
-            if swaps % 2 == 0 {
+            if swaps.is_multiple_of(2) {
                 vertices.swap(0, 1);
                 neighbours.swap(0, 1);
             }
@@ -164,7 +164,7 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
     fn facet_vertices(&self, facet: Facet) -> [u32; 4] {
         let side = facet_of(facet);
         let [a, b, c, d] = without(self.complex.simplices[simplex_of(facet)].vertices, side);
-        if side % 2 == 0 { [a, b, c, d] } else { [b, a, c, d] }
+        if side.is_multiple_of(2) { [a, b, c, d] } else { [b, a, c, d] }
     }
 }
 
