@@ -108,7 +108,8 @@ impl Windows<'_> {
             options.offset(start).len(usize::try_from(end - start).ok()?);
             // SAFETY: by the invariant of the file, the bytes do not change while they are mapped, and all of
             // them lie within its length, so that no access is beyond the end. A page that the disk fails to
-            // read would raise SIGBUS, too: all are read below, where such a failure is an error.
+            // read would raise SIGBUS, too: all are read below, where such a failure is an error. Only if the
+            // system drops a page, and its disk fails after that, a signal ends the process.
             let mapped = unsafe { options.map(&self.file.file) }.ok()?;
             mapped.advise(Advice::PopulateRead).ok()?;
             self.mapped = Some((start, mapped));
