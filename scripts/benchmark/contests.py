@@ -221,7 +221,7 @@ class Contests:
 
     def contestant(self, peer, points):
         output = f"{self.triangles}.ply" if peer.whole_only else self.triangles
-        return Contestant(peer.name, [peer.command(points, self.triangles)], output)
+        return Contestant(peer.name, [peer.command(points, self.triangles)], output, threads=peer.threads)
 
     def from_file(self, path, *flags):
         """Our pipe, as users run it."""
