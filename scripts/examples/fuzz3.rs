@@ -13,6 +13,7 @@ mod promises;
 mod fuzzing;
 
 use std::borrow::Cow;
+use std::num::NonZeroUsize;
 use std::process::exit;
 use std::time::Instant;
 
@@ -68,7 +69,7 @@ impl Trial<3> for Meshes {
 
     fn attempt(&mut self, set: u64, points: &[Point], done: impl FnOnce()) -> Result<u64, String> {
         let Meshes { kernel, mesh } = self;
-        choose_order(kernel, set);
+        choose_way(kernel, set);
         kernel.triangulate(Cow::Borrowed(points), mesh).map_err(|error| error.to_string())?;
         done();
         promises::prove(points, mesh)?;
@@ -85,14 +86,17 @@ impl Trial<3> for Meshes {
     }
 }
 
-/// The order of insertion of a set; the default order in half of them.
-fn choose_order(kernel: &mut Kernel, set: u64) {
+/// The order of insertion of a set, the default order in half of them, and the threads: up to four, with
+/// parts of a few points.
+fn choose_way(kernel: &mut Kernel, set: u64) {
     let mut random = Random::new(set);
     let is_usual = random.integer(0, 1) == 0;
     let [curve, sequence, levels] = [3, 2, 1].map(|last| if is_usual { 0 } else { random.integer(0, last) });
     kernel.curve = Curve::ALL[curve as usize];
     kernel.sequence = [Sequence::Rounds, Sequence::Pass, Sequence::Random { seed: set }][sequence as usize];
     kernel.by_bit_levels = levels == 1;
+    kernel.threads = NonZeroUsize::MIN.saturating_add(random.integer(0, 3) as usize);
+    kernel.points_per_thread = random.integer(0, 12) as usize;
 }
 
 /// Sets whose cavities are large or many.

@@ -122,7 +122,7 @@ impl Kernel {
     ///
     /// Cost: O(n) for points that are spread evenly in space. Memory: about 250 bytes per point.
     pub fn triangulate(&mut self, points: Cow<[Point3]>, mesh: &mut Tetrahedralization) -> Result<()> {
-        let extent = checked_extent(&points)?;
+        let extent = checked_extent(&points, self.threads)?;
         mesh.clear();
         let started = Instant::now();
         self.take_sorted(points, &extent, mesh);
@@ -151,7 +151,7 @@ impl Kernel {
         mesh: &mut Tetrahedralization,
     ) -> Result<()> {
         assert_eq!(points.len(), weights.len(), "a weight for each point");
-        let extent = checked_extent(&points)?;
+        let extent = checked_extent(&points, self.threads)?;
         if let Some(bad) = weights.iter().position(|weight| !weight.is_finite()) {
             let message = format!("weight is not finite: {}", weights[bad]);
             return Err(Error::malformed(message).at(format!("point {bad}")));
@@ -201,11 +201,11 @@ impl Kernel {
             mesh.stats.created += 5;
             (mesh.vertices, mesh.tetrahedra) = (whole.vertices, whole.tetrahedra);
             mesh.vertices.pop();
-            mesh.hull_facets = if W::ARE_EQUAL {
-                extract::extract(&mut mesh.tetrahedra, mesh.vertices.len() as u32, |_| ())
-            } else {
-                extract_with_hidden(mesh)
-            };
+            mesh.hull_facets =
+                extract::extract(&mut mesh.tetrahedra, mesh.vertices.len() as u32, self.threads)?;
+            if !W::ARE_EQUAL {
+                list_hidden(mesh);
+            }
         }
         mesh.stats.insertion = started.elapsed();
         Ok(())
@@ -313,12 +313,12 @@ pub fn triangulate_weighted(points: &[Point3], weights: &[f64]) -> Result<Tetrah
 ///
 /// # Errors
 /// If they are too many, or a coordinate is not finite.
-fn checked_extent(points: &[Point3]) -> Result<Extent<3>> {
+fn checked_extent(points: &[Point3], threads: NonZeroUsize) -> Result<Extent<3>> {
     if points.len() > MAX_POINTS {
         let message = format!("{} points in one piece, the kernel takes at most {MAX_POINTS}", points.len());
         return Err(Error::usage(message));
     }
-    let extent = Extent::of(points);
+    let extent = Extent::on(threads, points);
     if !extent.finite {
         let bad = points.iter().position(|p| !p.iter().all(|c| c.is_finite())).unwrap_or_default();
         return Err(Error::malformed(format!("coordinate is not finite: {:?}", points[bad]))
@@ -327,15 +327,13 @@ fn checked_extent(points: &[Point3]) -> Result<Extent<3>> {
     Ok(extent)
 }
 
-/// [`extract::extract`]; adds the input points of the vertices that are in no tetrahedron to those hidden.
-fn extract_with_hidden(mesh: &mut Tetrahedralization) -> usize {
-    let infinite = mesh.vertices.len() as u32;
+/// Lists the input points of the vertices that are in no tetrahedron.
+fn list_hidden(mesh: &mut Tetrahedralization) {
     let mut is_visible = vec![false; mesh.vertices.len()];
-    let see = |vertices: [u32; 4]| vertices.iter().for_each(|&v| is_visible[v as usize] = true);
-    let hull_facets = extract::extract(&mut mesh.tetrahedra, infinite, see);
+    let corners = mesh.tetrahedra.iter().flat_map(|tetrahedron| tetrahedron.vertices);
+    corners.for_each(|v| is_visible[v as usize] = true);
     let all = mesh.vertices.iter().zip(is_visible);
     mesh.hidden.extend(all.filter(|(_, is_visible)| !is_visible).map(|(vertex, _)| vertex.index));
-    hull_facets
 }
 
 impl<W: Weights> WithPredicates3 for Build<'_, '_, W> {

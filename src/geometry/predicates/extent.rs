@@ -1,5 +1,11 @@
 //! The properties of a chunk of points that the choice of arithmetic depends on.
 
+use spmesh_core::parallel;
+use std::num::NonZeroUsize;
+
+/// Points that a thread looks at in one go.
+const PIECE: usize = 1 << 16;
+
 /// Bounding box of a chunk of points of the plane, or of space with `D = 3`, and which numbers its
 /// coordinates are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +27,24 @@ impl<const D: usize> Extent<D> {
     #[must_use]
     pub fn of(points: &[[f64; D]]) -> Extent<D> {
         Extent::of_each(points.iter().copied())
+    }
+
+    /// The same on so many threads.
+    #[must_use]
+    pub fn on(threads: NonZeroUsize, points: &[[f64; D]]) -> Extent<D> {
+        let extents = parallel::map(threads, points.chunks(PIECE), |piece| Ok(Extent::of(piece)));
+        extents.expect("no piece fails").into_iter().fold(Extent::of(&[]), Extent::and)
+    }
+
+    /// Extent of the points of both.
+    fn and(self, other: Extent<D>) -> Extent<D> {
+        Extent {
+            lower: std::array::from_fn(|axis| self.lower[axis].min(other.lower[axis])),
+            upper: std::array::from_fn(|axis| self.upper[axis].max(other.upper[axis])),
+            integral: self.integral & other.integral,
+            least_magnitude: self.least_magnitude.min(other.least_magnitude),
+            finite: self.finite & other.finite,
+        }
     }
 
     /// Extent of all points that `points` gives.
@@ -60,5 +84,23 @@ impl<const D: usize> Extent<D> {
             return 0.0;
         }
         self.lower.iter().chain(&self.upper).fold(0.0, |greatest, bound| bound.abs().max(greatest))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_make_no_difference() {
+        let point = |i: usize| [i as f64 - 70_000.0, (i % 7) as f64 * 0.5];
+        let mut points: Vec<[f64; 2]> = (0..3 * PIECE + 5).map(point).collect();
+        for bad in [1.0, f64::NAN, f64::INFINITY] {
+            points[PIECE + 1][0] = bad;
+            let (one, three) = (Extent::of(&points), Extent::on(NonZeroUsize::new(3).unwrap(), &points));
+            assert_eq!(one, three);
+        }
+        let none = Extent::<2>::on(NonZeroUsize::MIN, &[]);
+        assert_eq!(none, Extent::of(&[]));
     }
 }
