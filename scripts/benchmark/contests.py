@@ -199,7 +199,8 @@ class Contests:
         return Contest(name, points.stat().st_size // (3 * COORDINATE_BYTES), contestants, self.absent(3), dims=3)
 
     def kernel4(self, name, points):
-        contestants = [Contestant(OURS, [[program("examples/diagram4_time"), points]])]
+        engine = [program("examples/diagram4_time"), points]
+        contestants = [Contestant(OURS, [engine]), Contestant(OURS_TWICE, [[*engine, "--threads", 2]], threads=2)]
         contestants += [Contestant(p.name, [[p.program, points, *p.flags]]) for p in self.peers[4] if p.program]
         return Contest(name, points.stat().st_size // (4 * COORDINATE_BYTES), contestants, self.absent(4), dims=4)
 

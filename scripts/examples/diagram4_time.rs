@@ -1,6 +1,6 @@
-//! Times the 4D diagram, on one thread.
+//! Times the 4D diagram, on one thread unless told otherwise.
 //!
-//! `diagram4_time POINTS` is our contestant in `scripts/bench`: the engine takes ownership of the points in
+//! `diagram4_time POINTS [--threads N]` is our contestant in `scripts/bench`: the engine takes ownership of the points in
 //! memory. With `--audit` it also proves the diagram. With `--direct`, in a build with `--features
 //! experiments`, it takes the other route. POINTS has quadruples of little-endian f64.
 
@@ -10,6 +10,7 @@ mod files;
 
 use std::error::Error;
 use std::fs::File;
+use std::num::NonZeroUsize;
 
 use files::{read_tuples, timed};
 use spmesh_geometry::diagram4::{Route, Stats, diagram_by};
@@ -19,12 +20,16 @@ use spmesh_model::diagram4::Diagram4;
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let [points, flags @ ..] = &words[..] else {
-        return Err("usage: diagram4_time POINTS [--audit] [--direct]".into());
+        return Err("usage: diagram4_time POINTS [--threads N] [--audit] [--direct]".into());
     };
     let has = |flag: &str| flags.iter().any(|word| word == flag);
     let route = if has("--direct") { direct() } else { Route::Simplices };
+    let threads = match flags.iter().position(|word| word == "--threads") {
+        Some(at) => flags.get(at + 1).ok_or("--threads needs a number")?.parse()?,
+        None => NonZeroUsize::MIN,
+    };
     let points = read_tuples(&mut File::open(points)?)?;
-    let (result, seconds) = timed(|| diagram_by(route, points, None));
+    let (result, seconds) = timed(|| diagram_by(route, threads, points, None));
     let (diagram, stats) = result?;
     report(&diagram, &stats, seconds);
     if has("--audit") {

@@ -10,7 +10,7 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 
 use super::compression::Compression;
-use super::{Common, StatsFormat, notice, progress::Progress};
+use super::{Common, StatsFormat, notice, progress::Progress, threads};
 use crate::endings;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
@@ -77,6 +77,10 @@ pub struct Flags {
     #[arg(long, value_enum, default_value_t = RouteFlag::Simplices, value_name = "simplices|direct", hide_possible_values = true)]
     route: RouteFlag,
 
+    /// Threads that join simplices to cells [default: one per core, at most 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
     #[command(flatten)]
     compression: Compression,
 
@@ -136,7 +140,8 @@ impl Flags {
         let started = Instant::now();
         system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
         let (quantum, time_scale) = (self.quantum, self.time_scale);
-        let options = Options { quantum, time_scale, route: self.route.route()? };
+        let (route, threads) = (self.route.route()?, threads(self.threads));
+        let options = Options { quantum, time_scale, route, threads };
         if self.source.is_stdin() && self.product.reads_stdin() {
             return Err(Error::usage("points and sites cannot both come from stdin"));
         }

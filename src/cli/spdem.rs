@@ -32,7 +32,7 @@ use spmesh_terrain::points::Options as PointOptions;
 const TOOL: &str = "spdem";
 
 /// Memory by default. Units: bytes.
-const MEMORY: u64 = 256 << 20;
+const MEMORY: u64 = 32 << 20;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -162,7 +162,7 @@ pub struct Flags {
     format: Option<FormatFlag>,
 
     /// Memory for tiles, and for triangles that wait for the outline of --concave; others wait in temporary files
-    /// (see --temp-dir) [default: 256M]
+    /// (see --temp-dir) [default: 32M]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory: Option<u64>,
 

@@ -51,16 +51,16 @@ pub struct Cell4<'a> {
 
 impl Cells4 {
     /// Cells of lists of vertices and of neighbours, which both have a list for each cell. `order` gives the
-    /// numbers of the lists of each cell. Those from `infinite` are of infinite cells.
+    /// numbers of the lists of each cell. The first `finite` cells are finite.
     ///
     /// # Panics
     /// If `order` contains other numbers.
     #[must_use]
-    pub fn from_lists(mut vertices: Lists4, neighbours: Lists4, order: &[u32], infinite: usize) -> Cells4 {
+    pub fn from_lists(mut vertices: Lists4, neighbours: Lists4, order: &[u32], finite: usize) -> Cells4 {
         let starts = |&list: &u32| [vertices.starts[list as usize], neighbours.starts[list as usize]];
         let starts = order.iter().map(starts).collect();
-        for &start in &vertices.starts[infinite..vertices.len()] {
-            vertices.words[start as usize] |= INFINITE;
+        for &list in &order[finite..] {
+            vertices.words[vertices.starts[list as usize] as usize] |= INFINITE;
         }
         Cells4 { vertices: vertices.words, neighbours: neighbours.words, starts }
     }
@@ -152,6 +152,25 @@ impl Lists4 {
         let mut starts = Vec::with_capacity(lists + 1);
         starts.push(0);
         Lists4 { words, starts }
+    }
+
+    /// All lists of `parts`, one part after the other, in the memory of the first.
+    ///
+    /// # Panics
+    /// As [`Lists4::end`].
+    #[must_use]
+    pub fn joined(parts: impl IntoIterator<Item = Lists4>) -> Lists4 {
+        let mut parts = parts.into_iter();
+        let mut joined = parts.next().unwrap_or_else(|| Lists4::with_capacity(0, 0));
+        for part in parts {
+            let offset = joined.words.len() - 1;
+            let end = u32::try_from(offset + part.words.len() - 1).expect("at most 2^32 numbers of cells");
+            let offset = end - (part.words.len() as u32 - 1);
+            joined.words.pop();
+            joined.words.extend_from_slice(&part.words);
+            joined.starts.extend(part.starts[1..].iter().map(|start| start + offset));
+        }
+        joined
     }
 
     /// Number of lists.

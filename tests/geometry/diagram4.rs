@@ -2,8 +2,10 @@
 
 use spmesh_audit::diagram::check;
 use spmesh_core::error::ErrorKind;
-use spmesh_geometry::diagram4::diagram;
+use spmesh_geometry::diagram4::{Route, diagram, diagram_by};
 use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
+use std::num::NonZeroUsize;
 
 use spmesh_reference::diagram4::{self as reference, Cell, Point};
 use spmesh_reference::sets::Random;
@@ -61,7 +63,45 @@ fn assert_proved(random: &mut Random, mut points: Vec<Point4>, what: &str) {
     let proof = check(&found.points, &found.cells).unwrap_or_else(|e| panic!("{what}: {e}"));
     assert!(proof.cells > points.len() / 4, "{what}: {proof:?}");
     random.shuffle(&mut points);
-    assert!(diagram(points, None).unwrap().0 == found, "{what}, shuffled");
+    assert!(diagram(points.clone(), None).unwrap().0 == found, "{what}, shuffled");
+    assert_same_on_threads(points, &found, what);
+}
+
+/// Asserts that any number of threads finds the same diagram.
+fn assert_same_on_threads(points: Vec<Point4>, found: &Diagram4, what: &str) {
+    for threads in [2, 3, 7].map(|threads| NonZeroUsize::new(threads).unwrap()) {
+        let (shared, _) = diagram_by(Route::default(), threads, points.clone(), None).unwrap();
+        assert!(shared == *found, "{what}, on {threads} threads");
+    }
+}
+
+/// A cell of many simplices, to which several threads come: all points of a sphere.
+#[test]
+fn threads_find_cells_of_many_simplices() {
+    let square = |point: &Point4| point.iter().map(|x| (x - 6.0) * (x - 6.0)).sum::<f64>();
+    let sphere: Vec<Point4> =
+        floats(&grid([13; 4])).into_iter().filter(|point| square(point) == 45.0).collect();
+    let (found, stats) = diagram(sphere.clone(), None).unwrap();
+    let finite = found.cells.iter().filter(|cell| !cell.is_infinite).count();
+    assert_eq!(finite, 1);
+    assert!(stats.simplices > 4_096, "too few simplices for threads: {}", stats.simplices);
+    assert_same_on_threads(sphere.clone(), &found, "a sphere");
+    let other = sphere.iter().map(|&[x, y, z, t]| [x + 3.0, y, z, t]);
+    let both: Vec<Point4> = sphere.iter().copied().chain(other).collect();
+    let (found, _) = diagram(both.clone(), None).unwrap();
+    assert_same_on_threads(both, &found, "two spheres");
+}
+
+/// Most cells of a part of a grid have several simplices.
+#[test]
+fn parts_of_grids_are_proved() {
+    let mut random = Random::new(SEED + 7);
+    let mut points = floats(&grid([7; 4]));
+    random.shuffle(&mut points);
+    for count in [2401, 1200, 300] {
+        points.truncate(count);
+        assert_proved(&mut random, points.clone(), &format!("{count} points of a grid"));
+    }
 }
 
 #[test]

@@ -27,6 +27,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::POINTS4_MAX;
 use spmesh_model::cells4::{Cells4, Point4};
 use spmesh_model::diagram4::Diagram4;
+use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
 
 /// Times and counts of a run.
@@ -72,14 +73,20 @@ pub enum Route {
 /// Malformed, if a coordinate is not finite. Usage, if there are too many points, or all lie in a hyperplane;
 /// the message gives their dimension.
 pub fn diagram(points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram4, Stats)> {
-    diagram_by(Route::default(), points, values)
+    diagram_by(Route::default(), NonZeroUsize::MIN, points, values)
 }
 
-/// As [`diagram`], by a given route.
+/// As [`diagram`], by a given route. The result does not depend on the number of threads, which join simplices
+/// to cells.
 ///
 /// # Errors
 /// As [`diagram`].
-pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram4, Stats)> {
+pub fn diagram_by(
+    route: Route,
+    threads: NonZeroUsize,
+    points: Vec<Point4>,
+    values: Option<Vec<f64>>,
+) -> Result<(Diagram4, Stats)> {
     check(&points)?;
     let mut stats = Stats::default();
     let started = Instant::now();
@@ -89,9 +96,9 @@ pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -
     let cells = match route {
         Route::Simplices => {
             if sites.exactness == Exactness::Small {
-                through_simplices::<i32>(&sites, &mut stats)?
+                through_simplices::<i32>(&sites, threads, &mut stats)?
             } else {
-                through_simplices::<f64>(&sites, &mut stats)?
+                through_simplices::<f64>(&sites, threads, &mut stats)?
             }
         }
         #[cfg(feature = "experiments")]
@@ -101,10 +108,14 @@ pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -
     Ok((Diagram4 { points: sites.points, values, merged, cells }, stats))
 }
 
-fn through_simplices<C: simplices::Coefficient>(sites: &Sites, stats: &mut Stats) -> Result<Cells4> {
+fn through_simplices<C: simplices::Coefficient>(
+    sites: &Sites,
+    threads: NonZeroUsize,
+    stats: &mut Stats,
+) -> Result<Cells4> {
     let complex = simplices::triangulate::<C>(sites, stats)?;
     let started = Instant::now();
-    let cells = merge::cells(complex, stats);
+    let cells = merge::cells(complex, threads, stats);
     stats.merge = started.elapsed();
     Ok(cells)
 }

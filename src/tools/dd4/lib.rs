@@ -14,6 +14,7 @@ pub use product::Product;
 pub use quantum::Quantum;
 pub use write::{write_diagram, write_simplices};
 
+use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
 
 use spmesh_core::error::{Error, Result};
@@ -22,7 +23,7 @@ use spmesh_io::source::points4::Selected4;
 use spmesh_model::diagram4::Diagram4;
 
 /// Options of a run.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// The quantum of the coordinates, if they are to be replaced by integers.
     pub quantum: Option<Quantum>,
@@ -30,6 +31,15 @@ pub struct Options {
     pub time_scale: TimeScale,
     /// How the diagram is found.
     pub route: Route,
+    /// Threads of the engine.
+    pub threads: NonZeroUsize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let (quantum, time_scale, route) = <_>::default();
+        Options { quantum, time_scale, route, threads: NonZeroUsize::MIN }
+    }
 }
 
 /// Counts and times of a run.
@@ -103,5 +113,5 @@ fn diagram_of(
     }
     product.check(&points, values.is_some())?;
     placement.scale(&mut points)?;
-    diagram_by(options.route, points, values)
+    diagram_by(options.route, options.threads, points, values)
 }

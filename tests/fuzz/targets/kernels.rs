@@ -1,6 +1,7 @@
 //! Kernels: their results must be provable for any points.
 
 use std::borrow::Cow;
+use std::num::NonZeroUsize;
 
 use spmesh_audit::{Audit, Standard, configurations::StreamAudit, diagram::check};
 use spmesh_core::error::ErrorKind;
@@ -60,7 +61,7 @@ pub fn kernel3(bytes: &[u8]) {
 pub fn diagram4(bytes: &[u8]) {
     let points = moderate::<4>(bytes, 40);
     let by = |route| -> Option<Diagram4> {
-        match diagram_by(route, points.clone(), None) {
+        match diagram_by(route, NonZeroUsize::MIN, points.clone(), None) {
             Ok((diagram, _)) => Some(diagram),
             Err(error) => {
                 assert!(error.to_string().contains("dimensions"), "{error}");

@@ -2,11 +2,17 @@
 
 use super::AHEAD;
 use crate::diagram4::simplices::{Coefficient, Complex, FACETS};
+use spmesh_core::parallel::for_each;
 use spmesh_core::prefetch::prefetch;
+use std::num::NonZeroUsize;
 
 /// Bits for each simplex: those of facets across which the neighbour is on the same sphere, or in the same
 /// hyperplane, and those of dead and of visited simplices.
+#[derive(Clone)]
 pub(super) struct Borders(Vec<u8>);
+
+/// Simplices that a thread tests at a time.
+const PIECE: usize = 1 << 14;
 
 const DEAD: u8 = 1 << FACETS;
 const VISITED: u8 = DEAD << 1;
@@ -14,7 +20,7 @@ const VISITED: u8 = DEAD << 1;
 impl Borders {
     /// Tests all facets. The search for cells, which jumps about in memory, then needs no spheres; this pass
     /// through the memory knows in time what to prefetch.
-    pub(super) fn of<C: Coefficient>(complex: &Complex<C>) -> Borders {
+    pub(super) fn of<C: Coefficient>(complex: &Complex<C>, threads: NonZeroUsize) -> Borders {
         let count = complex.simplices.len();
         let bits = |simplex: usize| {
             complex.fetch_spheres_around((simplex + AHEAD).min(count - 1));
@@ -23,7 +29,12 @@ impl Borders {
             }
             (0..FACETS).fold(0, |bits, side| bits | u8::from(complex.is_cospherical(simplex, side)) << side)
         };
-        Borders((0..count).map(bits).collect())
+        let mut borders = vec![0; count];
+        let pieces = borders.chunks_mut(PIECE).enumerate();
+        for_each(threads, pieces, |(number, piece)| {
+            (number * PIECE..).zip(piece).for_each(|(simplex, border)| *border = bits(simplex));
+        });
+        Borders(borders)
     }
 
     /// Whether a simplex is alive and was not visited before.

@@ -3,14 +3,18 @@
 mod borders;
 mod classes;
 mod marks;
+mod numbers;
 mod order;
 mod ranks;
+mod search;
 
 use super::Stats;
 use super::simplices::{Coefficient, Complex};
 use borders::Borders;
 use classes::Classes;
+use spmesh_core::parallel::for_each;
 use spmesh_model::cells4::{Cells4, Lists4};
+use std::num::NonZeroUsize;
 
 /// The cells of the diagram, in canonical order.
 ///
@@ -18,34 +22,40 @@ use spmesh_model::cells4::{Cells4, Lists4};
 /// points), so each cell is a union of its simplices, and two simplices at a facet are in one cell exactly if
 /// the vertex of one is on the sphere of the other. A facet of the diagram on the hull is the union of those
 /// facets of simplices of one cell that are in one hyperplane (thesis 4.3.6).
-pub(super) fn cells<C: Coefficient>(complex: Complex<C>, stats: &mut Stats) -> Cells4 {
-    let borders = Borders::of(&complex);
+pub(super) fn cells<C: Coefficient>(complex: Complex<C>, threads: NonZeroUsize, stats: &mut Stats) -> Cells4 {
+    let threads = if complex.simplices.len() < SHARED_MIN { NonZeroUsize::MIN } else { threads };
+    let borders = Borders::of(&complex, threads);
     let Complex { simplices, order: sites, spheres, near, .. } = complex;
     // Free the spheres, a third of the memory or more.
     drop((spheres, near));
-    let classes = Classes::new(&simplices, &sites, borders);
+    let classes = Classes::new(&simplices, &sites, borders, threads);
     drop(sites);
     (stats.simplices, stats.infinite_simplices) = classes.simplices();
-    let finite = classes.finite;
-    let (vertices, mut neighbours) = classes.lists(&simplices);
+    let joined = classes.joined();
+    let (vertices, mut neighbours) = classes.lists(threads);
     drop(simplices);
-    let order = order::canonical(&vertices, finite);
-    renumber(&mut neighbours, &order);
-    Cells4::from_lists(vertices, neighbours, &order, finite)
+    let mut order = order::canonical(&vertices, &joined.finite(), threads);
+    let finite = order.len();
+    order.extend(order::canonical(&vertices, &joined.infinite(), threads));
+    let mut places = vec![0; joined.numbers_end()];
+    for (place, &class) in (0u32..).zip(&order) {
+        places[joined.number(class as usize) as usize] = place;
+    }
+    for_each(threads, &mut neighbours, |lists| renumber(lists, &places));
+    Cells4::from_lists(vertices, Lists4::joined(neighbours), &order, finite)
 }
 
-/// Replaces classes by their places in an order, and sorts each list.
-fn renumber(neighbours: &mut Lists4, order: &[u32]) {
-    let mut places = vec![0; order.len()];
-    for (place, &class) in (0u32..).zip(order) {
-        places[class as usize] = place;
-    }
+/// Replaces classes by their places, and sorts each list.
+fn renumber(neighbours: &mut Lists4, places: &[u32]) {
     for class in 0..neighbours.len() {
         let list = neighbours.get_mut(class);
         list.iter_mut().for_each(|other| *other = places[*other as usize]);
         ranks::sort_distinct(list);
     }
 }
+
+/// Fewer simplices are not worth the start of threads.
+const SHARED_MIN: usize = 1 << 12;
 
 /// Simplices or cells to prefetch ahead.
 const AHEAD: usize = 8;

@@ -3,7 +3,9 @@
 use std::fmt::Debug;
 
 /// A coefficient of a sphere, as narrow as the coordinates allow: insertion is bound by memory.
-pub(in crate::diagram4) trait Coefficient: Copy + Debug + Default + PartialOrd {
+pub(in crate::diagram4) trait Coefficient:
+    Copy + Debug + Default + PartialOrd + Sync
+{
     /// Replaces the determinant in the sphere of a dead simplex.
     const DEAD: Self;
 
