@@ -131,10 +131,16 @@ class Case:
         self.result.complaints.append((kind, text))
 
 
+def first_failed(outcome, default):
+    """The first program that failed, but for those whose reader had gone."""
+    return next((k for k, code in enumerate(outcome.codes) if code not in (0, verdicts.CLOSED_PIPE)), default)
+
+
 def commands(job, is_to_file, nodes):
     chosen = []
     for command in job.commands(is_to_file):
         chosen.append([part for word in command for part in (nodes.split() if word == "{nodes}" else [word])])
     return chosen
 
-__all__ = ["Case", "Expected", "FAULTS", "Plan", "Result", "Skip", "World", "fault", "last", "writes_stdout"]
+__all__ = ["Case", "Expected", "FAULTS", "Plan", "Result", "Skip", "World", "fault", "first_failed",
+           "last", "writes_stdout"]

@@ -5,7 +5,7 @@ import resource
 import shutil
 
 import users
-from cases import Expected, Plan, Skip, fault, last
+from cases import Expected, Plan, Skip, fault, first_failed, last
 
 FULL = "No space left on device"
 
@@ -58,7 +58,7 @@ def full_disk(case):
     if not case.world.can_mount or not room.mount(room.out, f"size={4096 * pages}"):
         raise Skip("file systems cannot be mounted")
     outcome = case.run(room)
-    case.judge(outcome, Expected(case.stage, [0, 1], [whole], FULL), room, f"a disk of {pages} pages")
+    case.judge(outcome, Expected(first_failed(outcome, case.stage), [0, 1], [whole], FULL), room, f"a disk of {pages} pages")
 
 
 @fault("no-inodes", last)
@@ -69,7 +69,7 @@ def no_inodes(case):
     if not case.world.can_mount or not room.mount(room.out, "nr_inodes=1"):
         raise Skip("file systems cannot be mounted")
     outcome = case.run(room)
-    case.judge(outcome, Expected(case.stage, [1], [whole], FULL), room, "a disk without inodes")
+    case.judge(outcome, Expected(first_failed(outcome, case.stage), [1], [whole], FULL), room, "a disk without inodes")
 
 
 @fault("read-only", last)
@@ -83,7 +83,7 @@ def read_only(case):
         room.place_old(name for name in whole.files)
     room.mount(room.out, "remount,ro")
     outcome = case.run(room)
-    case.judge(outcome, Expected(case.stage, [1], [whole], "Read-only file system"), room, "a disk to be read only")
+    case.judge(outcome, Expected(first_failed(outcome, case.stage), [1], [whole], "Read-only file system"), room, "a disk to be read only")
 
 
 @fault("refused", last)
@@ -98,7 +98,7 @@ def refused(case):
     os.chmod(room.out, 0o555)
     before = {k: users.become(case.world.user) for k in range(len(case.job.stages))}
     outcome = case.run(room, Plan(before=before))
-    case.judge(outcome, Expected(case.stage, [1], [whole], "Permission denied"), room, "a folder of another user")
+    case.judge(outcome, Expected(first_failed(outcome, case.stage), [1], [whole], "Permission denied"), room, "a folder of another user")
 
 
 @fault("full-temp")
@@ -115,7 +115,7 @@ def full_temp(case):
         raise Skip("file systems cannot be mounted")
     # Every program of the pipe has this folder; the first that fails is to blame.
     outcome = case.run(room, Plan(environment=environment), is_to_file)
-    stage = next((k for k, code in enumerate(outcome.codes) if code not in (0, 141)), case.stage)
+    stage = first_failed(outcome, case.stage)
     cause = {"missing": "No such file or directory", "read only": "Read-only file system"}.get(kind, FULL)
     case.judge(outcome, Expected(stage, [0, 1], [whole], cause), room, f"temporary files: {kind}")
 
@@ -129,5 +129,5 @@ def no_folder(case):
     outcome = case.run(room)
     room.out.mkdir(exist_ok=True)
     makes = case.job.name in ("nodes", "sweep", "heights", "sheets")
-    expected = Expected(case.stage, [0] if makes else [1], [whole], "No such file or directory|does not exist")
+    expected = Expected(first_failed(outcome, case.stage), [0] if makes else [1], [whole], "No such file or directory|does not exist")
     case.judge(outcome, expected, room, "no folder")

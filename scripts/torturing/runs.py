@@ -11,8 +11,8 @@ import time
 
 import inputs
 
-# Seconds after which a run counts as hanging. Debug builds are slow.
-TIME_MAX = 240
+# Seconds after which a run counts as hanging, and seconds without any processor time. Debug builds are slow.
+TIME_MAX, IDLE_MAX = 240, 25
 # A pause of this script is not counted as longer than this: the machine may freeze all processes for minutes.
 TICK_MAX = 0.2
 # Bytes of a file that an output must not touch before it is complete.
@@ -195,20 +195,34 @@ def start(room, programs, command, stdin, stdout, log, plan, k, group):
 def wait(stages, during):
     """Waits for the end of all programs; whether they took too long."""
     counted, before = 0.0, time.monotonic()
-    start_time = before
+    start_time, worked, used = before, 0.0, 0
     while any(stage.poll() is None for stage in stages):
         now = time.monotonic()
         if during and during(stages, now - start_time):
             during = None
         counted += min(now - before, TICK_MAX)
         before = now
-        if counted > TIME_MAX:
+        if counted - worked > IDLE_MAX / 5 and processor_time(stages) != used:
+            worked, used = counted, processor_time(stages)
+        if counted > TIME_MAX or counted - worked > IDLE_MAX:
             for stage in stages:
                 stage.kill()
                 stage.wait()
             return True
         time.sleep(0.002)
     return False
+
+
+def processor_time(stages):
+    """Ticks of the processor that the programs have taken so far."""
+    total = 0
+    for stage in stages:
+        try:
+            fields = pathlib.Path(f"/proc/{stage.pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+            total += int(fields[11]) + int(fields[12])
+        except OSError:
+            pass
+    return total
 
 
 def end_group(group):
@@ -270,15 +284,18 @@ def read_all(source):
     return b"".join(parts)
 
 
+def without_folder(room, name, data):
+    """An output without the path of the room: manifests name parts in other folders by their whole path."""
+    return data.replace(bytes(room.folder), b"") if name.endswith(".json") else data
+
+
 def contents(room, job, strays):
     """The files in out/, by name; and what is where nothing should be."""
     files = {}
     for path in sorted(room.out.rglob("*")):
         name = str(path.relative_to(room.out))
         if path.is_file() and not path.is_symlink():
-            data = path.read_bytes()
-            # Manifests name parts in other folders by their whole path.
-            files[name] = data.replace(bytes(room.folder), b"") if name.endswith(".json") else data
+            files[name] = without_folder(room, name, path.read_bytes())
     strays += [f"tmp/{path.name}" for path in room.tmp.iterdir()]
     known = {"in", "out", "tmp", *(f"stderr.{k}" for k in range(len(job.stages)))}
     strays += [path.name for path in room.folder.iterdir() if path.name not in known]

@@ -111,7 +111,8 @@ def judge_messages(outcome, expected):
     for i, said in enumerate(outcome.messages):
         lines = said.splitlines()
         tool = outcome.commands[i][0]
-        if i != speaker and lines:
+        is_copied = speaker is not None and "--tee" in outcome.commands[speaker]
+        if i != speaker and lines and not (is_copied and i == speaker + 1):
             found.append(f"{tool} should be silent: {said[-300:]!r}")
         elif i == speaker and codes[i] and len(lines) != 1:
             found.append(f"{tool} said {len(lines)} lines, expected one: {said[-300:]!r}")
@@ -131,6 +132,9 @@ def judge_files(outcome, expected, old):
         if any(whole.has(name, data) for whole in wholes):
             continue
         if data == runs.OLD and name in old and not success:
+            continue
+        # The summary of a sweep grows with each file, so that a later run can go on.
+        if name.endswith("summary.tsv") and not success:
             continue
         if expected.momentary and old and MOMENTARY.match(name):
             continue
