@@ -20,13 +20,16 @@ def reads_files(job, stage):
     return any(name != "-" for name in job.inputs(stage))
 
 
-def choose(case, endings=None, can_be_part=True):
-    """One of the files that the program reads."""
+def choose(case, endings=None, can_be_part=True, is_own=False):
+    """One of the files that the program reads; if `is_own`, one that no other program of the pipe reads."""
     names = [name for name in case.job.inputs(case.stage) if name not in ("-", "parts")]
     if can_be_part and "parts" in case.job.needs and case.numbers.random() < 0.7:
         folder = case.world.folder / "in" / "parts"
         names = [f"parts/{path.name}" for path in sorted(folder.iterdir()) if path.suffix == ".spm"]
     names = [name for name in names if endings is None or name.endswith(endings)]
+    if is_own:
+        read = [name for stage in range(len(case.job.stages)) for name in case.job.inputs(stage)]
+        names = [name for name in names if read.count(name) == 1]
     if not names:
         raise Skip("reads no such file")
     return case.numbers.choice(names)

@@ -51,7 +51,7 @@ def with_pipe(case, prepare, codes, what):
 @fault("fifo", reads_files)
 def fifo(case):
     """A named pipe instead of a file: right, or a clear error."""
-    name = choose(case, can_be_part=False)
+    name = choose(case, can_be_part=False, is_own=True)
 
     def prepare(room):
         return make_pipe(room, name)
@@ -66,7 +66,7 @@ def fifo_twice(case):
     names = [name for name in case.job.inputs(case.stage) if name not in ("-", "parts")]
     if len(names) > 1:
         first, second = case.numbers.sample(names, 2)
-    elif names and case.tool in TAKES_MANY:
+    elif names and case.tool in TAKES_MANY and "--ground" not in case.job.pipe:
         first, second = names[0], None
     else:
         raise Skip("reads one file")

@@ -41,6 +41,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser};
 
 pub use messages::notice;
+pub use spmesh_core::allocator::Allocator;
 pub(crate) use messages::say;
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
