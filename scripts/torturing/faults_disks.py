@@ -21,7 +21,8 @@ def file_size(case):
     """No file may grow beyond a length."""
     is_to_file = case.is_to_file()
     whole, room = case.whole(is_to_file), case.room(is_to_file=is_to_file)
-    length = case.numbers.randrange(whole.size())
+    # The message goes to a file, too.
+    length = max(case.numbers.randrange(whole.size()), 500)
 
     def before():
         resource.setrlimit(resource.RLIMIT_FSIZE, (length, length))
