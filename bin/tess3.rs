@@ -4,9 +4,6 @@
 #[global_allocator]
 static HEAP: spmesh_cli::tess3::CountingHeap = spmesh_cli::tess3::CountingHeap;
 
-#[global_allocator]
-static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
-
 fn main() -> std::process::ExitCode {
     spmesh_cli::main(spmesh_cli::tess3::run)
 }

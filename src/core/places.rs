@@ -45,9 +45,7 @@ impl Inputs {
     /// The files at these paths; "-" is stdin.
     pub fn of<'p>(paths: impl IntoIterator<Item = &'p Path>) -> Inputs {
         let stdin = io::stdin();
-        let place = |path: &'p Path| {
-            Some((Place::of(path, stdin.as_fd())?, name_of_input(path)))
-        };
+        let place = |path: &'p Path| Some((Place::of(path, stdin.as_fd())?, name_of_input(path)));
         Inputs { names: paths.into_iter().filter_map(place).collect() }
     }
 
