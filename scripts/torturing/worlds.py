@@ -9,6 +9,7 @@ import runs
 import users
 import verdicts
 from cases import World, commands
+from jobs import JOBS
 
 MIB = 1 << 20
 
@@ -32,6 +33,9 @@ def least_space(program):
 
 def make(programs, folder, seed, count, jobs, can_mount):
     """The world of a seed: inputs of some `count` points, and undisturbed runs of all jobs."""
+    missing = [tool for job in JOBS for tool in job.tools if not os.access(f"{programs}/{tool}", os.X_OK)]
+    if missing:
+        raise Unsound(f"{programs} has no {missing[0]}: build the programs, or name their folder with --programs")
     inputs.make(folder, programs, seed, count)
     inputs.make(folder / "other", programs, f"{seed} other", count * 3 // 4)
     os.chmod(folder, 0o755)
