@@ -1,5 +1,8 @@
 //! Delaunay configurations of any degree, and their generalisation.
 
+#[global_allocator]
+static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+
 fn main() -> std::process::ExitCode {
     spmesh_cli::main(spmesh_cli::configgen::run)
 }

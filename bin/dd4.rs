@@ -1,5 +1,8 @@
 //! Exact Delaunay diagrams in four dimensions.
 
+#[global_allocator]
+static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+
 fn main() -> std::process::ExitCode {
     spmesh_cli::main(spmesh_cli::dd4::run)
 }

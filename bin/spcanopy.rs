@@ -1,5 +1,8 @@
 //! Models of the height of a canopy.
 
+#[global_allocator]
+static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+
 fn main() -> std::process::ExitCode {
     spmesh_cli::main(spmesh_cli::spcanopy::run)
 }

@@ -1,5 +1,8 @@
 //! Streaming Delaunay triangulation in the plane.
 
+#[global_allocator]
+static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+
 fn main() -> std::process::ExitCode {
     spmesh_cli::main(spmesh_cli::spdelaunay2d::run)
 }

@@ -2,6 +2,9 @@
 
 use std::process::ExitCode;
 
+#[global_allocator]
+static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+
 fn main() -> ExitCode {
     spmesh_cli::main(spmesh_cli::spfinalize::run)
 }

@@ -1,5 +1,8 @@
 //! Heights of points above the ground.
 
+#[global_allocator]
+static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+
 fn main() -> std::process::ExitCode {
     spmesh_cli::main(spmesh_cli::spheight::run)
 }

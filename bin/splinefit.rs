@@ -1,5 +1,8 @@
 //! Bivariate splines fitted to scattered points.
 
+#[global_allocator]
+static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+
 fn main() -> std::process::ExitCode {
     spmesh_cli::main(spmesh_cli::splinefit::run)
 }

@@ -41,6 +41,7 @@ mod splinefit;
 mod stream;
 mod system;
 mod tess3;
+mod torture;
 mod vectors;
 mod view;
 mod water;

@@ -42,6 +42,7 @@ use clap::{Args, Parser};
 
 pub use messages::notice;
 pub(crate) use messages::say;
+pub use spmesh_core::allocator::Allocator;
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
 use spmesh_core::parallel::available_threads;

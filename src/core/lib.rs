@@ -1,6 +1,7 @@
 //! The base of all crates: errors with positions, limits, output files that appear only when complete,
 //! threads, random numbers, and the operating system.
 
+pub mod allocator;
 pub mod error;
 pub mod limits;
 pub mod output;

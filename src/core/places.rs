@@ -1,10 +1,10 @@
 //! Recognizes outputs that would replace inputs or each other, however their paths are written.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs::{self, File, Metadata};
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
-use std::os::unix::fs::MetadataExt;
+use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
@@ -45,10 +45,7 @@ impl Inputs {
     /// The files at these paths; "-" is stdin.
     pub fn of<'p>(paths: impl IntoIterator<Item = &'p Path>) -> Inputs {
         let stdin = io::stdin();
-        let place = |path: &'p Path| {
-            let name = if is_standard(path) { "stdin".to_string() } else { path.display().to_string() };
-            Some((Place::of(path, stdin.as_fd())?, name))
-        };
+        let place = |path: &'p Path| Some((Place::of(path, stdin.as_fd())?, name_of_input(path)));
         Inputs { names: paths.into_iter().filter_map(place).collect() }
     }
 
@@ -60,12 +57,14 @@ impl Inputs {
     }
 }
 
-/// Checks that all outputs of a run are different from its inputs and from each other. An output comes with
-/// the flag that names it; "-" is stdin or stdout.
+/// Checks that all outputs of a run are different from its inputs and from each other, and that no pipe is two
+/// inputs. An output comes with the flag that names it; "-" is stdin or stdout.
 ///
 /// # Errors
-/// Usage, if two of them are one file, or two outputs are stdout.
+/// Usage, if two of them are one file, two outputs are stdout, or two inputs are one pipe.
 pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&str, &Path)]) -> Result<()> {
+    let inputs: Vec<&Path> = inputs.into_iter().collect();
+    check_pipes(&inputs)?;
     let inputs = Inputs::of(inputs);
     for &(flag, path) in outputs {
         if let Some(input) = inputs.at(path) {
@@ -85,6 +84,21 @@ pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&
     Ok(())
 }
 
+/// Refuses a pipe that is two inputs: its data can be read once, and the second time the program would wait for
+/// a writer that never comes.
+fn check_pipes(inputs: &[&Path]) -> Result<()> {
+    let mut pipes = HashSet::new();
+    for &path in inputs {
+        let found = if is_standard(path) { metadata_of(io::stdin().as_fd()) } else { fs::metadata(path) };
+        let Ok(found) = found else { continue };
+        if found.file_type().is_fifo() && !pipes.insert((found.dev(), found.ino())) {
+            let message = "is a pipe that is given twice, but its data can be read once: give a file";
+            return Err(Error::usage(message).of_input(name_of_input(path)));
+        }
+    }
+    Ok(())
+}
+
 /// Whether two outputs are one.
 fn is_same(a: &Path, b: &Path) -> bool {
     let stdout = io::stdout();
@@ -94,6 +108,10 @@ fn is_same(a: &Path, b: &Path) -> bool {
 
 fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
+}
+
+fn name_of_input(path: &Path) -> String {
+    if is_standard(path) { "stdin".to_string() } else { path.display().to_string() }
 }
 
 fn name_of_output(path: &Path) -> String {
@@ -108,6 +126,7 @@ fn metadata_of(descriptor: BorrowedFd<'_>) -> io::Result<Metadata> {
 mod tests {
     use super::*;
     use std::os::unix::fs::symlink;
+    use std::process::Command;
 
     fn check(inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<()> {
         let outputs: Vec<_> = ["--one", "--two", "--three"].into_iter().zip(outputs).collect();
@@ -147,6 +166,15 @@ mod tests {
         let null = PathBuf::from("/dev/null");
         let inputs = [null.clone(), path("a"), path("missing")];
         check(&inputs, &[null.clone(), null, path("b")]).unwrap();
+        assert!(Command::new("mkfifo").arg(path("pipe")).status().unwrap().success());
+        let pipe = path("pipe");
+        check(&[pipe.clone(), path("a")], &[]).unwrap();
+        symlink("pipe", path("soft")).unwrap();
+        for twice in [pipe.clone(), path("soft")] {
+            let error = check(&[pipe.clone(), path("a"), twice.clone()], &[]).unwrap_err();
+            let expected = format!("{}: is a pipe that is given twice", twice.display());
+            assert!(error.to_string().starts_with(&expected), "{error}");
+        }
         let error = check(&[], &["-".into(), path("b"), "-".into()]).unwrap_err();
         assert!(error.to_string().starts_with("stdout: --one and --three would be mixed"), "{error}");
     }

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::ptr;
 #[cfg(target_os = "linux")]
 use std::sync::atomic::AtomicU8;
-use std::sync::atomic::{AtomicPtr, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicPtr, Ordering};
 
 use crate::upstream;
 
@@ -142,6 +142,9 @@ pub fn expect_inflate_memory() {
 /// The message and the exit code of an abort.
 type Farewell = (&'static str, u8);
 
+/// Whether a thread has begun to end the program.
+static IS_ENDING: AtomicBool = AtomicBool::new(false);
+
 /// Null, or a value that is never freed: the handler may read it at any time.
 static AT_ABORT: AtomicPtr<Farewell> = AtomicPtr::new(ptr::null_mut());
 
@@ -155,7 +158,21 @@ pub fn exit_at_abort(message: &'static str, code: u8) {
     unsafe { libc::signal(libc::SIGABRT, handler as libc::sighandler_t) };
 }
 
+/// Ends the program as an abort would, after [`exit_at_abort`]; before that, returns.
+pub(crate) fn exit_without_memory() {
+    if !AT_ABORT.load(Ordering::Acquire).is_null() {
+        exit_with_message(libc::SIGABRT);
+    }
+}
+
 extern "C" fn exit_with_message(_signal: libc::c_int) {
+    // Of several threads that end the program, one says why.
+    if IS_ENDING.swap(true, Ordering::Relaxed) {
+        loop {
+            // SAFETY: the call only waits.
+            unsafe { libc::pause() };
+        }
+    }
     // SAFETY: the pointer is null or was leaked.
     let (message, code) = unsafe { AT_ABORT.load(Ordering::Acquire).as_ref() }.copied().unwrap_or(("", 1));
     let _ = rustix::io::write(rustix::stdio::stderr(), message.as_bytes());

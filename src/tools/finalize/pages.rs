@@ -1,5 +1,6 @@
 //! Memory for waiting points: pages of one size, chained per cell and recycled through a free list.
 
+use spmesh_core::allocator::may_fail;
 use spmesh_core::error::{Error, ErrorKind, Result};
 
 /// End of a chain.
@@ -37,10 +38,10 @@ impl Pages {
         assert!(fitting > 0, "a page fits");
         let pages_max = fitting.min(needed.max(1)).min(u64::from(NO_PAGE)) as usize;
         let (mut content, mut next) = (Vec::new(), Vec::new());
-        content
-            .try_reserve_exact(pages_max * page_len)
-            .and_then(|()| next.try_reserve_exact(pages_max))
-            .map_err(|_| too_much(pages_max * page_len))?;
+        let mut reserve = || {
+            content.try_reserve_exact(pages_max * page_len).and_then(|()| next.try_reserve_exact(pages_max))
+        };
+        may_fail(&mut reserve).map_err(|_| too_much(pages_max * page_len))?;
         Ok(Pages { page_len, pages_max, bytes: content, next, free: NO_PAGE, in_use: 0 })
     }
 

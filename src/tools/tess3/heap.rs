@@ -1,8 +1,10 @@
 //! Counts the heap memory of each thread. `--stats` and the column `peak_memory_bytes` of a sweep's summary
 //! report it.
 
-use std::alloc::{GlobalAlloc, Layout, System};
+use std::alloc::{GlobalAlloc, Layout};
 use std::cell::Cell;
+
+use spmesh_core::allocator::Allocator;
 
 thread_local! {
     /// Bytes that this thread has allocated, less those it has freed.
@@ -11,7 +13,7 @@ thread_local! {
     static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
-/// The system's allocator, with counts per thread. A program that reports these counts installs it as its
+/// The allocator of all programs, with counts per thread. A program that reports these counts installs it as its
 /// global allocator.
 ///
 /// A sweep works on several files at a time. The system reports the memory of the whole process only; the
@@ -27,30 +29,30 @@ fn count(bytes: isize) {
     });
 }
 
-// SAFETY: every call is forwarded unchanged to the system's allocator; counting does not allocate.
+// SAFETY: every call is forwarded unchanged to the other allocator; counting does not allocate.
 unsafe impl GlobalAlloc for CountingHeap {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size() as isize);
         // SAFETY: the caller keeps the contract of `alloc`.
-        unsafe { System.alloc(layout) }
+        unsafe { Allocator.alloc(layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         count(layout.size() as isize);
         // SAFETY: the caller keeps the contract of `alloc_zeroed`.
-        unsafe { System.alloc_zeroed(layout) }
+        unsafe { Allocator.alloc_zeroed(layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, bytes: usize) -> *mut u8 {
         count(bytes as isize - layout.size() as isize);
-        // SAFETY: the caller keeps the contract of `realloc`, and `pointer` came from the system's allocator.
-        unsafe { System.realloc(pointer, layout, bytes) }
+        // SAFETY: the caller keeps the contract of `realloc`, and `pointer` came from that allocator.
+        unsafe { Allocator.realloc(pointer, layout, bytes) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         count(-(layout.size() as isize));
-        // SAFETY: the caller keeps the contract of `dealloc`, and `pointer` came from the system's allocator.
-        unsafe { System.dealloc(pointer, layout) }
+        // SAFETY: the caller keeps the contract of `dealloc`, and `pointer` came from that allocator.
+        unsafe { Allocator.dealloc(pointer, layout) }
     }
 }
 

@@ -6,6 +6,7 @@ use std::fmt;
 use foldhash::fast::FixedState;
 
 use super::too_many;
+use spmesh_core::allocator::may_fail;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::limits::POINTS4_MAX;
 use spmesh_core::random::Random;
@@ -61,7 +62,7 @@ pub(super) fn choose(total: u64, count: u64, seed: u64) -> Result<Vec<u64>> {
     let no_memory = |_| Error::new(ErrorKind::Memory, format!("not enough memory to choose {count} points"));
     let mut random = Random::new(seed);
     let mut chosen = HashSet::with_hasher(FixedState::default());
-    chosen.try_reserve(count as usize).map_err(no_memory)?;
+    may_fail(|| chosen.try_reserve(count as usize)).map_err(no_memory)?;
     for last in total - count..total {
         let number = random.below(last + 1);
         if !chosen.insert(number) {
@@ -69,7 +70,7 @@ pub(super) fn choose(total: u64, count: u64, seed: u64) -> Result<Vec<u64>> {
         }
     }
     let mut sorted = Vec::new();
-    sorted.try_reserve_exact(count as usize).map_err(no_memory)?;
+    may_fail(|| sorted.try_reserve_exact(count as usize)).map_err(no_memory)?;
     sorted.extend(chosen);
     sorted.sort_unstable();
     Ok(sorted)

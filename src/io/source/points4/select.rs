@@ -5,6 +5,7 @@ use super::orientation::Orientation;
 use super::sample::choose;
 use super::scan::Supply;
 use super::{Selected4, Selection, Share};
+use spmesh_core::allocator::may_fail;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_model::cells4::Point4;
 
@@ -165,10 +166,10 @@ impl Intake {
     fn push(&mut self, point: Point4, value: Option<f64>) -> Result<()> {
         let count = self.points.len();
         let no_memory = |_| Error::new(ErrorKind::Memory, format!("not enough memory for {count} points"));
-        self.points.try_reserve(1).map_err(no_memory)?;
+        may_fail(|| self.points.try_reserve(1)).map_err(no_memory)?;
         self.points.push(point);
         if let (Some(values), Some(value)) = (&mut self.values, value) {
-            values.try_reserve(1).map_err(no_memory)?;
+            may_fail(|| values.try_reserve(1)).map_err(no_memory)?;
             values.push(value);
         }
         Ok(())
