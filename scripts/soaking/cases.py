@@ -124,7 +124,8 @@ def spline(trial):
 
 
 def configurations(trial):
-    trial.pipe(["configgen", "-q", "--degree", trial.random.choice((1, 2, 3)), trial.points(900, least=30, families=inputs.AREAS)], audit())
+    points = trial.points(900, least=30, families=inputs.AREAS)
+    trial.pipe(["configgen", "-q", "--degree", trial.random.choice((1, 2, 3)), points], audit())
 
 
 def diagram(trial):
@@ -180,13 +181,12 @@ def heights(trial):
 
 
 def killed(trial):
-    """A program of a pipe is killed at any time: no file is left but a mesh that is whole."""
+    """A program of a pipe is killed at any time: no file is left but a mesh that is whole. Then it runs again."""
     points, mesh = trial.file("points.raw"), trial.file("mesh.spm")
     inputs.write_raw(points, trial.random, 300_000)
+    commands = [trial.finalize("--raw", "u16le", points), trial.reduce("-o", mesh)]
     with open(trial.folder.parent / "messages", "wb") as errors:
-        pipe = processes.Pipe(trial.soak.meter, trial.soak.programs,
-                              [trial.finalize("--raw", "u16le", points), trial.reduce("-o", mesh)],
-                              trial.folder, trial.scratch, errors)
+        pipe = processes.Pipe(trial.soak.meter, trial.soak.programs, commands, trial.folder, trial.scratch, errors)
         time.sleep(trial.random.uniform(0, 0.5))
         signals = (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP)
         os.kill(trial.random.choice(pipe.processes).pid, trial.random.choice(signals))
@@ -195,6 +195,9 @@ def killed(trial):
         trial.pipe(audit(mesh))
     elif not any(codes):
         raise Fault("a pipe succeeded without its mesh")
+    trial.check_folders()
+    trial.pipe(*commands)
+    trial.pipe(audit(mesh))
 
 
 def sweep(trial):
