@@ -21,7 +21,8 @@ const ALIGNMENT: u64 = 1 << 16;
 /// A file that no one writes to any more.
 ///
 /// Invariant: nothing changes the bytes or the length. The file has no name, so that no other process opens
-/// it; and this type keeps the only descriptor, neither writes to it nor lends it.
+/// it. This type keeps the only descriptor, as [`TemporaryFile`] did before, which lent it to nobody: a copy
+/// could be written to. And this type does not write.
 #[derive(Debug)]
 pub struct FrozenFile {
     file: File,

@@ -5,7 +5,7 @@ mod names;
 mod records;
 
 use std::fs::File;
-use std::io;
+use std::io::{self, Write};
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 
@@ -42,11 +42,6 @@ impl TemporaryFile {
         Ok(TemporaryFile { file, name })
     }
 
-    /// The file, for sequential access.
-    pub fn file(&self) -> &File {
-        &self.file
-    }
-
     /// Its name in messages.
     pub fn name(&self) -> &str {
         &self.name
@@ -55,6 +50,14 @@ impl TemporaryFile {
     /// The file without its name.
     pub fn into_file(self) -> File {
         self.file
+    }
+
+    /// Writes bytes behind those that this method wrote before; `what` describes the operation in messages.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn append(&self, what: &str, bytes: &[u8]) -> Result<()> {
+        (&self.file).write_all(bytes).map_err(|e| self.error(what, e))
     }
 
     /// Writes bytes at an offset; `what` describes the operation in messages.

@@ -36,7 +36,7 @@ impl<W: Weights> Build<'_, '_, W> {
         let Build { setting, insertions, first, starts, refused, .. } = self;
         let own = self.complex.own.clone();
         let mut start = starts.first().copied().unwrap_or(0);
-        self.buffers.clear();
+        self.buffers.clear(start);
         let mut insertion = Insertion::<L, W> {
             complex: self.complex,
             weights: &setting.weights,

@@ -61,7 +61,7 @@ const SPARE: usize = 8;
 /// The known part of a cavity and of its border. The next insertion reuses the buffers.
 ///
 /// The lists are longer than what is in them. What is behind is of an earlier insertion: numbers of vertices
-/// that are in the lists, and facets that are in the complex.
+/// that are in the lists, and facets of tetrahedra that are in the part of the complex.
 #[derive(Debug)]
 pub(super) struct Cavity {
     /// Facets through which its tetrahedra were found, and how many there are; that of the first one is any.
@@ -104,7 +104,9 @@ impl Cavity {
     /// each other one adds at most one vertex, and two facets of the border.
     fn make_room(&mut self, room: usize) {
         self.room = room;
-        self.entered.resize(room + SPARE, Face::default());
+        // The first facet is of the complex, or of none yet.
+        let any = self.entered.first().copied().unwrap_or_default();
+        self.entered.resize(room + SPARE, any);
         self.border.resize(2 * room + 2 * SPARE, Face::default());
         self.vertices.resize(room + 2 * SPARE, NO_VERTEX);
         self.rows.resize(room + 2 * SPARE, [0.0; 4]);
@@ -116,9 +118,10 @@ impl Cavity {
         self.make_room(2 * self.room);
     }
 
-    /// Forgets facets of an earlier complex.
-    pub(super) fn clear(&mut self) {
-        self.entered.fill(Face::default());
+    /// Forgets facets of an earlier complex. In their place is a tetrahedron of this one, and of this part: the
+    /// search reads its words, which others must not write.
+    pub(super) fn clear(&mut self, t: u32) {
+        self.entered.fill(Face::new([0; 3], t));
         self.border.fill(Face::default());
     }
 

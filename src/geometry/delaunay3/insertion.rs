@@ -44,9 +44,9 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Forgets tetrahedra of an earlier complex.
-    pub(super) fn clear(&mut self) {
-        self.cavity.clear();
+    /// Forgets tetrahedra of an earlier complex, for one of this complex that is not frozen.
+    pub(super) fn clear(&mut self, t: u32) {
+        self.cavity.clear(t);
     }
 }
 

@@ -19,7 +19,7 @@ use super::cut::{Part, cut, thaw};
 use super::insertion::Buffers;
 use super::tetrahedralization::{Tetrahedron, WORDS};
 use super::weights::Weights;
-use super::whole::{Setting, Tally, Whole};
+use super::whole::{NUMBERED, Setting, Tally, Whole};
 use super::words::Words;
 use crate::order::Insertions;
 use spmesh_core::error::Result;
@@ -68,9 +68,11 @@ pub(super) fn insert<W: Weights>(
         vertices[ends.partition_point(|&end| end <= v)].push(v);
     }
     let share = inserted as f64 / finite as f64;
-    let rooms: Vec<usize> =
-        parts.iter().zip(&vertices).map(|(part, vertices)| room(part, share, vertices.len())).collect();
     let there = whole.tetrahedra.len();
+    let most = (NUMBERED - there) / parts.len();
+    let rooms = parts.iter().zip(&vertices);
+    let rooms: Vec<usize> =
+        rooms.map(|(part, vertices)| room(part, share, vertices.len()).min(most)).collect();
     let room = there + rooms.iter().sum::<usize>();
     whole.tetrahedra.reserve_exact(room - there);
     whole.room = whole.room.max(room);

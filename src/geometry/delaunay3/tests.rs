@@ -3,6 +3,7 @@
 
 use super::{Kernel, Point3, Tetrahedralization};
 use std::borrow::Cow;
+use std::num::NonZeroUsize;
 
 /// Pseudo-random numbers in [0, 1).
 fn random(count: usize) -> Vec<Point3> {
@@ -14,10 +15,18 @@ fn random(count: usize) -> Vec<Point3> {
     (0..count).map(|_| [next(), next(), next()]).collect()
 }
 
-/// Tetrahedra as sorted indices of points, sorted.
-fn tetrahedra(kernel: &mut Kernel, points: &[Point3]) -> Vec<[u32; 4]> {
+fn mesh(kernel: &mut Kernel, points: &[Point3]) -> Tetrahedralization {
     let mut mesh = Tetrahedralization::default();
     kernel.triangulate(Cow::Borrowed(points), &mut mesh).expect("finite points");
+    mesh
+}
+
+fn tetrahedra(kernel: &mut Kernel, points: &[Point3]) -> Vec<[u32; 4]> {
+    sorted(&mesh(kernel, points))
+}
+
+/// Tetrahedra as sorted indices of points, sorted.
+fn sorted(mesh: &Tetrahedralization) -> Vec<[u32; 4]> {
     let mut set: Vec<[u32; 4]> = mesh
         .tetrahedra()
         .iter()
@@ -63,6 +72,45 @@ fn lanes_agree(count: usize) {
     for (number, points) in sets.iter().enumerate() {
         let (found, expected) = (tetrahedra(&mut portable, points), tetrahedra(&mut widest, points));
         assert!(!found.is_empty() && found == expected, "set {number}");
+    }
+}
+
+/// Uniform points, and a lattice full of ties: few in Miri (scripts/check-unsafe), which takes seconds for each.
+fn small_sets() -> [Vec<Point3>; 2] {
+    let (count, side) = if cfg!(miri) { (28, 3) } else { (800, 9) };
+    let lattice = (0..side * side * side).map(|i| [i % side, i / side % side, i / (side * side)]);
+    [random(count), lattice.map(|p| p.map(f64::from)).collect()]
+}
+
+/// Parts share the array of tetrahedra without a word that two of them touch; points between parts follow.
+#[test]
+fn parts_of_small_sets() {
+    let mut refused = 0;
+    for points in small_sets() {
+        let expected = tetrahedra(&mut Kernel::new(), &points);
+        for threads in [2, 3] {
+            let threads = NonZeroUsize::new(threads).expect("a positive number");
+            let mut kernel = Kernel { threads, points_per_thread: 4, ..Kernel::default() };
+            let mesh = mesh(&mut kernel, &points);
+            assert_eq!(sorted(&mesh), expected, "{threads} threads");
+            refused += mesh.stats.refused;
+        }
+    }
+    assert!(refused > 0, "no set was cut into parts");
+}
+
+/// A kernel and a mesh may be used again, also after a refusal, with fewer points, and with weights.
+#[test]
+fn small_sets_in_buffers_of_others() {
+    let (mut kernel, mut mesh) = (Kernel::new(), Tetrahedralization::default());
+    let [uniform, lattice] = small_sets();
+    for points in [&uniform[..], &lattice, &uniform[..5], &lattice[..lattice.len() / 2], &uniform] {
+        let bad = [[0.0; 3], [f64::NAN, 0.0, 1.0]];
+        assert!(kernel.triangulate(Cow::Borrowed(&bad), &mut mesh).is_err());
+        kernel.triangulate(Cow::Borrowed(points), &mut mesh).expect("finite points");
+        let weights: Vec<f64> = (0..points.len()).map(|i| (i % 3) as f64 * 0.01).collect();
+        kernel.triangulate_weighted(Cow::Borrowed(points), &weights, &mut mesh).expect("finite weights");
+        assert!(!mesh.tetrahedra().is_empty());
     }
 }
 

@@ -14,8 +14,11 @@ use crate::predicates::{Arithmetic3, PredicateCounts};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use std::num::NonZeroUsize;
 
+/// Tetrahedra whose words are numbered in 32 bits: no room is greater, or numbers would begin anew.
+pub(super) const NUMBERED: usize = 1 << 29;
+
 /// Greatest number of tetrahedra. It leaves numbers for one more star of all vertices.
-const TETRAHEDRA_MAX: usize = (1 << 29) - 2 * MAX_POINTS;
+const TETRAHEDRA_MAX: usize = NUMBERED - 2 * MAX_POINTS;
 
 /// How much denser points are after a phase than before.
 const PHASE_FACTOR: usize = 8;
@@ -66,7 +69,7 @@ impl Whole {
     /// The first tetrahedron and those around it, in the memory of an array.
     pub(super) fn new(vertices: Vec<Vertex>, mut tetrahedra: Vec<Tetrahedron>, first: [u32; 4]) -> Whole {
         tetrahedra.clear();
-        let room = TETRAHEDRA_PER_VERTEX * vertices.len();
+        let room = first_room(vertices.len());
         tetrahedra.reserve_exact(room);
         let numbers = vec![0; vertices.len()];
         let mut whole = Whole { vertices, tetrahedra, free: Vec::new(), room, numbers };
@@ -149,10 +152,20 @@ impl Whole {
             let message = format!("more than {TETRAHEDRA_MAX} tetrahedra, the kernel's maximum");
             return Err(Error::new(ErrorKind::Io, message));
         }
-        self.room = len + len / 4 + 2 * self.vertices.len();
+        self.room = greater_room(len, self.vertices.len());
         self.tetrahedra.reserve_exact(self.room - len);
         Ok(())
     }
+}
+
+/// Room to begin with.
+fn first_room(vertices: usize) -> usize {
+    (TETRAHEDRA_PER_VERTEX * vertices).min(NUMBERED)
+}
+
+/// Room where there are so many tetrahedra, at most [`TETRAHEDRA_MAX`].
+fn greater_room(len: usize, vertices: usize) -> usize {
+    (len + len / 4 + 2 * vertices).min(NUMBERED)
 }
 
 /// The numbers of points at the ends of phases: all points of the first phase are inserted on one thread.
@@ -204,5 +217,22 @@ impl Kernel {
             done = end;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_of_the_greatest_rooms_have_numbers() {
+        for vertices in [5, MAX_POINTS / 2, MAX_POINTS + 1] {
+            let first = first_room(vertices);
+            let greatest = greater_room(TETRAHEDRA_MAX - 1, vertices);
+            assert!(greatest >= TETRAHEDRA_MAX - 1 + 2 * (vertices - 1));
+            for room in [first, greatest] {
+                assert!(u32::try_from(room * WORDS - 1).is_ok(), "{room} tetrahedra of {vertices} vertices");
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Holds the place of an input's bytes, so that each pass can read them from the start.
 
 use std::fs::{File, FileType};
-use std::io::{self, Cursor, IsTerminal, Read, Seek, SeekFrom, Stdin, Write};
+use std::io::{self, Cursor, IsTerminal, Read, Seek, SeekFrom, Stdin};
 use std::os::fd::AsFd;
 use std::os::unix::fs::{FileExt, FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
@@ -204,7 +204,7 @@ fn spool(mut input: impl Read, temp_dir: &Path) -> Result<(Origin, String)> {
             Err(e) if e.kind() == io::ErrorKind::Interrupted => continue,
             Err(e) => return Err(Error::io("reading", e)),
         };
-        file.file().write_all(&buffer[..len]).map_err(|e| file.error("spooling to it", e))?;
+        file.append("spooling to it", &buffer[..len])?;
         bytes += len as u64;
     }
     let size =

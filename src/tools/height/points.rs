@@ -1,6 +1,5 @@
 //! Points with heights instead of elevations, in a temporary file, from which layers are read.
 
-use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
@@ -106,7 +105,7 @@ impl HeightPoints {
         self.greatest = stored.iter().map(|point| point[2]).fold(self.greatest, f64::max);
         self.points += stored.len() as u64;
         let bytes = bytemuck::cast_slice(&stored);
-        self.file.file().write_all(bytes).map_err(|e| self.file.error("writing points", e))
+        self.file.append("writing points", bytes)
     }
 
     /// Properties of the points; their third coordinate is the height.

@@ -46,7 +46,7 @@ impl Coefficient for i32 {
     #[inline(always)]
     fn of(value: f64) -> i32 {
         debug_assert!(value as i32 as f64 == value);
-        // Safety: coefficients of small integers fit 32 bits.
+        // SAFETY: coefficients of small integers fit 32 bits; see `SMALL_MAX`.
         unsafe { value.to_int_unchecked() }
     }
 

@@ -1,0 +1,223 @@
+"""Pipelines of scripts/soak that run again and again. Each takes a trial: a random source, folders and helpers."""
+
+import os
+import pathlib
+import signal
+import time
+
+from soaking import inputs, processes
+
+
+class Fault(Exception):
+    """What a pipeline must not do."""
+
+
+class Trial:
+    """One run of one pipeline in an empty folder. A yardstick is a run whose size is always the same."""
+
+    def __init__(self, soak, random, folder, scratch, is_yardstick):
+        self.soak, self.random, self.folder, self.scratch = soak, random, folder, scratch
+        self.is_yardstick = is_yardstick
+        self.threads = 2 if is_yardstick else random.choice((1, 2))
+        self.outputs, self.audits, self.peaks, self.samples = set(), 0, {}, []
+
+    def size(self, most):
+        return most if self.is_yardstick else int(most ** self.random.uniform(0.25, 1))
+
+    def family(self, families):
+        return inputs.uniform if self.is_yardstick else self.random.choice(families)
+
+    def file(self, name):
+        """A file or folder that the pipeline may leave."""
+        self.outputs.add(name)
+        return self.folder / name
+
+    def points(self, most, dims=2, families=inputs.ALL, kind=None, least=3):
+        found = inputs.points(self.random, self.family(families), max(least, self.size(most)), dims)
+        kind = kind or ("las" if self.is_yardstick else self.random.choice(("las", "txt", "npy")))
+        path = self.file(f"points.{kind}")
+        {"las": inputs.write_las, "txt": inputs.write_text, "npy": inputs.write_npy}[kind](path, found)
+        self.given = found
+        return path
+
+    def pipe(self, *commands, is_sampled=False, **redirected):
+        """Runs a pipe, all of whose programs must succeed."""
+        messages = self.folder.parent / "messages"
+        with open(messages, "wb") as errors:
+            pipe = processes.Pipe(self.soak.meter, self.soak.programs, commands, self.folder, self.scratch, errors,
+                                  **redirected)
+            sampler = processes.Sampler(self.soak.meter, pipe, 0.02) if is_sampled else None
+            codes, peaks = pipe.wait()
+        if sampler:
+            self.samples += sampler.stop()
+        said = messages.read_text(errors="replace").strip()
+        if any(codes) or "panicked" in said:
+            words = " | ".join(" ".join(map(str, command)) for command in commands)
+            raise Fault(f"exit codes {codes} of {words}: {said[:2000]}")
+        for name, peak in zip(pipe.names, peaks):
+            self.peaks[name] = max(peak, self.peaks.get(name, 0))
+        self.audits += sum("--audit" in command for command in commands)
+
+    def finalize(self, *flags):
+        return ["spfinalize", "-q", "--memory", self.soak.memory, "--temp-dir", self.scratch,
+                "--threads", self.threads, "--cell-points", self.random.choice((60, 500, 20_000)), *flags]
+
+    def reduce(self, *flags):
+        return ["spdelaunay2d", "-q", "--threads", self.threads, *flags]
+
+    def mesh(self, points, name="mesh.spm"):
+        mesh = self.file(name)
+        self.pipe(self.finalize(points), self.reduce("-o", mesh))
+        return mesh
+
+    def check_folders(self):
+        """The folder holds what was declared and the temporary folder nothing."""
+        left = {entry.name for entry in self.folder.iterdir()} - self.outputs
+        left |= {entry.name for entry in pathlib.Path(self.scratch).iterdir()}
+        if left:
+            raise Fault(f"files left: {sorted(left)}")
+
+
+def audit(*flags):
+    return ["spinfo", "-q", "--audit", *flags]
+
+
+def plane(trial):
+    points = trial.points(30_000)
+    trial.pipe(trial.finalize(points), trial.reduce(), audit("--points", points))
+
+
+def bulk(trial):
+    """More points than the memory of spfinalize holds: they wait in temporary files."""
+    points = trial.file("points.raw")
+    inputs.write_raw(points, trial.random, trial.size(2_000_000))
+    trial.pipe(trial.finalize("--raw", "u16le", points), trial.reduce(), audit())
+
+
+def space(trial):
+    points = trial.points(8_000, dims=3)
+    reduce = ["spdelaunay3d", "-q", "--threads", trial.threads]
+    trial.pipe(trial.finalize("--octree", points), reduce, audit("--points", points))
+
+
+def raster(trial):
+    mesh = trial.mesh(trial.points(15_000, families=inputs.AREAS))
+    kind = trial.random.choice(("elevation", "slope", "hillshade"))
+    trial.pipe(["spdem", "-q", "--columns", 300, "--kind", kind, mesh, "-o", trial.file("a.tif")])
+    trial.pipe(["spdem", "-q", "--contours", 50, mesh, "-o", trial.file("a.geojson")])
+    trial.pipe(audit(mesh))
+
+
+def constrain(trial):
+    points, lines = trial.points(6_000, families=inputs.AREAS), trial.file("lines.txt")
+    inputs.write_lines(lines, trial.random, trial.given, 60 if trial.is_yardstick else trial.random.randrange(5, 60))
+    flags = ["--kill", 200_000] if trial.random.random() < 0.3 else []
+    constrain = ["spconstrain", "-q", "--lines", lines, "--temp-dir", trial.scratch, *flags]
+    trial.pipe(trial.finalize(points), trial.reduce(), constrain, audit())
+
+
+def spline(trial):
+    points, spline = trial.points(1_500, least=50, families=inputs.AREAS[:1]), trial.file("a.spline.spm")
+    trial.pipe(["splinefit", "fit", "-q", "--max-knots", 60, points, "-o", spline])
+    trial.pipe(["splinefit", "eval", "-q", "--columns", 120, spline, "-o", trial.file("a.tif")])
+    trial.pipe(audit(spline))
+
+
+def configurations(trial):
+    points = trial.points(900, least=30, families=inputs.AREAS)
+    trial.pipe(["configgen", "-q", "--degree", trial.random.choice((1, 2, 3)), points], audit())
+
+
+def diagram(trial):
+    """Points of a small lattice in space and time: most are cospherical."""
+    n, side, points = trial.size(500), 5 if trial.is_yardstick else trial.random.randrange(2, 40), trial.file("p.txt")
+    with open(points, "w") as file:
+        for _ in range(n):
+            file.write(" ".join(str(trial.random.randrange(side)) for _ in range(4)) + "\n")
+    trial.pipe(["dd4", "-q", points], audit())
+
+
+def molecule(trial):
+    structure = trial.file("a.pdb")
+    inputs.write_structure(structure, trial.random, trial.size(6_000))
+    trial.pipe(["tess3", "-q", "--threads", trial.threads, structure], audit())
+    for table, name in (("--sasa", "a.tsv"), ("--contact-areas", "a.tsv"), ("--filtration", "a.txt")):
+        trial.pipe(["tess3", "-q", table, "--threads", trial.threads, structure, "-o", trial.file(name)])
+
+
+def convert(trial):
+    mesh = trial.mesh(trial.points(10_000, families=inputs.AREAS))
+    text, back = trial.file("mesh.txt"), trial.file("back.txt")
+    trial.pipe(["spconvert", "-q", mesh, "--to", "text", "-o", text])
+    trial.pipe(["spconvert", "-q", text, "--to", "spm"], ["spconvert", "-q", "-", "--to", "text", "-o", back])
+    if text.read_bytes() != back.read_bytes():
+        raise Fault("a mesh differs after text and back")
+    for ending in ("ply", "obj", "vtu", "xml", "smb"):
+        output = trial.file(f"mesh.{ending}")
+        trial.pipe(["spconvert", "-q", "--temp-dir", trial.scratch, mesh, "-o", output])
+    trial.pipe(audit(mesh))
+
+
+def plan(trial):
+    """Many jobs, one after the other, and the mesh that their manifest names."""
+    points, plan, parts = trial.points(8_000, families=inputs.AREAS, kind="las"), trial.file("plan"), trial.file("d")
+    manifest = trial.file("mesh.json")
+    trial.pipe(["spfinalize", "-q", "--plan", plan, "--leaf-points", 2_000, points])
+    nodes = trial.folder.parent / "nodes"
+    with open(nodes, "wb") as file:
+        trial.pipe(["spnode", "-q", "list", plan], stdout=file)
+    for row in nodes.read_text().splitlines():
+        trial.pipe(["spnode", "-q", "run", plan, row.split("\t")[0], "-d", parts, "--threads", trial.threads])
+    trial.pipe(["spnode", "-q", "collect", plan, "-d", parts, "-o", manifest])
+    trial.pipe(["spconvert", "-q", manifest, "--to", "spm"], audit("--points", points))
+
+
+def heights(trial):
+    points = trial.points(8_000, families=inputs.AREAS, kind="las")
+    mesh = trial.mesh(points)
+    trial.pipe(["spheight", "-q", "--ground", mesh, "--temp-dir", trial.scratch, points, "-o", trial.file("h.laz")])
+    trial.pipe(["spcanopy", "-q", "--ground", mesh, "--columns", 200, points, "-o", trial.file("c.tif")])
+    trial.pipe(audit(mesh))
+
+
+def killed(trial):
+    """A program of a pipe is killed at any time: no file is left but a mesh that is whole. Then it runs again."""
+    points, mesh = trial.file("points.raw"), trial.file("mesh.spm")
+    inputs.write_raw(points, trial.random, 300_000)
+    commands = [trial.finalize("--raw", "u16le", points), trial.reduce("-o", mesh)]
+    with open(trial.folder.parent / "messages", "wb") as errors:
+        pipe = processes.Pipe(trial.soak.meter, trial.soak.programs, commands, trial.folder, trial.scratch, errors)
+        time.sleep(trial.random.uniform(0, 0.5))
+        signals = (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP)
+        os.kill(trial.random.choice(pipe.processes).pid, trial.random.choice(signals))
+        codes, _ = pipe.wait()
+    if mesh.exists():
+        trial.pipe(audit(mesh))
+    elif not any(codes):
+        raise Fault("a pipe succeeded without its mesh")
+    trial.check_folders()
+    trial.pipe(*commands)
+    trial.pipe(audit(mesh))
+
+
+def sweep(trial):
+    """Thousands of structures in one process, whose memory and descriptors are sampled."""
+    folder, listed = trial.file("in"), trial.file("list")
+    folder.mkdir()
+    for number in range(20):
+        inputs.write_structure(folder / f"{number}.pdb", trial.random, 10 * (number + 1))
+    names = [folder / f"{number}.pdb" for number in range(20)]
+    for number in range(20, 2_000):
+        names.append(folder / f"{number}.pdb")
+        names[-1].hardlink_to(names[number % 20])
+    listed.write_text("".join(f"{name}\n" for name in names))
+    trial.pipe(["tess3", "-q", "--threads", trial.threads, "--lof", listed, "--out-dir", trial.file("out")],
+               is_sampled=True)
+    meshes = [entry for entry in (trial.folder / "out").iterdir() if entry.suffix == ".spm"]
+    if len(meshes) != len(names):
+        raise Fault(f"{len(meshes)} meshes of {len(names)} structures")
+    trial.pipe(audit(trial.random.choice(meshes)))
+
+
+ALL = [plane, bulk, space, raster, constrain, spline, configurations, diagram, molecule, convert, plan, heights,
+       killed, sweep]
