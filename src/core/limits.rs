@@ -45,11 +45,23 @@ pub const STRUCTURE_LINE_MAX: usize = 1 << 24;
 /// Most operators of a biological assembly of a structure.
 pub const ASSEMBLY_COPIES_MAX: usize = 1 << 14;
 
-/// Most copies of subchains in a biological assembly.
-pub const ASSEMBLY_CHAINS_MAX: usize = 1 << 22;
+/// Most copies of subchains in a biological assembly: sets of 40 MB. Virus capsids have some thousand.
+pub const ASSEMBLY_CHAINS_MAX: usize = 1 << 20;
 
 /// Most atoms of a biological assembly, in all models: 1.9 GB, and the names of chains.
 pub const ASSEMBLY_ATOMS_MAX: usize = 1 << 25;
+
+/// Atoms that a biological assembly may have in any case: 40 MB with their tetrahedra.
+pub const ASSEMBLY_ATOMS_SMALL: usize = 1 << 17;
+
+/// Most atoms of a biological assembly of a file with some atoms. A few atoms do not become millions; ten thousand
+/// atoms of a capsid may have 1,680 copies.
+#[must_use]
+pub const fn assembly_atoms_max(atoms: usize) -> usize {
+    let copied = atoms.saturating_mul(atoms / 4);
+    let most = if copied < ASSEMBLY_ATOMS_SMALL { ASSEMBLY_ATOMS_SMALL } else { copied };
+    if most < ASSEMBLY_ATOMS_MAX { most } else { ASSEMBLY_ATOMS_MAX }
+}
 
 /// Longest header line of a text twin, in bytes: it may hold a CRS, escaped.
 pub const TEXT_HEADER_LINE_MAX: usize = 1 << 23;
