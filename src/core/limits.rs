@@ -144,5 +144,41 @@ pub const LINK_VERTICES_MAX: usize = 512;
 /// Most entries of the hierarchy of a COPC file: 200 MB. A file of 10^11 points has fewer.
 pub const COPC_ENTRIES_MAX: u64 = 1 << 22;
 
+/// Most bytes of comments of SPA that are kept.
+pub const SPA_COMMENTS_MAX: usize = 1 << 20;
+
+/// Longest list of a row of PLY: useful polygons and strips are shorter.
+pub const PLY_LIST_MAX: u64 = 1 << 16;
+
+/// Most elements and properties of a header of PLY: far above any real header, and little memory.
+pub const PLY_ITEMS_MAX: usize = 1000;
+
+/// Deepest brackets of a coordinate reference system; definitions of the EPSG dataset have seven levels.
+pub const CRS_DEPTH_MAX: usize = 32;
+
+/// Deepest collection in a collection of a GeoPackage.
+pub const WKB_DEPTH_MAX: u32 = 32;
+
+/// Longest file of radii, in bytes.
+pub const RADII_LEN_MAX: u64 = 1 << 24;
+
+/// Memory that SQLite may take, in bytes: the longest geometry must fit.
+pub const GEOPACKAGE_MEMORY_MAX: i64 = 1 << 30;
+
 /// Longest index of LAStools, in bytes: it takes five times as much while it is checked.
 pub const LAX_LEN_MAX: u64 = 1 << 25;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn assemblies_follow_their_files() {
+        assert_eq!(assembly_atoms_max(0), ASSEMBLY_ATOMS_SMALL);
+        assert_eq!(assembly_atoms_max(723), ASSEMBLY_ATOMS_SMALL);
+        assert_eq!(assembly_atoms_max(728), 728 * 182);
+        // A capsid of 1,680 copies of three chains.
+        assert!(assembly_atoms_max(9_690) > 1_680 * 9_690);
+        assert_eq!(assembly_atoms_max(usize::MAX), ASSEMBLY_ATOMS_MAX);
+    }
+}

@@ -52,3 +52,44 @@ fn is_whole(region: &NodeBox, dims: usize) -> bool {
     };
     region.min.len() == dims && region.max.len() == dims && sides().all(|(low, high)| is_some([low, high]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAN: &str = r#"{"format":"spmesh plan","version":1,"id":"","arguments":[],"dims":2,"grid":null,
+    "elevation":true,"crs":"unknown","attributes":[],"leaf_points":4,"points":7,"stages":[[0,1],[2,2]],"beside":[],
+    "nodes":[
+    {"number":0,"stage":0,"parent":2,"children":[],"box":{"min":[null,1.5],"max":[5.0,3.5]},"points":4,"files":[0]},
+    {"number":1,"stage":0,"parent":2,"children":[],"box":{"min":[5.0,null],"max":[null,null]},"points":3,"files":[]},
+    {"number":2,"stage":1,"parent":null,"children":[0,1],"box":{"min":[null,null],"max":[null,null]},"points":7,
+    "files":[]}],
+    "files":[{"path":"/a","bytes":46,"modified":1,"points":7,"min":[0.0,0.0,1.0],"max":[9.0,9.0,9.0]}]}"#;
+
+    #[test]
+    fn each_broken_rule_is_found() {
+        let verdict = |from: &str, to: &str| {
+            let text = PLAN.replacen(from, to, 1);
+            assert!(from == to || text != PLAN, "{from}");
+            let plan: Plan = serde_json::from_str(&text).expect("JSON of a plan");
+            check(&plan).map_err(|error| error.to_string())
+        };
+        assert_eq!(verdict("", ""), Ok(()));
+        for (from, to, what) in [
+            (r#""dims":2"#, r#""dims":4"#, "dimensions"),
+            (r#""parent":null"#, r#""parent":0"#, "not the root"),
+            (r#""number":1"#, r#""number":0"#, "node 1: it is not where"),
+            (r#""parent":2"#, r#""parent":null"#, "node 0: it is not where"),
+            ("[0,1],\"box", "[0,2],\"box", "node 1: parent and children"),
+            ("[0,1],\"box", "[0,0,1],\"box", "node 2: parent and children"),
+            ("[0,1],\"box", "[0],\"box", "node 1: parent and children"),
+            (r#""children":[]"#, r#""children":[0]"#, "node 0: parent and children"),
+            ("[null,1.5]", "[1.5]", "node 0: its box"),
+            ("[null,1.5]", "[null,3.5]", "node 0: its box"),
+            (r#""files":[0]"#, r#""files":[1]"#, "node 0: it names a file"),
+        ] {
+            let message = verdict(from, to).unwrap_err();
+            assert!(message.contains(what), "{to}: {message}");
+        }
+    }
+}
