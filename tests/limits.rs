@@ -1,5 +1,7 @@
 //! Programs whose memory or threads the system limits: an error with advice, never an abort or a panic.
 
+mod sides;
+
 use std::process::{Command, Output};
 
 use crate::programs::{Folder, cloud, outcome, run, sample, tool};

@@ -45,11 +45,23 @@ pub const STRUCTURE_LINE_MAX: usize = 1 << 24;
 /// Most operators of a biological assembly of a structure.
 pub const ASSEMBLY_COPIES_MAX: usize = 1 << 14;
 
-/// Most copies of subchains in a biological assembly.
-pub const ASSEMBLY_CHAINS_MAX: usize = 1 << 22;
+/// Most copies of subchains in a biological assembly: sets of 40 MB. Virus capsids have some thousand.
+pub const ASSEMBLY_CHAINS_MAX: usize = 1 << 20;
 
 /// Most atoms of a biological assembly, in all models: 1.9 GB, and the names of chains.
 pub const ASSEMBLY_ATOMS_MAX: usize = 1 << 25;
+
+/// Atoms that a biological assembly may have in any case: 40 MB with their tetrahedra.
+pub const ASSEMBLY_ATOMS_SMALL: usize = 1 << 17;
+
+/// Most atoms of a biological assembly of a file with some atoms. A few atoms do not become millions; ten thousand
+/// atoms of a capsid may have 1,680 copies.
+#[must_use]
+pub const fn assembly_atoms_max(atoms: usize) -> usize {
+    let copied = atoms.saturating_mul(atoms / 4);
+    let most = if copied < ASSEMBLY_ATOMS_SMALL { ASSEMBLY_ATOMS_SMALL } else { copied };
+    if most < ASSEMBLY_ATOMS_MAX { most } else { ASSEMBLY_ATOMS_MAX }
+}
 
 /// Longest header line of a text twin, in bytes: it may hold a CRS, escaped.
 pub const TEXT_HEADER_LINE_MAX: usize = 1 << 23;
@@ -132,5 +144,41 @@ pub const LINK_VERTICES_MAX: usize = 512;
 /// Most entries of the hierarchy of a COPC file: 200 MB. A file of 10^11 points has fewer.
 pub const COPC_ENTRIES_MAX: u64 = 1 << 22;
 
+/// Most bytes of comments of SPA that are kept.
+pub const SPA_COMMENTS_MAX: usize = 1 << 20;
+
+/// Longest list of a row of PLY: useful polygons and strips are shorter.
+pub const PLY_LIST_MAX: u64 = 1 << 16;
+
+/// Most elements and properties of a header of PLY: far above any real header, and little memory.
+pub const PLY_ITEMS_MAX: usize = 1000;
+
+/// Deepest brackets of a coordinate reference system; definitions of the EPSG dataset have seven levels.
+pub const CRS_DEPTH_MAX: usize = 32;
+
+/// Deepest collection in a collection of a GeoPackage.
+pub const WKB_DEPTH_MAX: u32 = 32;
+
+/// Longest file of radii, in bytes.
+pub const RADII_LEN_MAX: u64 = 1 << 24;
+
+/// Memory that SQLite may take, in bytes: the longest geometry must fit.
+pub const GEOPACKAGE_MEMORY_MAX: i64 = 1 << 30;
+
 /// Longest index of LAStools, in bytes: it takes five times as much while it is checked.
 pub const LAX_LEN_MAX: u64 = 1 << 25;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn assemblies_follow_their_files() {
+        assert_eq!(assembly_atoms_max(0), ASSEMBLY_ATOMS_SMALL);
+        assert_eq!(assembly_atoms_max(723), ASSEMBLY_ATOMS_SMALL);
+        assert_eq!(assembly_atoms_max(728), 728 * 182);
+        // A capsid of 1,680 copies of three chains.
+        assert!(assembly_atoms_max(9_690) > 1_680 * 9_690);
+        assert_eq!(assembly_atoms_max(usize::MAX), ASSEMBLY_ATOMS_MAX);
+    }
+}

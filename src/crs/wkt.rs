@@ -4,8 +4,7 @@
 
 use std::borrow::Cow;
 
-/// Deepest nesting; definitions of the EPSG dataset have seven levels.
-const DEPTH_MAX: usize = 32;
+use spmesh_core::limits::CRS_DEPTH_MAX;
 
 /// A keyword with the values in its brackets.
 #[derive(Debug, Clone, PartialEq)]
@@ -139,8 +138,8 @@ impl<'t> Parser<'t> {
 
     /// The node of `keyword`, whose bracket comes next.
     fn opened(&mut self, keyword: &'t str, depth: usize) -> Result<Node<'t>, String> {
-        if depth == DEPTH_MAX {
-            return Err(format!("byte {}: more than {DEPTH_MAX} levels of brackets", self.at));
+        if depth == CRS_DEPTH_MAX {
+            return Err(format!("byte {}: more than {CRS_DEPTH_MAX} levels of brackets", self.at));
         }
         if !self.takes("[(") {
             return Err(self.fault("an opening bracket"));

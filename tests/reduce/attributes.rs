@@ -7,7 +7,7 @@ use spmesh_model::bounds::{Point, Region};
 use spmesh_reduce::{Duplicates, Options, Part};
 use spmesh_stream::{Coordinates, Event, Header, StreamReader, StreamWriter};
 
-use super::space::tetrahedralize;
+use super::solids::tetrahedralize;
 use super::space_tiles::merge;
 use super::streams::{GRID, Tagging, read_mesh, stream, stream_of, threads, triangulate};
 use spmesh_reference::sets::{DEGENERATE_FAMILIES, Random, degenerate, uniform};

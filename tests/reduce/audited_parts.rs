@@ -6,7 +6,7 @@ use spmesh_model::bounds::{Point, Region};
 use spmesh_reduce::{Options, Part, merge_tetrahedra, merge_triangles};
 use spmesh_stream::{Event, Header, StreamReader, StreamWriter};
 
-use super::space::tetrahedralize;
+use super::solids::tetrahedralize;
 use super::streams::{GRID, Tagging, stream_of, threads, triangulate};
 use spmesh_reference::clouds::{Family, of};
 use spmesh_reference::sets::Random;

@@ -2,11 +2,13 @@
 
 mod attributes;
 mod audited_parts;
+mod balls;
 mod equality;
 mod failures;
 mod parts;
 mod policies;
 mod shapes;
+mod solids;
 mod space;
 mod space_tile_damage;
 mod space_tiles;

@@ -11,7 +11,7 @@ use spmesh_reduce::{
 };
 use spmesh_stream::{Coordinates, JoinedMesh, PartName, PartSize, StreamReader, Totals};
 
-use super::space::{self, fits_a_grid};
+use super::solids::{self, fits_a_grid};
 use super::streams::{GRID, Tagging, read_mesh, stream_of, triangulate};
 use spmesh_core::error::Result;
 use spmesh_reference::clouds::{FAMILIES, mixture, of};
@@ -210,8 +210,8 @@ fn parts_of_space_are_the_tetrahedra_of_one_run() {
         random.shuffle(&mut points);
         let coordinates = if fits_a_grid(&points) { GRID } else { Coordinates::F64 };
         let joined = in_parts::<3>(&points, coordinates, 4, 1 + seed as usize % 3, &mut random);
-        let (set, _) = space::read_mesh(&joined);
-        assert!(set == space::expected(&points), "{family:?}, seed {seed}");
+        let (set, _) = solids::read_mesh(&joined);
+        assert!(set == solids::expected(&points), "{family:?}, seed {seed}");
         if !set.is_empty() {
             assert_proven(&joined);
         }

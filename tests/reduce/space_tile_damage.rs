@@ -5,7 +5,7 @@ use spmesh_model::bounds::{Point, Region};
 use spmesh_reduce::{Options, Part};
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, StreamWriter};
 
-use super::space::{expected, read_mesh, tetrahedralize};
+use super::solids::{expected, read_mesh, tetrahedralize};
 use super::space_tiles::{merge, partial};
 use super::streams::{GRID, Tagging, stream_of};
 use spmesh_reference::clouds::{Family, of};

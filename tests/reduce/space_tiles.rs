@@ -7,7 +7,7 @@ use spmesh_model::bounds::{Point, Region};
 use spmesh_reduce::{Options, Part, Stats};
 use spmesh_stream::{Coordinates, Header, StreamReader};
 
-use super::space::{bits, expected, fits_a_grid, read_mesh, tetrahedralize};
+use super::solids::{bits, expected, fits_a_grid, read_mesh, tetrahedralize};
 use super::streams::{GRID, Tagging, stream_of};
 use spmesh_reference::clouds::{FAMILIES, Family, mixture, of};
 use spmesh_reference::sets::Random;

@@ -236,3 +236,31 @@ fn the_assembly_of_an_entry() {
     }
     assert!(moved > 280, "{moved}");
 }
+
+/// An mmCIF file of `atoms` atoms with `(1-N)(1-N)` of `N` operators, which all move differently.
+fn products(atoms: usize, operators: usize) -> String {
+    let (head, names) = OPERATORS.split_at(OPERATORS.find("1 1 0").expect("the first operator"));
+    assert!(names.starts_with("1 1 0"));
+    let mut text = format!(
+        "data_test\nloop_\n_pdbx_struct_assembly_gen.assembly_id\n_pdbx_struct_assembly_gen.oper_expression\n\
+         _pdbx_struct_assembly_gen.asym_id_list\n1 '(1-{operators})(1-{operators})' A\n{head}"
+    );
+    for i in 1..=operators {
+        let [x, y] = if i % 2 == 0 { [i, 0] } else { [0, i * i] };
+        writeln!(text, "{i} 1 0 0 {x} 0 1 0 {y} 0 0 1 {}", i * i * i).unwrap();
+    }
+    text += "loop_\n_atom_site.id\n_atom_site.label_asym_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n";
+    (0..atoms).for_each(|i| writeln!(text, "{i} A {i} {} {}", i % 7, i % 5).unwrap());
+    text
+}
+
+#[test]
+fn a_few_atoms_do_not_become_millions() {
+    for (atoms, is_refused) in [(1, false), (200, true)] {
+        let text = products(atoms, 40);
+        let output = run("tess3", &["--assembly", "1", "--table", "-"], text.as_bytes());
+        let (code, message) = outcome(&output);
+        assert_eq!(code == Some(3), is_refused, "{message}");
+        assert_eq!(message.contains("leave out --assembly"), is_refused, "{message}");
+    }
+}

@@ -24,13 +24,13 @@ pub struct Mask {
 
 impl Mask {
     /// All edges, with the number of their polygon; those of one polygon in a row.
-    pub fn edges(&self) -> impl Iterator<Item = (u32, [Point2; 2])> + '_ {
+    pub fn edges<'a>(&'a self) -> impl Iterator<Item = (u32, [Point2; 2])> + 'a {
         (0..).zip(&self.polygons).flat_map(|(number, polygon)| {
-            let ends = |ring: &'_ Vec<Point2>| {
-                let next = ring.clone().into_iter().cycle().skip(1);
-                ring.clone().into_iter().zip(next)
+            let ends = move |ring: &'a Vec<Point2>| {
+                let next = ring.iter().cycle().skip(1);
+                ring.iter().zip(next).map(move |(&from, &to)| (number, [from, to]))
             };
-            polygon.iter().flat_map(ends).map(move |(from, to)| (number, [from, to]))
+            polygon.iter().flat_map(ends)
         })
     }
 }

@@ -14,11 +14,9 @@ use super::sample_type::SampleType;
 use super::statements::{expect_no_field, fields, next_field, parse_decimal};
 use super::vertices::{VertexPoints, Vertices};
 use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::PLY_LIST_MAX;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind};
-
-/// Greatest length of a row's list. Useful polygons and strips are shorter; a greater length is damage.
-const LIST_MAX: u64 = 1 << 16;
 
 /// Reads PLY: a triangle mesh, in which polygons become fans around their first vertex, or points of `dims`
 /// dimensions. Messages call the input `name`.
@@ -257,8 +255,8 @@ impl RowValues {
         let &Property { role, length, scalar } = property;
         let Some(length) = length else { return self.add(role, next(role, scalar)?) };
         let length = next(Role::Length, length)?;
-        if !(length >= 0.0 && length <= LIST_MAX as f64 && length.fract() == 0.0) {
-            return Err(Error::malformed(format!("list of {length} values, the maximum is {LIST_MAX}")));
+        if !(length >= 0.0 && length <= PLY_LIST_MAX as f64 && length.fract() == 0.0) {
+            return Err(Error::malformed(format!("list of {length} values, the maximum is {PLY_LIST_MAX}")));
         }
         (0..length as u64).try_for_each(|_| self.add(role, next(role, scalar)?))
     }

@@ -7,10 +7,8 @@ use super::lines::Lines;
 use super::sample_type::SampleType;
 use super::statements::{expect_no_field, fields, next_field, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::PLY_ITEMS_MAX;
 use spmesh_model::attributes::{Attribute, Attributes, with_usable_names};
-
-/// Greatest number of elements and properties of a header: far above any real header, and little memory.
-const ITEMS_MAX: usize = 1000;
 
 /// How the values are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,8 +96,8 @@ impl PlyHeader {
                 b"end_header" => break,
                 other => return Err(unexpected(other, "a statement of a PLY header")),
             }
-            if items > ITEMS_MAX {
-                return Err(Error::malformed(format!("header of more than {ITEMS_MAX} lines")));
+            if items > PLY_ITEMS_MAX {
+                return Err(Error::malformed(format!("header of more than {PLY_ITEMS_MAX} lines")));
             }
         }
         let encoding = encoding.ok_or_else(|| Error::malformed("the header does not state the format"))?;

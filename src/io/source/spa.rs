@@ -7,10 +7,8 @@ use super::origin::Bytes;
 use super::pass::Stated;
 use super::sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpPass, SpReader};
 use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::SPA_COMMENTS_MAX;
 use spmesh_model::bounds::{Bounds, Point};
-
-/// Greatest number of bytes of comments to keep.
-const COMMENTS_MAX: usize = 1 << 20;
 
 /// Reads an SPA file.
 pub struct SpaReader<R> {
@@ -157,7 +155,7 @@ impl HeaderFields {
             }
             _ => {
                 self.comments_len += text.len() + 1;
-                if self.comments_len <= COMMENTS_MAX {
+                if self.comments_len <= SPA_COMMENTS_MAX {
                     header.comments.push(text.into_owned());
                 }
             }

@@ -6,6 +6,7 @@
 //! complete. [`check_sums`] compares the reports of all nodes with what the files state.
 
 mod align;
+mod check;
 mod crs;
 mod files;
 mod node;

@@ -7,6 +7,7 @@ use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::check;
 use super::crs::PlannedCrs;
 use super::files::PlannedFile;
 use super::node::Node;
@@ -177,6 +178,7 @@ impl Plan {
         if plan.hash()? != plan.id {
             return Err(Error::malformed("the plan was changed since it was made: plan again"));
         }
+        check::check(&plan)?;
         Ok(plan)
     }
 

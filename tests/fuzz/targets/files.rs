@@ -1,16 +1,27 @@
 //! Files of other programs.
 
 use std::cell::OnceCell;
-use std::io::Cursor;
+use std::io::{Cursor, Read};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use spmesh_io::source::points4::{Condition, From4, Request, Selection, Spacing, read_points4};
-use spmesh_io::source::structure::{Format, read_structure_from};
-use spmesh_io::source::{
-    EventSource, Input, SourceOptions, open_obj, open_ply, open_sma, open_smb, read_polylines, read_values,
+use spmesh_dd4::{Quantum, TimeScale};
+use spmesh_finalize::Thin;
+use spmesh_io::las::{Changes, LasCopy, LasFile};
+use spmesh_io::source::points4::{
+    Condition, From4, RawLayout, Request, Selection, Spacing, parse_sizes, read_points4,
 };
+use spmesh_io::source::structure::{Format, Radii, read_structure_from};
+use spmesh_io::source::{
+    AttributeChoice, Column, EventSource, Input, Interval, Plain, RawType, Separator, SourceOptions,
+    open_obj, open_ply, open_sma, open_smb, read_ply_surface, read_polylines, read_values,
+};
+use spmesh_model::bounds::Bounds;
+use spmesh_splinefit::Smoothing;
+use spmesh_tess3::Radius;
 use tempfile::TempDir;
+
+use crate::samples::INDEXED_LAS;
 
 /// Most points of a pass over damaged input; then the pass ends.
 const POINTS_MAX: usize = 1 << 20;
@@ -19,17 +30,121 @@ const POINTS_MAX: usize = 1 << 20;
 pub fn points(bytes: &[u8]) {
     let path = file(bytes);
     for dims in [2, 3] {
-        let threads = Some(NonZeroUsize::MIN);
-        let options = SourceOptions { dims, skip_invalid: dims == 3, threads, ..Default::default() };
-        let Ok(input) = Input::open(std::slice::from_ref(&path), &options) else { continue };
-        let Ok(mut reader) = input.read() else { continue };
-        let (mut batch, mut count) = (Vec::new(), 0);
-        while count < POINTS_MAX && reader.next_batch(&mut batch).is_ok() && !batch.is_empty() {
-            count += batch.len();
-            let coordinates = input.description().coordinates;
-            assert!(batch.iter().flatten().all(|&c| coordinates.can_store(c)), "{batch:?}");
+        let attributes = if dims == 2 { AttributeChoice::All } else { AttributeChoice::default() };
+        let (skip_invalid, salvage) = (dims == 3, dims == 3);
+        pass(&path, SourceOptions { dims, skip_invalid, salvage, attributes, ..Default::default() });
+    }
+}
+
+/// Points in a part of the plane, which an index of LAS, LAZ and COPC finds.
+pub fn window(bytes: &[u8]) {
+    let path = file_named("tile.las", bytes);
+    drop(std::fs::remove_file(path.with_extension("lax")));
+    pass_window(&path);
+}
+
+/// The index that LAStools write beside a file.
+pub fn lax(bytes: &[u8]) {
+    let path = file_named("tile.las", &std::fs::read(INDEXED_LAS).expect("a sample"));
+    drop(file_named("tile.lax", bytes));
+    pass_window(&path);
+}
+
+fn pass_window(path: &Path) {
+    let Ok(input) = Input::open(&[path.to_path_buf()], &SourceOptions { dims: 2, ..Default::default() })
+    else {
+        return;
+    };
+    let Some(bounds) = input.description().stated_bounds else { return };
+    let coordinates = input.description().coordinates;
+    let [min, max] = [bounds.min, bounds.max].map(|corner| coordinates.to_world(corner));
+    // The quarter at the lower left.
+    let bounds = Bounds { min, max: [0.5 * (min[0] + max[0]), 0.5 * (min[1] + max[1]), max[2]] };
+    pass(path, SourceOptions { dims: 2, bounds: Some(bounds), reach: Some(bounds), ..Default::default() });
+}
+
+/// One pass over the points of a file.
+fn pass(path: &Path, options: SourceOptions) {
+    let options = SourceOptions { threads: Some(NonZeroUsize::MIN), ..options };
+    let Ok(input) = Input::open(&[path.to_path_buf()], &options) else { return };
+    let Ok(mut reader) = input.read() else { return };
+    let (mut batch, mut count) = (Vec::new(), 0);
+    while count < POINTS_MAX && reader.next_batch(&mut batch).is_ok() && !batch.is_empty() {
+        count += batch.len();
+        let coordinates = input.description().coordinates;
+        assert!(batch.iter().flatten().all(|&c| coordinates.can_store(c)), "{batch:?}");
+    }
+}
+
+/// LAS and LAZ as they are, written again.
+pub fn copy(bytes: &[u8]) {
+    let Ok(source) = LasFile::open(&file_named("tile.las", bytes), None) else { return };
+    let changes = Changes { field: None, has_new_z: true, is_compressed: bytes.len().is_multiple_of(2) };
+    let Ok(mut copy) = LasCopy::start(&source, Cursor::new(Vec::new()), &changes, 1, 1 << 20) else { return };
+    let Ok(mut records) = source.records(1) else { return };
+    let (mut batch, mut count) = (Vec::new(), 0);
+    while count < POINTS_MAX && records.next(&mut batch).is_ok() && !batch.is_empty() {
+        count += batch.len() / source.record_len();
+        if copy.record_len() != source.record_len() || copy.write(&batch).is_err() {
+            return;
         }
     }
+    drop(copy.finish());
+}
+
+/// Gzip, and what it holds.
+pub fn gzip(bytes: &[u8]) {
+    let plain = Plain::new(bytes).expect("memory can be read");
+    let mut start = Vec::new();
+    if plain.take(1 << 22).read_to_end(&mut start).is_ok() {
+        points(bytes);
+    }
+}
+
+/// Points and meshes of Isenburg's binary formats, which convert in whole.
+pub fn binary(bytes: &[u8]) {
+    points(bytes);
+    if let Ok(mut events) = open_smb(Cursor::new(bytes.to_vec()), "fuzz") {
+        drain(&mut *events);
+    }
+}
+
+/// Numbers without a header.
+pub fn raw(bytes: &[u8]) {
+    let path = file(bytes);
+    for kind in ["f32le", "f64le", "f64be"] {
+        let raw = Some(kind.parse::<RawType>().expect("a type"));
+        pass(&path, SourceOptions { dims: 3, raw, salvage: true, skip_invalid: true, ..Default::default() });
+    }
+    let layout = "2x2x2x2:u8".parse().expect("a layout");
+    let from = From4::Raw(path, layout);
+    drop(read_points4(&Request {
+        from,
+        spacing: Spacing::Index,
+        selection: Selection::default(),
+        temp_dir: None,
+    }));
+}
+
+/// Tables of radii.
+pub fn radii(bytes: &[u8]) {
+    drop(Radii::read_from(bytes, "fuzz"));
+}
+
+/// Values of flags that have a grammar.
+pub fn flags(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    drop(text.parse::<Column>());
+    drop(text.parse::<Separator>());
+    drop(text.parse::<Interval>());
+    drop(text.parse::<RawType>());
+    drop(text.parse::<RawLayout>());
+    drop(text.parse::<Thin>());
+    drop(text.parse::<Radius>());
+    drop(text.parse::<Quantum>());
+    drop(text.parse::<TimeScale>());
+    drop(text.parse::<Smoothing>());
+    drop(parse_sizes(&text));
 }
 
 /// PLY as a mesh and as points.
@@ -39,6 +154,7 @@ pub fn ply(bytes: &[u8]) {
             drain(&mut *events);
         }
     }
+    drop(read_ply_surface(bytes, "fuzz"));
     points(bytes);
 }
 
@@ -115,12 +231,17 @@ pub fn condition(bytes: &[u8]) {
 }
 
 /// A file with the bytes; the next call of this thread replaces it.
-fn file(bytes: &[u8]) -> PathBuf {
+pub fn file(bytes: &[u8]) -> PathBuf {
+    file_named("input", bytes)
+}
+
+/// A file with a name and the bytes; the next call of this thread with the name replaces it.
+pub fn file_named(name: &str, bytes: &[u8]) -> PathBuf {
     thread_local! {
         static FOLDER: OnceCell<TempDir> = const { OnceCell::new() };
     }
     let path = FOLDER.with(|folder| {
-        folder.get_or_init(|| tempfile::tempdir().expect("a temporary folder")).path().join("input")
+        folder.get_or_init(|| tempfile::tempdir().expect("a temporary folder")).path().join(name)
     });
     std::fs::write(&path, bytes).expect("a temporary file");
     path

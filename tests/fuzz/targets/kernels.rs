@@ -11,6 +11,8 @@ use spmesh_geometry::order::{Curve, Sequence};
 use spmesh_geometry::{delaunay2, delaunay3};
 use spmesh_model::cells4::Point4;
 use spmesh_model::diagram4::Diagram4;
+use spmesh_reference::space::distinct;
+use spmesh_reference::tetrahedra::regular;
 use spmesh_stream::{Coordinates, Header, Kind, StreamReader, write_configurations, write_triangles};
 
 use crate::points::{moderate, points};
@@ -55,6 +57,32 @@ pub fn kernel3(bytes: &[u8]) {
     if let Err(message) = promises::prove(&points, &mesh) {
         panic!("{message}\nlet points = {points:?};");
     }
+}
+
+/// The regular tetrahedra of few points are those of the definition; of more, equal weights change nothing.
+pub fn weighted3(bytes: &[u8]) {
+    let (head, rest) = bytes.split_at(bytes.len().min(14));
+    let (points, _) = distinct(&points::<3>(rest, 11));
+    let lift = |p: &[f64; 3]| p.iter().map(|c| c * c).sum::<f64>().min(f64::MAX / 4.0);
+    let all_on_a_plane = head.first().is_some_and(|choice| choice & 1 == 1);
+    // Around the lift, all points are near one hyperplane; otherwise weights are small integers.
+    let weight = |(i, point): (usize, &[f64; 3])| {
+        let change = f64::from(head.get(1 + i).map_or(0, |&byte| byte as i8));
+        if all_on_a_plane { lift(point) + f64::from((change / 64.0) as i8) } else { change }
+    };
+    let weights: Vec<f64> = points.iter().enumerate().map(weight).collect();
+    let mut mesh = delaunay3::Tetrahedralization::default();
+    delaunay3::Kernel::new()
+        .triangulate_weighted(Cow::Borrowed(&points), &weights, &mut mesh)
+        .expect("finite points and weights");
+    let found = promises::tetrahedra(&mesh);
+    let code = || format!("let points = vec!{points:?};\nlet weights = vec!{weights:?};");
+    assert_eq!(found, regular(&points, &weights), "{}", code());
+    let is_visible = |i: &u32| found.iter().flatten().any(|v| v == i);
+    let hidden = (0..points.len() as u32).filter(|i| !found.is_empty() && !is_visible(i));
+    let mut of_mesh = mesh.hidden.clone();
+    of_mesh.sort_unstable();
+    assert!(hidden.eq(of_mesh.iter().copied()), "hidden: {of_mesh:?}\n{}", code());
 }
 
 /// Both routes give the same diagram, and an audit proves it.

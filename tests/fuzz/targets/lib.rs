@@ -4,54 +4,115 @@
 //! Readers must read the whole input or return an error, without a panic, in memory bounded by the size of
 //! the input, whatever sizes it states. The results of kernels must pass independent exact proofs.
 
+mod commands;
+mod constrained;
 mod files;
+mod geographic;
 mod kernels;
+mod made;
 pub mod mutation;
 mod points;
 // The tests of the kernel use more of this module.
 #[allow(dead_code)]
 #[path = "../../geometry/kernel3/promises.rs"]
 mod promises;
+mod reduction;
 pub mod samples;
 mod streams;
 
-use samples::Samples;
+use samples::{Made, Samples};
 
 /// A named target.
 #[derive(Clone, Copy)]
 pub struct Target {
-    /// Name of the target, and of its file in `fuzz_targets`.
+    /// Its name.
     pub name: &'static str,
-    /// Runs the target on some bytes.
-    ///
-    /// # Panics
-    /// If the bytes reveal a fault.
-    pub run: fn(&[u8]),
+    task: Task,
     /// The initial inputs.
     pub samples: Samples,
 }
 
-/// All targets.
-pub const TARGETS: [Target; 19] = [
-    Target { name: "stream", run: streams::stream, samples: Samples::Vectors },
-    Target { name: "twin", run: streams::twin, samples: Samples::Twins },
-    Target { name: "las", run: files::points, samples: Samples::Files(&["las", "laz"]) },
-    Target { name: "text", run: files::points, samples: Samples::Texts(samples::TEXTS) },
-    Target { name: "sp", run: files::points, samples: Samples::Texts(samples::SPA) },
-    Target { name: "ply", run: files::ply, samples: Samples::Texts(samples::PLY) },
-    Target { name: "obj", run: files::obj, samples: Samples::Texts(samples::OBJ) },
-    Target { name: "sma", run: files::sma, samples: Samples::Texts(samples::SMA) },
-    Target { name: "vtk", run: files::points, samples: Samples::Files(&["vtk", "vtu", "vtp"]) },
-    Target { name: "pdb", run: files::pdb, samples: Samples::Files(&["pdb"]) },
-    Target { name: "mmcif", run: files::mmcif, samples: Samples::Files(&["cif"]) },
-    Target { name: "molecule", run: files::molecule, samples: Samples::Texts(samples::MOLECULES) },
-    Target { name: "volume", run: files::volume, samples: Samples::Files(&["nrrd", "nii"]) },
-    Target { name: "polylines", run: files::polylines, samples: Samples::Texts(samples::POLYLINES) },
-    Target { name: "condition", run: files::condition, samples: Samples::Texts(samples::CONDITIONS) },
-    Target { name: "kernel2", run: kernels::kernel2, samples: Samples::Points },
-    Target { name: "kernel3", run: kernels::kernel3, samples: Samples::Points },
-    Target { name: "diagram4", run: kernels::diagram4, samples: Samples::Points },
-    Target { name: "configurations", run: kernels::configurations, samples: Samples::Points },
+/// What a target does with bytes.
+#[derive(Clone, Copy)]
+enum Task {
+    /// Calls a function.
+    Call(fn(&[u8])),
+    /// Writes the bytes to files, and runs these command lines of programs; see [`commands`].
+    Commands(&'static [&'static str]),
+}
+
+impl Target {
+    /// Runs the target on some bytes.
+    ///
+    /// # Panics
+    /// If the bytes reveal a fault.
+    pub fn run(&self, bytes: &[u8]) {
+        match self.task {
+            Task::Call(function) => function(bytes),
+            Task::Commands(lines) => commands::run(lines, bytes),
+        }
+    }
+}
+
+const fn call(name: &'static str, function: fn(&[u8]), samples: Samples) -> Target {
+    Target { name, task: Task::Call(function), samples }
+}
+
+const fn tools(name: &'static str, lines: &'static [&'static str], samples: Samples) -> Target {
+    Target { name, task: Task::Commands(lines), samples }
+}
+
+/// All targets. Readers come first, then programs with each of the files that they read, then engines.
+pub const TARGETS: [Target; 49] = [
+    call("stream", streams::stream, Samples::Vectors),
+    call("twin", streams::twin, Samples::Twins),
+    call("las", files::points, Samples::Files(&["las", "laz"])),
+    call("window", files::window, Samples::Files(&["las", "laz"])),
+    call("copy", files::copy, Samples::Files(&["las", "laz"])),
+    call("lax", files::lax, Samples::Made(Made::Lax)),
+    call("text", files::points, Samples::Texts(samples::TEXTS)),
+    call("gzip", files::gzip, Samples::Files(&["gz"])),
+    call("sp", files::points, Samples::Texts(samples::SPA)),
+    call("binary", files::binary, Samples::Made(Made::Binary)),
+    call("npy", files::points, Samples::Made(Made::Npy)),
+    call("ply", files::ply, Samples::Texts(samples::PLY)),
+    call("obj", files::obj, Samples::Texts(samples::OBJ)),
+    call("sma", files::sma, Samples::Texts(samples::SMA)),
+    call("vtk", files::points, Samples::Files(&["vtk", "vtu", "vtp"])),
+    call("pdb", files::pdb, Samples::Files(&["pdb"])),
+    call("mmcif", files::mmcif, Samples::Files(&["cif"])),
+    call("molecule", files::molecule, Samples::Texts(samples::MOLECULES)),
+    call("radii", files::radii, Samples::Texts(samples::RADII)),
+    call("volume", files::volume, Samples::Files(&["nrrd", "nii"])),
+    call("raw", files::raw, Samples::Texts(samples::TEXTS)),
+    call("polylines", files::polylines, Samples::Texts(samples::POLYLINES)),
+    call("condition", files::condition, Samples::Texts(samples::CONDITIONS)),
+    call("flags", files::flags, Samples::Texts(samples::FLAGS)),
+    call("lines", geographic::lines, Samples::Made(Made::Lines)),
+    call("shapefile", geographic::shapefile, Samples::Made(Made::Shapefile)),
+    call("geopackage", geographic::geopackage, Samples::Files(&["gpkg"])),
+    call("wkb", geographic::wkb, Samples::Made(Made::Wkb)),
+    call("crs", geographic::crs, Samples::Made(Made::Crs)),
+    tools("plan", commands::PLAN, Samples::Made(Made::Plan)),
+    tools("report", commands::REPORT, Samples::Made(Made::Report)),
+    tools("manifest", commands::MANIFEST, Samples::Made(Made::Manifest)),
+    tools("resume", commands::RESUME, Samples::Made(Made::Summary)),
+    tools("masks", commands::MASKS, Samples::Made(Made::Lines)),
+    tools("like", commands::LIKE, Samples::Made(Made::Raster)),
+    tools("parts", commands::PARTS, Samples::Texts(samples::PARTS)),
+    tools("reduce", commands::REDUCE, Samples::Vectors),
+    tools("surface", commands::SURFACE, Samples::Vectors),
+    tools("convert", commands::CONVERT, Samples::Vectors),
+    tools("solid", commands::SOLID, Samples::Vectors),
+    tools("splines", commands::SPLINES, Samples::Vectors),
+    call("kernel2", kernels::kernel2, Samples::Points),
+    call("kernel3", kernels::kernel3, Samples::Points),
+    call("weighted3", kernels::weighted3, Samples::Points),
+    call("diagram4", kernels::diagram4, Samples::Points),
+    call("configurations", kernels::configurations, Samples::Points),
+    call("reduction2", reduction::plane, Samples::Points),
+    call("reduction3", reduction::space, Samples::Points),
+    call("constrained", constrained::constrained, Samples::Points),
 ];
 
 /// The target with a name.
@@ -71,22 +132,15 @@ mod tests {
         for target in TARGETS {
             let inputs = Inputs::new(target.samples, 1);
             for number in 0..40 {
-                (target.run)(&inputs.input(number));
+                target.run(&inputs.input(number));
             }
         }
     }
 
     #[test]
-    fn every_target_has_a_file_for_libfuzzer() {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../fuzz_targets");
-        let mut found: Vec<String> = std::fs::read_dir(folder)
-            .expect("the folder of targets")
-            .map(|entry| entry.expect("an entry").path())
-            .map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned())
-            .collect();
-        found.sort_unstable();
+    fn names_are_different() {
         let mut names = TARGETS.map(|target| target.name);
         names.sort_unstable();
-        assert_eq!(found, names);
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
     }
 }

@@ -42,6 +42,9 @@ struct Flags {
     /// Folder for inputs that fail.
     #[arg(long, default_value = "target/fuzz", value_name = "FOLDER")]
     out: PathBuf,
+    /// Writes the samples of each target into a folder of its name in this folder.
+    #[arg(long, value_name = "FOLDER")]
+    samples: Option<PathBuf>,
     /// Lists the targets.
     #[arg(long)]
     list: bool,
@@ -67,6 +70,10 @@ fn main() -> ExitCode {
     if targets.is_empty() {
         targets = TARGETS.to_vec();
     }
+    if let Some(folder) = &flags.samples {
+        targets.iter().for_each(|target| write_samples(target, &folder.join(target.name), flags.seed));
+        return ExitCode::SUCCESS;
+    }
     fs::create_dir_all(&flags.out).expect("a folder for inputs that fail");
     bound_memory(flags.memory);
     let started = Instant::now();
@@ -81,9 +88,18 @@ fn main() -> ExitCode {
     if is_fine { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
+/// Writes the first inputs of a target as files.
+fn write_samples(target: &Target, folder: &Path, seed: u64) {
+    fs::create_dir_all(folder).expect("a writable folder");
+    let inputs = Inputs::new(target.samples, seed);
+    for number in 0..inputs.first() {
+        fs::write(folder.join(format!("sample-{number}")), inputs.input(number)).expect("a writable folder");
+    }
+}
+
 /// Whether the target handles the bytes without a panic.
 fn passes(target: &Target, bytes: &[u8]) -> bool {
-    panic::catch_unwind(AssertUnwindSafe(|| (target.run)(bytes))).is_ok()
+    panic::catch_unwind(AssertUnwindSafe(|| target.run(bytes))).is_ok()
 }
 
 /// Tries inputs until time is up; false if one fails.

@@ -44,6 +44,12 @@ impl Inputs {
         Inputs { samples: samples.load(), seed }
     }
 
+    /// How many of the first inputs are no mutants: the samples, or a few sets of random bytes.
+    #[must_use]
+    pub fn first(&self) -> u64 {
+        if self.samples.is_empty() { 50 } else { self.samples.len() as u64 }
+    }
+
     /// The input with a number: a sample, or a mutant of one.
     #[must_use]
     pub fn input(&self, number: u64) -> Vec<u8> {

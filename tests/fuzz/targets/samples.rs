@@ -1,7 +1,10 @@
 //! Initial inputs: files of the tests, test vectors of the formats, short texts, and random bytes.
 
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+
+pub use crate::made::Made;
 
 /// Most bytes taken from a sample: more would slow the fuzzer down and add little variety.
 const SAMPLE_MAX: usize = 1 << 16;
@@ -17,9 +20,17 @@ pub enum Samples {
     Files(&'static [&'static str]),
     /// These texts.
     Texts(&'static [&'static str]),
+    /// What the project makes of other files.
+    Made(Made),
     /// Random bytes, which kernels read as points.
     Points,
 }
+
+/// A database of lines.
+pub const LINES_GPKG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/lines.gpkg");
+
+/// A file of points that gets an index.
+pub const INDEXED_LAS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/point10.las");
 
 /// Lines of points.
 pub const TEXTS: &[&str] = &[
@@ -99,6 +110,55 @@ pub const POLYLINES: &[&str] = &[
     "1 2\n3;4\n",
 ];
 
+/// Polygons, as text too.
+pub const POLYGONS: &[&str] = &[
+    "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0), (1 1, 2 1, 2 2, 1 2, 1 1))",
+    "SRID=25832;MULTIPOLYGON Z (((0 0 1, 4 0 1, 4 4 1, 0 0 1)), ((5 5 1, 6 5 2, 6 6 1, 5 5 1)))",
+    r#"{"type":"Polygon","coordinates":[[[1,1,5],[8,1,5],[8,8,5],[1,8,5],[1,1,5]]]}"#,
+    "line 1 1 10 8 2 11\nsoft 2 2 3 7\n7 7 nan\n",
+];
+
+/// Coordinate reference systems.
+pub const SYSTEMS: &[&str] = &[
+    r#"COMPD_CS["a",PROJCS["UTM",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],
+    PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],
+    PARAMETER["central_meridian",-123],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],
+    UNIT["metre",1],AUTHORITY["EPSG","26910"]],VERT_CS["h",VERT_DATUM["d",2005],UNIT["foot",0.3048]]]"#,
+    r#"GEOGCRS["a",DATUM["b",ELLIPSOID["c",6378137,298.25]],CS[ellipsoidal,2],AXIS["lat",north],
+    AXIS["lon",east],ANGLEUNIT["degree",0.017],ID["EPSG",4326]]"#,
+];
+
+/// Radii of atoms.
+pub const RADII: &[&str] = &["table bondi\nC 1.7\nALA CA 1.88\n* OXT 1.4\n# all\n", "table charmm\nN 1.55\n"];
+
+/// Values of flags.
+pub const FLAGS: &[&str] = &[
+    "1",
+    "x",
+    "comma",
+    "f64le",
+    "4x3x2x1:f32be",
+    "4x3x2x1",
+    "0.5:lowest",
+    "1.4",
+    "0.001",
+    "3,7",
+    "-inf,2",
+    "gcv",
+    "cv:5",
+    "auto",
+    "space-time",
+];
+
+/// Features, grids, values, sites, and lists of files.
+pub const PARTS: &[&str] = &[
+    "corner 0 1\ncrease 2 3 4\nsmooth-crease 5 6\nlinear 7 8\n",
+    "0 0 1 0 0 1 3 3\n",
+    "1\n2\n3\n4\n5\n6\n7\n8\n9\n10\n",
+    "0.5 0.5 0.5 0.5\n1 0 1 0\n",
+    "# files\npoints.txt\n",
+];
+
 /// Conditions on points.
 pub const CONDITIONS: &[&str] =
     &["value > 100", "x >= 3 and (t < 2 or not y == 1)", "value != nan && z <= -1.5e3 || !(x > 1)"];
@@ -119,12 +179,26 @@ impl Samples {
             Samples::Twins => read(files("formats/vectors/pass", &["txt"])),
             Samples::Files(endings) => read(files("tests/data", endings)),
             Samples::Texts(texts) => texts.iter().map(|text| text.as_bytes().to_vec()).collect(),
+            Samples::Made(made) => made.load(),
             Samples::Points => return Vec::new(),
         };
         assert!(!samples.is_empty(), "no samples of {self:?}");
         samples.iter_mut().for_each(|sample| sample.truncate(SAMPLE_MAX));
         samples
     }
+}
+
+/// A sample of the tests.
+pub fn data(name: &str) -> Vec<u8> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
+    fs::read(Path::new(folder).join(name)).expect("a sample")
+}
+
+/// The geometries of a database: from the mark of each one to the next, or a few hundred bytes.
+pub fn blobs(database: &[u8]) -> Vec<Range<usize>> {
+    let starts: Vec<usize> = (0..database.len()).filter(|&at| database[at..].starts_with(b"GP\0")).collect();
+    let ends = starts.iter().skip(1).copied().chain([database.len()]);
+    starts.iter().zip(ends).map(|(&start, end)| start..end.min(start + 300)).collect()
 }
 
 fn read(paths: Vec<PathBuf>) -> Vec<Vec<u8>> {

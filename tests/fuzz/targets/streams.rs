@@ -6,6 +6,8 @@ use spmesh_io::source::{EventSource, TwinSource};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, FinalizedCells, Header, Kind, LiveVertices, StreamReader, Totals};
 
+/// The first byte of a stream.
+const FIRST: u8 = 0x89;
 /// Bytes of a header before its body, and of its parts.
 const HEAD: usize = 16;
 /// Bytes of a block before its payload.
@@ -16,10 +18,15 @@ const COMPRESSED: usize = 1 << 31;
 /// Reads the bytes as they are, and again with corrected checksums.
 pub fn stream(bytes: &[u8]) {
     read_stream(bytes);
-    let mut sealed = bytes.to_vec();
-    if seal(&mut sealed).is_some() && sealed != bytes {
+    if let Some(sealed) = sealed(bytes).filter(|sealed| sealed != bytes) {
         read_stream(&sealed);
     }
+}
+
+/// The bytes with correct checksums, if they begin as a stream does.
+pub fn sealed(bytes: &[u8]) -> Option<Vec<u8>> {
+    let mut sealed = bytes.to_vec();
+    (bytes.first() == Some(&FIRST)).then(|| seal(&mut sealed)).flatten().map(|()| sealed)
 }
 
 fn read_stream(bytes: &[u8]) {

@@ -12,12 +12,9 @@ use rusqlite::{Connection, OpenFlags};
 
 use super::{Breaklines, Collector, Properties, wkb};
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::CRS_LEN_MAX;
+use spmesh_core::limits::{CRS_LEN_MAX, GEOPACKAGE_MEMORY_MAX};
 use spmesh_crs::{System, differences, requested};
 use spmesh_stream::Crs;
-
-/// Memory that SQLite may take, in bytes: the longest geometry must fit.
-const MEMORY_MAX: i64 = 1 << 30;
 
 /// A table of features.
 struct Table {
@@ -37,7 +34,7 @@ pub(super) fn read(path: &Path) -> Result<Breaklines> {
     let database = Connection::open_with_flags(uri(path)?, flags).map_err(malformed)?;
     // A file may not run code of its own, and may not take all memory.
     database.pragma_update(None, "trusted_schema", false).map_err(malformed)?;
-    database.pragma_update(None, "hard_heap_limit", MEMORY_MAX).map_err(malformed)?;
+    database.pragma_update(None, "hard_heap_limit", GEOPACKAGE_MEMORY_MAX).map_err(malformed)?;
     let tables = tables(&database)?;
     let mut lines = Collector::default();
     let mut crs: Option<(Crs, &Table)> = None;

@@ -5,9 +5,7 @@
 use super::Collector;
 use super::collect::Shape;
 use spmesh_core::error::{Error, Result};
-
-/// Deepest collection in a collection.
-const DEPTH_MAX: u32 = 32;
+use spmesh_core::limits::WKB_DEPTH_MAX;
 
 /// Enters the lines of a geometry with the header of GeoPackage.
 ///
@@ -87,11 +85,11 @@ impl<'a> Bytes<'a> {
                 let rings = self.count(4)?;
                 (0..rings).try_for_each(|_| self.line(Shape::Ring, dims, lines, position))
             }
-            4..=7 if depth < DEPTH_MAX => {
+            4..=7 if depth < WKB_DEPTH_MAX => {
                 let parts = self.count(5)?;
                 (0..parts).try_for_each(|_| self.geometry(lines, position, depth + 1))
             }
-            4..=7 => Err(Error::malformed(format!("more than {DEPTH_MAX} collections in collections"))),
+            4..=7 => Err(Error::malformed(format!("more than {WKB_DEPTH_MAX} collections in collections"))),
             _ => Err(unknown(code)),
         }
     }

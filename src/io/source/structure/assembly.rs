@@ -8,7 +8,7 @@ use super::model::{Atom, Model, Residue, Structure};
 use super::motion::Motion;
 use super::names::Name;
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::{ASSEMBLY_ATOMS_MAX, ASSEMBLY_CHAINS_MAX};
+use spmesh_core::limits::{ASSEMBLY_CHAINS_MAX, assembly_atoms_max};
 use spmesh_model::points::Point3;
 use spmesh_stream::Coordinates;
 
@@ -112,10 +112,16 @@ impl Structure {
         }
         let of_subchain = |subchain| counts.get(subchain).copied().unwrap_or(0);
         let atoms: usize = all.iter().flat_map(|copies| &copies.subchains).map(of_subchain).sum();
-        if atoms > ASSEMBLY_ATOMS_MAX {
-            return Err(self.too_large(&format!("{ASSEMBLY_ATOMS_MAX} atoms")));
+        let of_file = self.models.iter().map(|model| model.atoms.len()).sum();
+        let most = assembly_atoms_max(of_file);
+        if atoms <= most {
+            return Ok(());
         }
-        Ok(())
+        let what = format!(
+            "the assembly has {atoms} atoms, those of a file with {of_file} have {most} at most: give a file with \
+             all atoms, or leave out --assembly"
+        );
+        Err(Error::malformed(what).of_input(&self.name))
     }
 
     /// Indices of the atoms of each subchain in a model.

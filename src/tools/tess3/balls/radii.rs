@@ -7,10 +7,8 @@ use std::sync::Arc;
 use data_encoding::HEXLOWER;
 use sha2::{Digest, Sha256};
 use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::RADII_LEN_MAX;
 use spmesh_io::source::structure::Radii;
-
-/// Greatest size of a file of radii.
-const FILE_MAX: u64 = 1 << 24;
 
 /// Radii, and what they were called.
 #[derive(Debug, Clone)]
@@ -36,9 +34,9 @@ impl NamedRadii {
         })?;
         let mut content = Vec::new();
         let reading = |e| Error::io("reading", e).of_input(name);
-        file.take(FILE_MAX + 1).read_to_end(&mut content).map_err(reading)?;
-        if content.len() as u64 > FILE_MAX {
-            let message = format!("more than {} MB: this is no file of radii", FILE_MAX >> 20);
+        file.take(RADII_LEN_MAX + 1).read_to_end(&mut content).map_err(reading)?;
+        if content.len() as u64 > RADII_LEN_MAX {
+            let message = format!("more than {} MB: this is no file of radii", RADII_LEN_MAX >> 20);
             return Err(Error::malformed(message).of_input(name));
         }
         let sha256 = HEXLOWER.encode(&Sha256::digest(&content));

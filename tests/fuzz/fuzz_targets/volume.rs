@@ -1,5 +1,0 @@
-#![no_main]
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    (spmesh_fuzz::target("volume").expect("a target of this name").run)(bytes);
-});

@@ -1,0 +1,252 @@
+//! Programs as users call them, in this process, with the bytes of an input as one of their files.
+//!
+//! A target has several lines. `put FILE` writes the bytes to a file; `seal FILE` does so with corrected checksums.
+//! Every other line is a command. A file name begins with `HERE/`, the folder of the thread, or `DATA/`, the samples
+//! of the tests.
+
+use std::fs;
+use std::path::Path;
+
+use clap::Parser;
+use serde_json::Value;
+use spmesh_cli::{
+    configgen, dd4, spcanopy, spconstrain, spconvert, spdelaunay2d, spdelaunay3d, spdem, spfinalize,
+    spheight, splinefit, spnode, spview, tess3,
+};
+use spmesh_io::source::{SourceOptions, Survey};
+use spmesh_plan::{NodeReport, Plan, Planning, hash_of_file, plan_of};
+use tempfile::TempDir;
+
+use crate::streams::sealed;
+
+pub const PLAN: &[&str] = &[
+    "seal HERE/in.json",
+    "spnode list HERE/in.json",
+    "spnode run --threads 1 -d HERE/made HERE/in.json 0 4 2",
+    "spnode collect -d HERE/parts -o HERE/out.json HERE/in.json",
+];
+
+pub const REPORT: &[&str] = &[
+    "seal HERE/parts/000002.json",
+    "spnode collect -d HERE/parts -o HERE/out.json HERE/plan.json",
+    "spnode run --threads 1 -d HERE/parts HERE/plan.json 2 4",
+];
+
+pub const MANIFEST: &[&str] = &[
+    "put HERE/in.json",
+    "spconvert HERE/in.json -o HERE/out.obj",
+    "spdem --columns 9 HERE/in.json -o HERE/out.tif",
+];
+
+pub const RESUME: &[&str] =
+    &["put HERE/in.tsv", "tess3 --out-dir HERE/made --summary HERE/in.tsv --resume HERE/atoms.pdb"];
+
+pub const MASKS: &[&str] = &[
+    "put HERE/in.geojson",
+    "spfinalize --threads 1 --clip HERE/in.geojson HERE/points.txt -o HERE/out.spm",
+    "spfinalize --threads 1 --flatten HERE/in.geojson HERE/points.txt -o HERE/out.spm",
+    "spdem --columns 9 --mask HERE/in.geojson HERE/mesh.spm -o HERE/out.tif",
+    "spconstrain --hull HERE/in.geojson HERE/mesh.spm -o HERE/out.spm",
+];
+
+pub const LIKE: &[&str] = &["put HERE/in.tif", "spdem --like HERE/in.tif HERE/mesh.spm -o HERE/out.tif"];
+
+/// Files of `configgen`, `splinefit`, `dd4` and lists of files.
+pub const PARTS: &[&str] = &[
+    "put HERE/in.txt",
+    "configgen --features HERE/in.txt HERE/points.txt -o HERE/out.spm",
+    "configgen --patches HERE/in.txt HERE/points.txt -o HERE/out.spm",
+    "configgen -d 2 --values HERE/in.txt HERE/points.txt -o HERE/out.spm",
+    "splinefit fit --threads 1 --max-knots 9 --features HERE/in.txt HERE/points.txt -o HERE/out.spm",
+    "splinefit fit --threads 1 --max-knots 9 --weights HERE/in.txt HERE/points.txt -o HERE/out.spm",
+    "dd4 --grid 2x2x2x2 --at-file HERE/in.txt -o HERE/out.txt",
+    "spfinalize --threads 1 --lof HERE/in.txt -o HERE/out.spm",
+];
+
+/// What reads points or partial meshes.
+pub const REDUCE: &[&str] = &[
+    "seal HERE/in.spm",
+    "spdelaunay2d --threads 1 --memory 256M HERE/in.spm -o HERE/out.spm",
+    "spdelaunay2d --merge --incomplete HERE/in.spm HERE/in.spm -o HERE/out.spm",
+    "spdelaunay3d --threads 2 --memory 256M HERE/in.spm -o HERE/out.spm",
+    "spdelaunay3d --merge HERE/in.spm -o HERE/out.spm",
+    "spfinalize --threads 1 HERE/in.spm -o HERE/out.spm",
+    "configgen HERE/in.spm -o HERE/out.spm",
+];
+
+/// What reads meshes of terrain.
+pub const SURFACE: &[&str] = &[
+    "seal HERE/in.spm",
+    "spdem --columns 9 HERE/in.spm -o HERE/out.tif",
+    "spdem --contours 3 --smooth HERE/in.spm -o HERE/out.geojson",
+    "spdem --columns 9 --concave 3 --kind slope HERE/in.spm -o HERE/out.asc",
+    "spconstrain --lines DATA/lines.txt HERE/in.spm -o HERE/out.spm",
+    "spheight --threads 1 --ground HERE/in.spm DATA/hextest.las -o HERE/out.las",
+    "spcanopy --threads 1 --columns 9 --ground HERE/in.spm DATA/hextest.las -o HERE/out.tif",
+    "spview --width 320 HERE/in.spm -o HERE/out.svg",
+];
+
+pub const CONVERT: &[&str] = &[
+    "seal HERE/in.spm",
+    "spconvert HERE/in.spm -o HERE/out.obj",
+    "spconvert HERE/in.spm -o HERE/out.ply",
+    "spconvert HERE/in.spm -o HERE/out.vtu",
+    "spconvert HERE/in.spm -o HERE/out.mesh",
+    "spconvert HERE/in.spm -o HERE/out.dxf",
+    "spconvert HERE/in.spm --to landxml -o HERE/out.xml",
+    "spconvert HERE/in.spm -o HERE/out.spa",
+    "spconvert HERE/in.spm -o HERE/out.smb",
+    "spconvert HERE/in.spm -o HERE/out.geojson",
+    "spconvert HERE/in.spm --compress -o HERE/out.spm",
+];
+
+/// What reads tetrahedra and streams of four dimensions.
+pub const SOLID: &[&str] = &[
+    "seal HERE/in.spm",
+    "tess3 --filtration HERE/in.spm -o HERE/out.txt",
+    "tess3 --contacts HERE/in.spm -o HERE/out.txt",
+    "dd4 HERE/in.spm -o HERE/out.spm",
+    "dd4 --slice 0.5 HERE/in.spm -o HERE/out.ply",
+];
+
+pub const SPLINES: &[&str] = &[
+    "seal HERE/in.spm",
+    "splinefit eval --threads 1 --columns 9 HERE/in.spm -o HERE/out.tif",
+    "splinefit fit --threads 1 --knots HERE/in.spm HERE/points.txt -o HERE/out.spm",
+    "splinefit mesh HERE/in.spm -o HERE/out.spm",
+    "spview --width 320 HERE/in.spm -o HERE/out.svg",
+];
+
+/// Points with ties, of which the files of the folder are made.
+const POINTS: &str = "0 0 1\n9 0 2\n9 9 3\n0 9 4\n5 5 9\n3 4 2\n7 2 2\n3 4 3\n1 8 0\n6 6 6\n";
+
+/// Makes the files that commands read.
+const SETUP: &[&str] = &[
+    "put HERE/points.txt",
+    "spfinalize --threads 1 HERE/points.txt -o HERE/points.spm",
+    "spdelaunay2d --threads 1 HERE/points.spm -o HERE/mesh.spm",
+    "spdem --columns 4 HERE/mesh.spm -o HERE/raster.tif",
+];
+
+/// Makes those that are made of a plan and atoms.
+const JOBS: &[&str] = &[
+    "spnode run --threads 1 -d HERE/parts HERE/plan.json 0 1 2 3 4",
+    "spnode collect -d HERE/parts -o HERE/manifest.json HERE/plan.json",
+    "tess3 --out-dir HERE/made --summary HERE/summary.tsv HERE/atoms.pdb",
+];
+
+const ATOMS: &str = "\
+ATOM      1  N   ALA A   1       1.000   2.000   3.000  1.00  0.00           N
+ATOM      2  CA  ALA A   1       2.000   2.500   3.000  1.00  0.00           C
+ATOM      3  C   ALA A   1       2.000   3.500   4.000  1.00  0.00           C
+ATOM      4  O   ALA A   1       3.000   3.000   3.500  1.00  0.00           O
+ATOM      5  CB  ALA A   1       1.500   1.000   2.000  1.00  0.00           C
+";
+
+thread_local! {
+    static FOLDER: TempDir = set_up();
+}
+
+fn set_up() -> TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("atoms.pdb"), ATOMS).expect("a writable folder");
+    let run = |line: &&str| {
+        let outcome = run_line(line, folder.path(), POINTS.as_bytes());
+        outcome.unwrap_or_else(|error| panic!("{line}: {error}"));
+    };
+    SETUP.iter().for_each(run);
+    write_plan(folder.path());
+    JOBS.iter().for_each(run);
+    folder
+}
+
+/// A plan as of the program, which takes arguments from its process.
+fn write_plan(folder: &Path) {
+    let paths = [folder.join("points.txt")];
+    let options = SourceOptions { dims: 2, ..SourceOptions::default() };
+    let survey = Survey::of(&paths, &options, |_| ()).expect("a file of points");
+    let planning = Planning { leaf_points: 4, arguments: &[], beside: &[] };
+    let plan = plan_of(&survey, &paths, planning).expect("a plan");
+    fs::write(folder.join("plan.json"), plan.to_json().expect("a plan")).expect("a writable folder");
+}
+
+/// A file of the folder, such as `plan.json`.
+pub fn made(name: &str) -> Vec<u8> {
+    FOLDER.with(|folder| fs::read(folder.path().join(name)).expect("a file of the folder"))
+}
+
+/// Runs all lines with some bytes. Programs may refuse them.
+pub fn run(lines: &[&str], bytes: &[u8]) {
+    FOLDER.with(|folder| lines.iter().for_each(|line| drop(run_line(line, folder.path(), bytes))));
+}
+
+fn run_line(line: &str, folder: &Path, bytes: &[u8]) -> Result<(), String> {
+    let here = format!("{}/", folder.display());
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/");
+    let words: Vec<String> =
+        line.split(' ').map(|word| word.replace("HERE/", &here).replace("DATA/", data)).collect();
+    match &words[..] {
+        [put, path] if put == "put" => fs::write(path, bytes).expect("a writable folder"),
+        [seal, path] if seal == "seal" => {
+            fs::write(path, corrected(bytes, folder)).expect("a writable folder");
+        }
+        [tool, arguments @ ..] => {
+            let all = [&[tool.clone(), "-q".into()], arguments].concat();
+            return call_tool(tool, &all);
+        }
+        [] => panic!("an empty line"),
+    }
+    Ok(())
+}
+
+fn call_tool(tool: &str, words: &[String]) -> Result<(), String> {
+    match tool {
+        "configgen" => parsed(words, configgen::run),
+        "dd4" => parsed(words, dd4::run),
+        "spcanopy" => parsed(words, spcanopy::run),
+        "spconstrain" => parsed(words, spconstrain::run),
+        "spconvert" => parsed(words, spconvert::run),
+        "spdelaunay2d" => parsed(words, spdelaunay2d::run),
+        "spdelaunay3d" => parsed(words, spdelaunay3d::run),
+        "spdem" => parsed(words, spdem::run),
+        "spfinalize" => parsed(words, spfinalize::run),
+        "spheight" => parsed(words, spheight::run),
+        "splinefit" => parsed(words, splinefit::run),
+        "spnode" => parsed(words, spnode::run),
+        "spview" => parsed(words, spview::run),
+        "tess3" => parsed(words, tess3::run),
+        other => panic!("no tool {other}"),
+    }
+}
+
+fn parsed<F: Parser, E: std::fmt::Display>(
+    words: &[String],
+    run: impl FnOnce(F) -> Result<(), E>,
+) -> Result<(), String> {
+    let flags = F::try_parse_from(words).unwrap_or_else(|error| panic!("{error}"));
+    run(flags).map_err(|error| format!("{error:#}"))
+}
+
+/// The bytes with checksums that fit them, if they are a stream, a plan or a report.
+fn corrected(bytes: &[u8], folder: &Path) -> Vec<u8> {
+    sealed(bytes)
+        .or_else(|| sealed_report(bytes))
+        .or_else(|| sealed_plan(bytes, folder))
+        .unwrap_or(bytes.to_vec())
+}
+
+fn sealed_report(bytes: &[u8]) -> Option<Vec<u8>> {
+    let report: NodeReport = serde_json::from_slice(bytes).ok()?;
+    Some(report.to_json().expect("a report").into_bytes())
+}
+
+/// The hash of a plan is that of its text without the hash.
+fn sealed_plan(bytes: &[u8], folder: &Path) -> Option<Vec<u8>> {
+    let mut value: Value = serde_json::from_slice(bytes).ok()?;
+    *value.get_mut("id")? = "".into();
+    let bare: Plan = serde_json::from_value(value.clone()).ok()?;
+    let path = folder.join("bare.json");
+    fs::write(&path, serde_json::to_vec(&bare).ok()?).expect("a writable folder");
+    value["id"] = hash_of_file(&path).expect("a file that was just written").into();
+    serde_json::to_vec(&value).ok()
+}
