@@ -17,6 +17,7 @@ use spmesh_geometry::diagram4::{Route, diagram_by};
 use spmesh_model::cells4::Point4;
 use spmesh_model::diagram4::Diagram4;
 use spmesh_reference::sets::Random;
+use std::num::NonZeroUsize;
 
 /// Fuzzes the 4D engine.
 #[derive(Debug, Parser)]
@@ -48,26 +49,29 @@ impl Trial<4> for Diagrams {
 
 /// Checks a set and returns its number of cells.
 fn try_set(points: &[Point4], random: &mut Random) -> usize {
-    let simplices = by(Route::Simplices, points);
+    let simplices = by(Route::Simplices, 1, points);
     #[cfg(feature = "experiments")]
-    assert_eq!(by(Route::Direct, points), simplices, "the direct route");
+    assert_eq!(by(Route::Direct, 1, points), simplices, "the direct route");
     let Some(diagram) = simplices else { return 0 };
     check(&diagram.points, &diagram.cells).expect("a proof");
     let mut shuffled = points.to_vec();
     random.shuffle(&mut shuffled);
-    assert_eq!(by(Route::Simplices, &shuffled).as_ref(), Some(&diagram), "another order");
+    let threads = random.integer(2, 4) as usize;
+    let other = by(Route::Simplices, threads, &shuffled);
+    assert_eq!(other.as_ref(), Some(&diagram), "another order, on {threads} threads");
     // These factors are exact in f64. They change the arithmetic, but not the cells.
     for factor in [0.125, 2f64.powi(-400), 2f64.powi(300), 65_536.0] {
         let scaled: Vec<Point4> = points.iter().map(|p| p.map(|x| x * factor)).collect();
-        let scaled = by(Route::Simplices, &scaled).expect("as many dimensions");
+        let scaled = by(Route::Simplices, 1, &scaled).expect("as many dimensions");
         assert_eq!(scaled.cells, diagram.cells, "times {factor:e}");
     }
     diagram.cells.len()
 }
 
 /// The diagram, unless all points are in a hyperplane.
-fn by(route: Route, points: &[Point4]) -> Option<Diagram4> {
-    match diagram_by(route, points.to_vec(), None) {
+fn by(route: Route, threads: usize, points: &[Point4]) -> Option<Diagram4> {
+    let threads = NonZeroUsize::new(threads).expect("a thread or more");
+    match diagram_by(route, threads, points.to_vec(), None) {
         Ok((diagram, _)) => Some(diagram),
         Err(error) => {
             assert!(error.to_string().contains("dimensions"), "{error}");
@@ -78,7 +82,8 @@ fn by(route: Route, points: &[Point4]) -> Option<Diagram4> {
 
 /// A set of a random kind: integers up to 2^20 apart.
 fn points(random: &mut Random) -> Vec<Point4> {
-    let most = if random.integer(0, 9) == 0 { 300 } else { 40 };
+    // Threads share the joining of cells where there are thousands of simplices.
+    let most = if random.integer(0, 9) == 0 { 600 } else { 40 };
     let count = random.integer(0, most);
     let side = [2, 2, 3, 3, 4, 5, 8, 16, 100, 171, 700, 20_000, 1 << 20][random.integer(0, 12) as usize];
     let shift = [0, 0, 1 << 10, -(1 << 30)][random.integer(0, 3) as usize];
