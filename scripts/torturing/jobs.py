@@ -9,8 +9,8 @@ import shlex
 class Job:
     """Programs in a pipe. Inputs are in the folder in/, outputs in out/, both below the current folder.
 
-    `to_file` ends the last program's command line if it writes files, `to_stdout` if it writes to stdout; None
-    if it cannot. `fed` is an input that comes through stdin. `needs` are inputs that no argument names.
+    `to_file` ends the last program's command line if it writes files, `to_stdout` if it writes to stdout;
+    None if it cannot. `fed` is an input that comes through stdin. `needs` are inputs that no argument names.
     """
 
     name: str
