@@ -49,9 +49,11 @@ class Result:
 
 def fault(name, applies=lambda job, stage: True):
     """Registers a fault: a function of a case."""
+
     def register(function):
         FAULTS[name] = (function, applies)
         return function
+
     return register
 
 
@@ -125,7 +127,9 @@ class Case:
         found += [(verdicts.SILENT, f"in/{name}: the input was changed") for name in room.changed_inputs()]
         self.result.hits += any(outcome.codes) if is_hit is None else is_hit
         shown = " | ".join(" ".join(command) for command in outcome.commands)
-        self.result.complaints += [(kind, f"{text}\n    {what + ': ' if what else ''}{shown}") for kind, text in found]
+        self.result.complaints += [
+            (kind, f"{text}\n    {what + ': ' if what else ''}{shown}") for kind, text in found
+        ]
 
     def complain(self, kind, text):
         self.result.complaints.append((kind, text))
@@ -142,5 +146,17 @@ def commands(job, is_to_file, nodes):
         chosen.append([part for word in command for part in (nodes.split() if word == "{nodes}" else [word])])
     return chosen
 
-__all__ = ["Case", "Expected", "FAULTS", "Plan", "Result", "Skip", "World", "fault", "first_failed",
-           "last", "writes_stdout"]
+
+__all__ = [
+    "Case",
+    "Expected",
+    "FAULTS",
+    "Plan",
+    "Result",
+    "Skip",
+    "World",
+    "fault",
+    "first_failed",
+    "last",
+    "writes_stdout",
+]

@@ -59,7 +59,12 @@ def full_disk(case):
     if not case.world.can_mount or not room.mount(room.out, f"size={4096 * pages}"):
         raise Skip("file systems cannot be mounted")
     outcome = case.run(room)
-    case.judge(outcome, Expected(first_failed(outcome, case.stage), [0, 1], [whole], FULL), room, f"a disk of {pages} pages")
+    case.judge(
+        outcome,
+        Expected(first_failed(outcome, case.stage), [0, 1], [whole], FULL),
+        room,
+        f"a disk of {pages} pages",
+    )
 
 
 @fault("no-inodes", last)
@@ -70,7 +75,12 @@ def no_inodes(case):
     if not case.world.can_mount or not room.mount(room.out, "nr_inodes=1"):
         raise Skip("file systems cannot be mounted")
     outcome = case.run(room)
-    case.judge(outcome, Expected(first_failed(outcome, case.stage), [1], [whole], FULL), room, "a disk without inodes")
+    case.judge(
+        outcome,
+        Expected(first_failed(outcome, case.stage), [1], [whole], FULL),
+        room,
+        "a disk without inodes",
+    )
 
 
 @fault("read-only", last)
@@ -84,7 +94,12 @@ def read_only(case):
         room.place_old(name for name in whole.files)
     room.mount(room.out, "remount,ro")
     outcome = case.run(room)
-    case.judge(outcome, Expected(first_failed(outcome, case.stage), [1], [whole], "Read-only file system"), room, "a disk to be read only")
+    case.judge(
+        outcome,
+        Expected(first_failed(outcome, case.stage), [1], [whole], "Read-only file system"),
+        room,
+        "a disk to be read only",
+    )
 
 
 @fault("refused", last)
@@ -99,7 +114,12 @@ def refused(case):
     os.chmod(room.out, 0o555)
     before = {k: users.become(case.world.user) for k in range(len(case.job.stages))}
     outcome = case.run(room, Plan(before=before))
-    case.judge(outcome, Expected(first_failed(outcome, case.stage), [1], [whole], "Permission denied"), room, "a folder of another user")
+    case.judge(
+        outcome,
+        Expected(first_failed(outcome, case.stage), [1], [whole], "Permission denied"),
+        room,
+        "a folder of another user",
+    )
 
 
 @fault("full-temp")
@@ -108,7 +128,11 @@ def full_temp(case):
     is_to_file = case.is_to_file()
     whole, room = case.whole(is_to_file), case.room(is_to_file=is_to_file)
     kind = case.numbers.choice(["full", "no inodes", "read only", "missing"])
-    options = {"full": f"size={4096 * case.numbers.randrange(1, 9)}", "no inodes": "nr_inodes=1", "read only": "ro"}
+    options = {
+        "full": f"size={4096 * case.numbers.randrange(1, 9)}",
+        "no inodes": "nr_inodes=1",
+        "read only": "ro",
+    }
     environment = {}
     if kind == "missing":
         environment["TMPDIR"] = str(room.folder / "missing")
@@ -130,5 +154,10 @@ def no_folder(case):
     outcome = case.run(room)
     room.out.mkdir(exist_ok=True)
     makes = case.job.name in ("nodes", "sweep", "heights", "sheets")
-    expected = Expected(first_failed(outcome, case.stage), [0] if makes else [1], [whole], "No such file or directory|does not exist")
+    expected = Expected(
+        first_failed(outcome, case.stage),
+        [0] if makes else [1],
+        [whole],
+        "No such file or directory|does not exist",
+    )
     case.judge(outcome, expected, room, "no folder")

@@ -7,7 +7,8 @@ import inputs
 import verdicts
 from cases import Expected, Plan, Skip, fault, first_failed
 
-# Formats that say where they end, by the ends of names. Of others no program can tell that something is missing.
+# Formats that say where they end, by the ends of names. Of others no program can tell that something is
+# missing.
 ENDED = (".spm", ".las", ".laz", ".gz", ".nrrd", ".json", ".geojson", ".gpkg")
 # Formats with a checksum for every byte.
 CHECKED = (".spm", ".gz")
@@ -64,15 +65,26 @@ def cut(case):
     """A file of which the end is missing."""
     name = choose(case)
     data = (case.world.folder / "in" / name).read_bytes()
-    length = case.numbers.choice([len(data) - 1, case.numbers.randrange(1, len(data)), case.numbers.randrange(len(data))])
+    length = case.numbers.choice(
+        [len(data) - 1, case.numbers.randrange(1, len(data)), case.numbers.randrange(len(data))]
+    )
     is_ended = name.endswith(ENDED) and length > 0
-    codes = [3] if is_ended and data[length:].strip() and not repairs(case) else [0, 2, 3]
+    # JSON without its last line end is whole.
+    is_whole = name.endswith("json") and not data[length:].strip()
+    codes = [3] if is_ended and not is_whole and not repairs(case) else [0, 2, 3]
     if case.job.name in ("nodes", "listed"):
         # Of inputs that changed since the plan was made.
         codes = [*codes, 2]
     case_name = os.path.basename(name)
-    with_file(case, name, data[:length], codes, ".", f"{case_name} cut after {length} of {len(data)} bytes",
-              out_is_checked=is_ended)
+    with_file(
+        case,
+        name,
+        data[:length],
+        codes,
+        ".",
+        f"{case_name} cut after {length} of {len(data)} bytes",
+        out_is_checked=is_ended,
+    )
 
 
 @fault("damaged", reads_files)
@@ -117,7 +129,9 @@ def cut_pipe(case):
             left -= passed[-1]
 
     outcome = case.run(room, Plan(relays={case.stage: sizes()}), is_to_file)
-    case.judge(outcome, Expected(case.stage, [0, 3], [whole], "stdin"), room, f"the pipe ends after {length} bytes")
+    case.judge(
+        outcome, Expected(case.stage, [0, 3], [whole], "stdin"), room, f"the pipe ends after {length} bytes"
+    )
 
 
 def while_read(case, change, what, more_wholes):
@@ -142,11 +156,13 @@ def while_read(case, change, what, more_wholes):
 
 def other_whole(case, change):
     """Runs the job on files that were changed from the start; what it writes is right, too."""
+
     def run(is_to_file):
         room = case.room(has_old=False, is_to_file=is_to_file)
         change(room)
         outcome = case.run(room, Plan(), is_to_file)
         return [verdicts.Whole(outcome)] if not any(outcome.codes) else []
+
     return run
 
 
@@ -184,7 +200,11 @@ def growing(case):
     """Lines are appended to a text, or bytes to another file, while the program reads."""
     name = choose(case, can_be_part=False)
     data = (case.world.folder / "in" / name).read_bytes()
-    more = case.numbers.randbytes(1000) if name.endswith(ENDED) else b"".join(data.splitlines(keepends=True)[-50:])
+    more = (
+        case.numbers.randbytes(1000)
+        if name.endswith(ENDED)
+        else b"".join(data.splitlines(keepends=True)[-50:])
+    )
 
     def change(room):
         room.disturbed.add(name)

@@ -39,6 +39,7 @@ def slow(case):
 
 def reading(count):
     """A reader of so many bytes."""
+
     def reader(source):
         left, parts = count, []
         while left and (part := os.read(source, left)):
@@ -46,6 +47,7 @@ def reading(count):
             left -= len(part)
         os.close(source)
         return b"".join(parts)
+
     return reader
 
 
@@ -117,8 +119,12 @@ def stderr_full(case):
         outcome = case.run(room, Plan(stderr=log, before=before), is_to_file)
     finally:
         os.close(log)
-    case.judge(outcome, Expected(case.stage, [0, 1], [whole], is_silent=True), room,
-               f"no messages, and files of {length} bytes")
+    case.judge(
+        outcome,
+        Expected(case.stage, [0, 1], [whole], is_silent=True),
+        room,
+        f"no messages, and files of {length} bytes",
+    )
 
 
 @fault("no-data", lambda job, stage: stage == 0 and job.fed)

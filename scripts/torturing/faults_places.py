@@ -152,8 +152,13 @@ def same(case):
     path = way_to(room, name, output, way)
     outcome = case.run(room, change=lambda argument: path if argument == output else argument)
     cause = "would replace the input" if "hard" in way or "symbolic" in way else "."
-    case.judge(outcome, Expected(case.stage, [2], [], cause), room, f"output is the input {name}: {way}",
-               out_is_checked=False)
+    case.judge(
+        outcome,
+        Expected(case.stage, [2], [], cause),
+        room,
+        f"output is the input {name}: {way}",
+        out_is_checked=False,
+    )
 
 
 @fault("same-folder", lambda job, stage: job.name == "heights")
@@ -165,8 +170,13 @@ def same_folder(case):
     outcome = case.run(room)
     room.out.unlink()
     room.out.mkdir()
-    case.judge(outcome, Expected(case.stage, [2], [], "would replace the input"), room, "outputs beside inputs",
-               out_is_checked=False)
+    case.judge(
+        outcome,
+        Expected(case.stage, [2], [], "would replace the input"),
+        room,
+        "outputs beside inputs",
+        out_is_checked=False,
+    )
 
 
 @fault("same-stdin", lambda job, stage: stage == 0 and last(job, stage) and reads_files(job, stage))
@@ -190,5 +200,10 @@ def same_stdin(case):
     outcome = case.run(room, plan, by_name, change=lambda argument: replaced.get(argument, argument))
     reads_stdin = "stdin" in "".join(outcome.messages)
     expected = Expected(0, [2] if reads_stdin else [1, 2, 3], [], ".")
-    case.judge(outcome, expected, room, f"stdin and {'output' if by_name else 'stdout'} are {name}",
-               out_is_checked=False)
+    case.judge(
+        outcome,
+        expected,
+        room,
+        f"stdin and {'output' if by_name else 'stdout'} are {name}",
+        out_is_checked=False,
+    )

@@ -30,8 +30,9 @@ def end(case, number, is_group):
     outcome = case.run(room, Plan(during=during), is_to_file)
     # A program of the group may end before the signal, by its neighbour's end.
     codes = [0, 3, 141] if is_group else [0]
-    expected = Expected(case.stage, codes, [whole], signals=[number], momentary=number == signal.SIGKILL,
-                        is_read=not is_group)
+    expected = Expected(
+        case.stage, codes, [whole], signals=[number], momentary=number == signal.SIGKILL, is_read=not is_group
+    )
     case.judge(outcome, expected, room, f"signal {number} after {at:.3f} s{', all' if is_group else ''}")
 
 
@@ -75,5 +76,10 @@ def stop(case):
         return False
 
     outcome = case.run(room, Plan(during=during), is_to_file)
-    case.judge(outcome, Expected(case.stage, [0], [whole]), room,
-               f"stopped after {at:.3f} s for {pause:.3f} s", is_hit=bool(stopped))
+    case.judge(
+        outcome,
+        Expected(case.stage, [0], [whole]),
+        room,
+        f"stopped after {at:.3f} s for {pause:.3f} s",
+        is_hit=bool(stopped),
+    )

@@ -1,4 +1,4 @@
-"""Inputs of the jobs: seeded points in several formats, samples of tests/data, and what the programs make of them."""
+"""Inputs of the jobs: seeded points, samples of tests/data, and what the programs make of them."""
 
 import gzip
 import math
@@ -14,8 +14,13 @@ SAMPLES = ROOT / "tests" / "data"
 
 # Samples under the names that jobs use.
 COPIES = {
-    "atoms.cif": "1aki.cif", "atoms.pdb": "1aki.pdb", "peptide.pdb.gz": "1l2y.pdb.gz", "lines.geojson": "lines.geojson",
-    "lines.gpkg": "lines.gpkg", "lines.txt": "lines.txt", "volumes.nrrd": "functional_crop.nrrd",
+    "atoms.cif": "1aki.cif",
+    "atoms.pdb": "1aki.pdb",
+    "peptide.pdb.gz": "1l2y.pdb.gz",
+    "lines.geojson": "lines.geojson",
+    "lines.gpkg": "lines.gpkg",
+    "lines.txt": "lines.txt",
+    "volumes.nrrd": "functional_crop.nrrd",
 }
 
 # What the programs make of them, in this order; `{}` are all nodes of the plan.
@@ -47,7 +52,9 @@ def make(folder, programs, seed, count):
     zip_file(into / "points.txt", into / "points.txt.gz")
     write_las(into / "tile.las", terrain(numbers, count, 0))
     write_las(into / "east.las", terrain(numbers, count // 2, 100))
-    write_lines(into / "cloud.xyz", [[numbers.randrange(200) / 8 for _ in range(3)] for _ in range(count // 2)])
+    write_lines(
+        into / "cloud.xyz", [[numbers.randrange(200) / 8 for _ in range(3)] for _ in range(count // 2)]
+    )
     write_lines(into / "knots.txt", terrain(numbers, min(count // 20, 300), 0))
     sites = min(count // 10, 300)
     write_lines(into / "points4.txt", [[numbers.randrange(8) for _ in range(4)] for _ in range(sites)])
@@ -91,11 +98,44 @@ def write_las(path, points):
     axes = list(zip(*points))
     box = [bound for axis in axes for bound in (max(axis), min(axis))]
     header = struct.pack(
-        "<4sHHIHH8sBB32s32sHHHIIBHI5I3d3d6d", b"LASF", 0, 0, 0, 0, 0, bytes(8), 1, 2, b"", b"torture", 1, 2026, 227, 227,
-        0, 0, 20, len(points), len(points), 0, 0, 0, 0, 0.01, 0.01, 0.01, 0, 0, 0, *box)
+        "<4sHHIHH8sBB32s32sHHHIIBHI5I3d3d6d",
+        b"LASF",
+        0,
+        0,
+        0,
+        0,
+        0,
+        bytes(8),
+        1,
+        2,
+        b"",
+        b"torture",
+        1,
+        2026,
+        227,
+        227,
+        0,
+        0,
+        20,
+        len(points),
+        len(points),
+        0,
+        0,
+        0,
+        0,
+        0.01,
+        0.01,
+        0.01,
+        0,
+        0,
+        0,
+        *box,
+    )
     records = bytearray()
     for i, point in enumerate(points):
-        records += struct.pack("<3iHBBbBH", *(round(100 * at) for at in point), i % 500, 0x09, 5 if i % 3 == 1 else 2, 0, 0, 0)
+        records += struct.pack(
+            "<3iHBBbBH", *(round(100 * at) for at in point), i % 500, 0x09, 5 if i % 3 == 1 else 2, 0, 0, 0
+        )
     path.write_bytes(header + records)
 
 

@@ -9,8 +9,8 @@ import shlex
 class Job:
     """Programs in a pipe. Inputs are in the folder in/, outputs in out/, both below the current folder.
 
-    `to_file` ends the last program's command line if it writes files, `to_stdout` if it writes to stdout; None if
-    it cannot. `fed` is an input that comes through stdin. `needs` are inputs that no argument names.
+    `to_file` ends the last program's command line if it writes files, `to_stdout` if it writes to stdout;
+    None if it cannot. `fed` is an input that comes through stdin. `needs` are inputs that no argument names.
     """
 
     name: str
@@ -68,25 +68,44 @@ CLUSTER = ("tile.las", "east.las")
 
 JOBS = [
     # Terrain.
-    Job("ground", "spfinalize --keep-class 2 in/tile.laz in/east.laz | spdelaunay2d --duplicates lowest",
-        "-o out/ground.spm", ""),
+    Job(
+        "ground",
+        "spfinalize --keep-class 2 in/tile.laz in/east.laz | spdelaunay2d --duplicates lowest",
+        "-o out/ground.spm",
+        "",
+    ),
     Job("text", "spfinalize in/points.txt | spdelaunay2d | spdem --step 2", "-o out/text.tif", ""),
-    Job("fed", "spfinalize - --cell-points 500 | spdelaunay2d --threads 1 --compress", "-o out/fed.spm", "",
-        fed="points.txt"),
+    Job(
+        "fed",
+        "spfinalize - --cell-points 500 | spdelaunay2d --threads 1 --compress",
+        "-o out/fed.spm",
+        "",
+        fed="points.txt",
+    ),
     Job("zipped", "spfinalize in/points.txt.gz --memory 64M --spool always", "-o out/zipped.spm", ""),
     Job("mesh", "spdelaunay2d --threads 4 in/points.spm", "-o out/mesh.spm", ""),
     Job("raster", "spdem --step 1 --cog in/ground.spm", "-o out/raster.tif", ""),
     Job("grid", "spdem --step 1 --kind slope --fill 3 in/ground.spm", "-o out/grid.asc", "--format asc"),
-    Job("sheets", "spdem --step 1 --tiles 3,2 in/ground.spm", "-o out/sheet.tif",
-        is_pattern=True),
+    Job("sheets", "spdem --step 1 --tiles 3,2 in/ground.spm", "-o out/sheet.tif", is_pattern=True),
     Job("contours", "spdem --contours 1 --smooth in/ground.spm", "-o out/lines.geojson", ""),
     Job("heights", "spheight --ground in/ground.spm in/tile.laz in/east.laz --name Height", "--out-dir out"),
-    Job("height", "spfinalize in/tile.las | spdelaunay2d | spheight --ground - in/east.las", "-o out/east.laz"),
+    Job(
+        "height", "spfinalize in/tile.las | spdelaunay2d | spheight --ground - in/east.las", "-o out/east.laz"
+    ),
     Job("canopy", "spcanopy --ground in/ground.spm in/tile.laz --step 2", "-o out/canopy.tif", ""),
-    Job("lines", "spconstrain --lines in/lines.geojson --lines in/lines.gpkg --kill 40 in/ground.spm"
-        " --report out/changes.tsv", "-o out/lines.spm", ""),
-    Job("breaklines", "spfinalize in/tile.laz | spdelaunay2d | spconstrain --lines in/lines.txt |"
-        " spdem --step 2", "-o out/breaklines.tif", ""),
+    Job(
+        "lines",
+        "spconstrain --lines in/lines.geojson --lines in/lines.gpkg --kill 40 in/ground.spm"
+        " --report out/changes.tsv",
+        "-o out/lines.spm",
+        "",
+    ),
+    Job(
+        "breaklines",
+        "spfinalize in/tile.laz | spdelaunay2d | spconstrain --lines in/lines.txt | spdem --step 2",
+        "-o out/breaklines.tif",
+        "",
+    ),
     # A cluster.
     Job("plan", "spfinalize in/tile.las in/east.las --leaf-points 1000 --plan out/plan.json", ""),
     Job("nodes", "spnode run in/plan.json {nodes}", "-d out/parts", needs=CLUSTER),
@@ -107,8 +126,12 @@ JOBS = [
     Job("series", "dd4 in/series.nii.gz --count 300 | spinfo --audit", None, ""),
     # Splines.
     Job("spline", "splinefit fit --max-knots 60 in/tile.laz", "-o out/tile.spline.spm", ""),
-    Job("knots", "configgen --degree 1 --boundary pulled-apart in/knots.txt | splinefit fit --knots -"
-        " in/points.txt", "-o out/knots.spline.spm", ""),
+    Job(
+        "knots",
+        "configgen --degree 1 --boundary pulled-apart in/knots.txt | splinefit fit --knots - in/points.txt",
+        "-o out/knots.spline.spm",
+        "",
+    ),
     Job("values", "splinefit eval in/spline.spm --step 2", "-o out/values.tif"),
     Job("sites", "splinefit eval in/spline.spm --at in/knots.txt", "-o out/sites.npy"),
     Job("matrix", "splinefit eval in/spline.spm --collocation --at in/knots.txt", "-o out/matrix.npz"),
@@ -116,8 +139,11 @@ JOBS = [
     Job("configurations", "configgen --degree 2 in/knots.txt", "-o out/knots.spm", ""),
     # Pictures, reports and other formats.
     Job("picture", "spview in/ground.spm", "-o out/ground.png", ""),
-    Job("snapshots", "spview --tee --snapshot every=700 in/points.spm -o out/%04d.png | spdelaunay2d",
-        "-o out/mesh.spm"),
+    Job(
+        "snapshots",
+        "spview --tee --snapshot every=700 in/points.spm -o out/%04d.png | spdelaunay2d",
+        "-o out/mesh.spm",
+    ),
     Job("page", "spview in/ground.spm", "-o out/page.html", "--format html"),
     Job("report", "spfinalize in/tile.laz | spdelaunay2d | spinfo --audit --points in/tile.laz", None, ""),
     Job("space-report", "spinfo --audit in/cloud.spm", None, ""),

@@ -38,8 +38,11 @@ class Room:
 
     def changed_inputs(self):
         """Inputs that a program has changed."""
-        return [name for name, it in self.states.items()
-                if name not in self.disturbed and state(self.inputs / name) != it]
+        return [
+            name
+            for name, it in self.states.items()
+            if name not in self.disturbed and state(self.inputs / name) != it
+        ]
 
     def place_old(self, names):
         """Puts earlier files where outputs will be."""
@@ -80,7 +83,7 @@ class Plan:
     before: dict = dataclasses.field(default_factory=dict)
     # Called with the processes and the seconds since the start, until it returns True.
     during: object = None
-    # By the number of a stage: copies its input from one descriptor to another; that of stage 0 gets the fed bytes.
+    # By the number of a stage: sizes of the pieces in which its input is passed on, and pauses before them.
     relays: dict = dataclasses.field(default_factory=dict)
     # Reads what the last program writes to stdout, and returns it.
     reader: object = None
@@ -189,7 +192,8 @@ def start(room, programs, command, stdin, stdout, log, plan, k, group):
     else:
         streams["preexec_fn"] = prepare
     return subprocess.Popen(
-        [f"{programs}/{command[0]}", *command[1:]], cwd=room.folder, env=environment, **streams)
+        [f"{programs}/{command[0]}", *command[1:]], cwd=room.folder, env=environment, **streams
+    )
 
 
 def wait(stages, during):
@@ -218,7 +222,9 @@ def processor_time(stages):
     total = 0
     for stage in stages:
         try:
-            fields = pathlib.Path(f"/proc/{stage.pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+            fields = (
+                pathlib.Path(f"/proc/{stage.pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+            )
             total += int(fields[11]) + int(fields[12])
         except OSError:
             pass
@@ -250,7 +256,7 @@ def feed(target, data, relay):
     try:
         view = memoryview(data)
         while view:
-            view = view[os.write(target, view[:CHUNK]):]
+            view = view[os.write(target, view[:CHUNK]) :]
     except BrokenPipeError:
         pass
     finally:
@@ -268,7 +274,7 @@ def relay_all(source, target, sizes):
                 break
             view = memoryview(data)
             while view:
-                view = view[os.write(target, view):]
+                view = view[os.write(target, view) :]
     except BrokenPipeError:
         pass
     finally:

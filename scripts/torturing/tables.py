@@ -21,7 +21,9 @@ class Table:
         row.update(cases=1, runs=result.runs, faults=result.hits)
         for kind, text in result.complaints:
             row[f"{kind}s"] += 1
-            print(f"{kind.upper()}  scripts/torture --seed {seed} --case {result.name}\n    {text}", flush=True)
+            print(
+                f"{kind.upper()}  scripts/torture --seed {seed} --case {result.name}\n    {text}", flush=True
+            )
 
     def has_failures(self):
         return any(row[f"{kind}s"] for row in self.rows.values() for kind in KINDS)
@@ -35,6 +37,13 @@ class Table:
             lines.append((tool, *(str(row[head]) for head in HEADS[1:])))
         widths = [max(map(len, column)) for column in zip(*lines)]
         for line in lines:
-            print("  ".join([line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:]))]))
+            print(
+                "  ".join(
+                    [
+                        line[0].ljust(widths[0]),
+                        *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:])),
+                    ]
+                )
+            )
         for (fault, reason), count in sorted(self.skipped.items()):
             print(f"skipped {count} x {fault}: {reason}")

@@ -12,7 +12,9 @@ def find(program):
     if os.geteuid() != 0:
         return None
     try:
-        done = subprocess.run([program, "--version"], preexec_fn=become(USER), capture_output=True, check=False)
+        done = subprocess.run(
+            [program, "--version"], preexec_fn=become(USER), capture_output=True, check=False
+        )
     except (OSError, subprocess.SubprocessError):
         return None
     return USER if done.returncode == 0 else None
@@ -20,10 +22,12 @@ def find(program):
 
 def become(user):
     """What makes a process one of that user."""
+
     def before():
         os.setgroups([])
         os.setgid(user)
         os.setuid(user)
+
     return before
 
 

@@ -6,7 +6,13 @@ import signal
 import runs
 
 SILENT, CODE, LEFTOVER, PANIC, HANG, MESSAGE = KINDS = (
-    "silent loss", "exit code", "leftover", "panic", "hang", "message")
+    "silent loss",
+    "exit code",
+    "leftover",
+    "panic",
+    "hang",
+    "message",
+)
 
 CLOSED_PIPE, MALFORMED = 141, 3
 # Signals by which no program should end unless they were sent.
@@ -39,8 +45,8 @@ def comparable(name, data):
     if name.endswith(".json"):
         return MEASURED.sub(b"", data)
     if name.endswith("summary.tsv"):
-        # Rows come in the order in which files were done. The first columns are results but for time and memory; the
-        # last ones tell what kind of file the input was.
+        # Rows come in the order in which files were done. The first columns are results but for time and
+        # memory; the last ones tell what kind of file the input was.
         rows = (row.split(b"\t") for row in data.splitlines())
         return b"\n".join(sorted(b"\t".join(row[:6] + row[8:14]) for row in rows))
     return data
@@ -49,14 +55,21 @@ def comparable(name, data):
 class Expected:
     """What a fault may lead to.
 
-    `stage` is the program that the fault hits, `codes` are those with which it may fail; 0 is for a run that the
-    fault did not stop. `cause` is in the message of a failure. `wholes` are the complete outputs, one of which must
-    be there after a success.
+    `stage` is the program that the fault hits, `codes` are those with which it may fail; 0 is for a run that
+    the fault did not stop. `cause` is in the message of a failure. `wholes` are the complete outputs, one of
+    which must be there after a success.
     """
 
-    def __init__(self, stage, codes, wholes, cause="", signals=(), is_silent=False, is_read=True, momentary=False):
+    def __init__(
+        self, stage, codes, wholes, cause="", signals=(), is_silent=False, is_read=True, momentary=False
+    ):
         self.stage, self.codes, self.wholes, self.cause = stage, set(codes), wholes, cause
-        self.signals, self.is_silent, self.is_read, self.momentary = set(signals), is_silent, is_read, momentary
+        self.signals, self.is_silent, self.is_read, self.momentary = (
+            set(signals),
+            is_silent,
+            is_read,
+            momentary,
+        )
 
 
 def judge(outcome, expected, old, out_is_checked=True):
@@ -83,7 +96,7 @@ def has_succeeded(outcome):
 
 
 def is_copying(outcome, stage):
-    """Whether a program passes its input on as it is, damaged or whole, whatever becomes of its own output."""
+    """Whether a program passes its input on as it is, damaged or whole, whatever its own output becomes."""
     return "--tee" in outcome.commands[stage]
 
 
@@ -105,7 +118,9 @@ def judge_codes(outcome, expected):
         if codes[k] == CLOSED_PIPE:
             continue
         if codes[i] not in fine:
-            found.append(f"{outcome.commands[i][0]}, behind it, ended with {codes[i]}, expected {sorted(fine)}")
+            found.append(
+                f"{outcome.commands[i][0]}, behind it, ended with {codes[i]}, expected {sorted(fine)}"
+            )
     return [(CODE, f"{text}; all: {codes}") for text in found]
 
 
@@ -163,5 +178,7 @@ def judge_files(outcome, expected, old):
         missing = set(wholes[0].files) - set(outcome.files)
         found.append((SILENT, f"success without {sorted(missing)}, or with more"))
     if success and not any(outcome.stdout == whole.stdout for whole in wholes):
-        found.append((SILENT, f"success, but {len(outcome.stdout)} bytes on stdout are not those of a whole run"))
+        found.append(
+            (SILENT, f"success, but {len(outcome.stdout)} bytes on stdout are not those of a whole run")
+        )
     return found

@@ -25,8 +25,11 @@ def least_space(program):
         middle = (low + high) // 2
         limit = middle * MIB
         done = subprocess.run(
-            [program, "--version"], capture_output=True, check=False,
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+            [program, "--version"],
+            capture_output=True,
+            check=False,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
+        )
         low, high = (low, middle) if done.returncode == 0 else (middle + 1, high)
     return high * MIB
 
@@ -35,7 +38,9 @@ def make(programs, folder, seed, count, jobs, can_mount):
     """The world of a seed: inputs of some `count` points, and undisturbed runs of all jobs."""
     missing = [tool for job in JOBS for tool in job.tools if not os.access(f"{programs}/{tool}", os.X_OK)]
     if missing:
-        raise Unsound(f"{programs} has no {missing[0]}: build the programs, or name their folder with --programs")
+        raise Unsound(
+            f"{programs} has no {missing[0]}: build the programs, or name their folder with --programs"
+        )
     inputs.make(folder, programs, seed, count)
     inputs.make(folder / "other", programs, f"{seed} other", count * 3 // 4)
     os.chmod(folder, 0o755)

@@ -84,14 +84,15 @@ pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&
     Ok(())
 }
 
-/// Refuses a pipe that is two inputs: its data can be read once, and the second time the program would wait for
-/// a writer that never comes.
+/// Refuses a pipe with a name that is two inputs: its data can be read once, and the second time the program would
+/// wait for a writer that never comes. Programs say themselves what "-" may stand for.
 fn check_pipes(inputs: &[&Path]) -> Result<()> {
     let mut pipes = HashSet::new();
     for &path in inputs {
         let found = if is_standard(path) { metadata_of(io::stdin().as_fd()) } else { fs::metadata(path) };
         let Ok(found) = found else { continue };
-        if found.file_type().is_fifo() && !pipes.insert((found.dev(), found.ino())) {
+        let is_new = !found.file_type().is_fifo() || pipes.insert((found.dev(), found.ino()));
+        if !is_new && !is_standard(path) {
             let message = "is a pipe that is given twice, but its data can be read once: give a file";
             return Err(Error::usage(message).of_input(name_of_input(path)));
         }

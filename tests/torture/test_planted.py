@@ -7,7 +7,11 @@ import tempfile
 import unittest
 
 import cases
-import faults_disks, faults_inputs, faults_pipes, faults_places, faults_signals  # noqa: E401, F401
+import faults_disks  # noqa: F401
+import faults_inputs  # noqa: F401
+import faults_pipes  # noqa: F401
+import faults_places  # noqa: F401
+import faults_signals  # noqa: F401
 import runs
 import verdicts
 import worlds
