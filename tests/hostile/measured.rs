@@ -19,6 +19,7 @@ pub struct Measured {
 
 impl Measured {
     /// Runs a program without input.
+    #[allow(clippy::zombie_processes, reason = "wait4 waits, and says what the child has taken")]
     pub fn of(command: &mut Command) -> Measured {
         let command = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().expect("the program starts");

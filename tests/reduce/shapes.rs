@@ -5,7 +5,7 @@ use spmesh_model::bounds::Point;
 use spmesh_reduce::{Options, Stats};
 use spmesh_stream::Coordinates;
 
-use super::space;
+use super::solids;
 use super::streams::{Mesh, Tagging, read_mesh, stream, stream_of, threads, triangulate};
 use spmesh_reference::sets::Random;
 
@@ -65,7 +65,7 @@ fn rows_on_the_sides_do_not_wait_for_the_end() {
     let planes: Vec<Point> =
         (0..40_000).map(|i| [(i / 2 % 141) as f64, (i / 2 / 141) as f64, f64::from(i % 2)]).collect();
     let input = stream_of(3, &planes, Coordinates::F64, Tagging::Chunked(3), &mut Random::new(5));
-    let (_, stats) = space::tetrahedralize(&input, &space::every_node(1)).expect("a mesh");
+    let (_, stats) = solids::tetrahedralize(&input, &solids::every_node(1)).expect("a mesh");
     assert!(stats.residual_max < 20_000, "{} points waited", stats.residual_max);
     let line: Vec<Point> = (0..40_000).map(|i| [i as f64, 7.0, (i % 5) as f64]).collect();
     let (mesh, stats) = run(&line, Tagging::Chunked(5));

@@ -1,14 +1,10 @@
 //! The set of tetrahedra is that of the kernel over all points at once, however the input comes.
 
-use std::borrow::Cow;
-use std::io::Cursor;
-
 use spmesh_audit::{Audit, PointSet, Standard};
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_core::error::ErrorKind;
 use spmesh_model::bounds::Point;
-use spmesh_reduce::{Duplicates, Options, Stats};
-use spmesh_stream::{Coordinates, Event, LiveVertices, StreamReader};
+use spmesh_reduce::{Duplicates, Options};
+use spmesh_stream::{Coordinates, StreamReader};
 
 use super::solids::{bits, every_node, expected, fits_a_grid, read_mesh, tetrahedralize};
 use super::streams::{GRID, Tagging, stream_of};

@@ -1,9 +1,6 @@
 //! Weighted points: the set of tetrahedra is the regular one of all points, however the input comes.
 
-use spmesh_audit::{Audit, Standard};
 use spmesh_core::error::ErrorKind;
-use spmesh_geometry::delaunay3::triangulate_weighted;
-use spmesh_model::attributes::{Attribute, Attributes, NumberType};
 use spmesh_model::bounds::{Point, Region};
 use spmesh_reduce::{Duplicates, Options, Part};
 use spmesh_stream::{Coordinates, Event, Header, StreamReader, StreamWriter, Weighted};
