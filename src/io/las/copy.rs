@@ -86,7 +86,7 @@ impl<W: Write + Seek> LasCopy<W> {
         let padding = vlrs.end..points_start;
         let list = extended_records(&file, &header)?;
         // Records that are cut off, or older than their count in the header, are copied as they are.
-        let tail = if list.is_some() { 0..0 } else { source.header.points_end..file.len() };
+        let tail = if list.is_some() { 0..0 } else { source.header.points_end..source.header.file_len };
         let mut extended = list.unwrap_or_default();
         let mut extra_len = source.record_len() - source.core_len();
         let mut notices = Vec::new();

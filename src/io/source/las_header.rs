@@ -47,6 +47,8 @@ pub(crate) struct LasHeader {
     pub(crate) points_start: u64,
     /// Byte at which point data ends at the latest: that of extended records, waveforms, or the file's end.
     pub(crate) points_end: u64,
+    /// Length of the file when the header was read: a file that grows is that of this moment.
+    pub(crate) file_len: u64,
     /// How the points are compressed, if they are.
     pub(crate) laz: Option<Laszip>,
     /// Scale and offset.
@@ -123,6 +125,7 @@ impl LasHeader {
             points: count(&raw, format, notices),
             points_start: u64::from(raw.offset_to_point_data),
             points_end: points_end(&raw, file.len()),
+            file_len: file.len(),
             laz: records.laz(is_compressed)?,
             coordinates,
             bounds: stored_bounds(&raw, &coordinates),
