@@ -153,9 +153,27 @@ static AT_ABORT: AtomicPtr<Farewell> = AtomicPtr::new(ptr::null_mut());
 /// bytes for good.
 pub fn exit_at_abort(message: &'static str, code: u8) {
     let handler: extern "C" fn(libc::c_int) = exit_with_message;
-    AT_ABORT.store(Box::leak(Box::new((message, code))), Ordering::Release);
+    let is_first = AT_ABORT.swap(Box::leak(Box::new((message, code))), Ordering::AcqRel).is_null();
     // SAFETY: the handler only makes async-signal-safe calls, and does not return.
     unsafe { libc::signal(libc::SIGABRT, handler as libc::sighandler_t) };
+    if is_first {
+        exit_at_panic_without_memory();
+    }
+}
+
+/// How the panic of a thread begins for whose signals the system has no stack.
+const NO_SIGNAL_STACK: &str = "failed to allocate an alternative stack";
+
+/// Ends the program, likewise, when the standard library panics because a new thread finds no memory.
+fn exit_at_panic_without_memory() {
+    let others = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let message = panic.payload().downcast_ref::<String>();
+        if message.is_some_and(|message| message.starts_with(NO_SIGNAL_STACK)) {
+            exit_without_memory();
+        }
+        others(panic);
+    }));
 }
 
 /// Ends the program as an abort would, after [`exit_at_abort`]; before that, returns.

@@ -264,9 +264,26 @@ mod tests {
         assert_eq!((vertices.len(), vertices.get(0)), (2, &[0, 1, 2, 9, 11][..]));
         let cells = Cells4::from_lists(vertices, neighbours, &[1, 0], 1);
         let mut pushed = Cells4::default();
-        pushed.push(Cell4 { is_infinite: true, vertices: &[0, 1, 2, 5], neighbours: &[0] });
+        pushed.push(Cell4 { is_infinite: false, vertices: &[0, 1, 2, 5], neighbours: &[0] });
         assert_ne!(cells, pushed);
-        pushed.push(Cell4 { is_infinite: false, vertices: &[0, 1, 2, 9, 11], neighbours: &[1] });
+        pushed.push(Cell4 { is_infinite: true, vertices: &[0, 1, 2, 9, 11], neighbours: &[1] });
         assert_eq!(cells, pushed);
+    }
+
+    #[test]
+    fn joined_lists_are_those_of_the_parts() {
+        let parts = [vec![vec![3, 4], vec![]], vec![], vec![vec![5], vec![6, 7, 8]]];
+        let lists = |part: &Vec<Vec<u32>>| {
+            let mut lists = Lists4::with_capacity(0, 0);
+            for list in part {
+                list.iter().for_each(|&number| lists.extend([number]));
+                lists.end();
+            }
+            lists
+        };
+        let joined = Lists4::joined(parts.iter().map(lists));
+        let all: Vec<&[u32]> = (0..joined.len()).map(|list| joined.get(list)).collect();
+        assert_eq!(all, parts.concat());
+        assert!(Lists4::joined([]).is_empty());
     }
 }
