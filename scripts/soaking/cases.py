@@ -131,7 +131,8 @@ def configurations(trial):
 def diagram(trial):
     """Points of a small lattice in space and time: most are cospherical."""
     # Fewer could lie in a hyperplane.
-    n, side, points = max(40, trial.size(500)), 5 if trial.is_yardstick else trial.random.randrange(2, 40), trial.file("p.txt")
+    n, points = max(40, trial.size(500)), trial.file("p.txt")
+    side = 5 if trial.is_yardstick else trial.random.randrange(2, 40)
     with open(points, "w") as file:
         for _ in range(n):
             file.write(" ".join(str(trial.random.randrange(side)) for _ in range(4)) + "\n")
