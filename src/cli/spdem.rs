@@ -161,8 +161,8 @@ pub struct Flags {
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<FormatFlag>,
 
-    /// Memory for tiles, and for triangles that wait for the outline of --concave; others wait in temporary files
-    /// (see --temp-dir) [default: 32M]
+    /// Memory for tiles, and for triangles that wait for the outline of --concave; others wait in temporary
+    /// files (see --temp-dir) [default: 32M]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory: Option<u64>,
 

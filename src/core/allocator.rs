@@ -1,4 +1,5 @@
-//! The allocator of the programs: that of the system, but if there is no memory, the program ends with its message.
+//! The allocator of the programs: that of the system, but if there is no memory, the program ends with its
+//! message.
 //!
 //! Without it, Rust would print a message of its own before that, which speaks of backtraces.
 
@@ -11,7 +12,8 @@ thread_local! {
     static MAY_FAIL: Cell<bool> = const { Cell::new(false) };
 }
 
-/// For `#[global_allocator]` of a program, which must call [`system::exit_at_abort`] before it has any effect.
+/// For `#[global_allocator]` of a program, which must call [`system::exit_at_abort`] before it has any
+/// effect.
 #[derive(Debug)]
 pub struct Allocator;
 

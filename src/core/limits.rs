@@ -54,8 +54,8 @@ pub const ASSEMBLY_ATOMS_MAX: usize = 1 << 25;
 /// Atoms that a biological assembly may have in any case: 40 MB with their tetrahedra.
 pub const ASSEMBLY_ATOMS_SMALL: usize = 1 << 17;
 
-/// Most atoms of a biological assembly of a file with some atoms. A few atoms do not become millions; ten thousand
-/// atoms of a capsid may have 1,680 copies.
+/// Most atoms of a biological assembly of a file with some atoms. A few atoms do not become millions; ten
+/// thousand atoms of a capsid may have 1,680 copies.
 #[must_use]
 pub const fn assembly_atoms_max(atoms: usize) -> usize {
     let copied = atoms.saturating_mul(atoms / 4);
@@ -75,8 +75,8 @@ pub const OCTREE_DEPTH_MAX: u8 = 20;
 /// Most points of four dimensions in an input: 2.7 GB with values.
 pub const POINTS4_MAX: u64 = 1 << 26;
 
-/// Memory that a diagram in four dimensions needs at least, in bytes per distinct point. Grids take 1,100 bytes,
-/// random points more.
+/// Memory that a diagram in four dimensions needs at least, in bytes per distinct point. Grids take 1,100
+/// bytes, random points more.
 pub const DIAGRAM4_POINT_BYTES: u64 = 700;
 
 /// Most sites of a grid of four dimensions from which points are selected: a pass over them takes hours.

@@ -20,8 +20,8 @@ enum Place {
 }
 
 impl Place {
-    /// The place of `path`, or of `standard` for "-". `None` for devices and pipes, which may be given several
-    /// times, for folders, and for paths that cannot be created.
+    /// The place of `path`, or of `standard` for "-". `None` for devices and pipes, which may be given
+    /// several times, for folders, and for paths that cannot be created.
     fn of(path: &Path, standard: BorrowedFd<'_>) -> Option<Place> {
         let found = if is_standard(path) { metadata_of(standard) } else { fs::metadata(path) };
         match found {
@@ -57,8 +57,8 @@ impl Inputs {
     }
 }
 
-/// Checks that all outputs of a run are different from its inputs and from each other, and that no pipe is two
-/// inputs. An output comes with the flag that names it; "-" is stdin or stdout.
+/// Checks that all outputs of a run are different from its inputs and from each other, and that no pipe is
+/// two inputs. An output comes with the flag that names it; "-" is stdin or stdout.
 ///
 /// # Errors
 /// Usage, if two of them are one file, two outputs are stdout, or two inputs are one pipe.
@@ -84,8 +84,8 @@ pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&
     Ok(())
 }
 
-/// Refuses a pipe with a name that is two inputs: its data can be read once, and the second time the program would
-/// wait for a writer that never comes. Programs say themselves what "-" may stand for.
+/// Refuses a pipe with a name that is two inputs: its data can be read once, and the second time the program
+/// would wait for a writer that never comes. Programs say themselves what "-" may stand for.
 fn check_pipes(inputs: &[&Path]) -> Result<()> {
     let mut pipes = HashSet::new();
     for &path in inputs {
@@ -112,11 +112,16 @@ fn is_standard(path: &Path) -> bool {
 }
 
 fn name_of_input(path: &Path) -> String {
-    if is_standard(path) { "stdin".to_string() } else { path.display().to_string() }
+    name_of(path, "stdin")
 }
 
 fn name_of_output(path: &Path) -> String {
-    if is_standard(path) { "stdout".to_string() } else { path.display().to_string() }
+    name_of(path, "stdout")
+}
+
+/// The path, or the name of the standard stream that "-" stands for.
+fn name_of(path: &Path, standard: &str) -> String {
+    if is_standard(path) { standard.to_string() } else { path.display().to_string() }
 }
 
 fn metadata_of(descriptor: BorrowedFd<'_>) -> io::Result<Metadata> {

@@ -87,7 +87,8 @@ pub fn meshes() -> Vec<Case> {
     let list = format!("{head}{vertex}element face 1\nproperty list uint int vertex_indices\nend_header\n");
     let list = [list.as_bytes(), &[0; 12], &[0xff, 0xff, 0xff, 0x7f]].concat();
     let gpkg = sample("water.gpkg", &[]);
-    // Behind the mark of a geometry come a version, flags, a system and, by the flags, a box; then a byte and a type.
+    // Behind the mark of a geometry come a version, flags, a system and, by the flags, a box; then a byte and
+    // a type.
     let blob = place(&gpkg, b"GP\0\x01");
     let envelope = [0, 32, 48, 48, 64][usize::from(gpkg[blob + 3] >> 1 & 7)];
     vec![

@@ -1,5 +1,5 @@
-//! Hostile inputs of at most 16 kB: no program takes more than 64 MB beyond its start, or longer than a second,
-//! whatever sizes they state, however deep they are, and however much they expand.
+//! Hostile inputs of at most 16 kB: no program takes more than 64 MB beyond its start, or longer than a
+//! second, whatever sizes they state, however deep they are, and however much they expand.
 //!
 //! This is a program of its own, because the peak of a child process is never less than what its parent had.
 
@@ -21,7 +21,8 @@ const MEMORY_MAX: f64 = 64.0;
 /// What programs take at their start, at most. The measurement counts what this process has, too. Units: MB.
 const START_MAX: f64 = 12.0;
 
-/// Most processor time. Units: seconds. In a release, a case takes a second at most; programs of tests are slower.
+/// Most processor time. Units: seconds. In a release, a case takes a second at most; programs of tests are
+/// slower.
 const SECONDS_MAX: f64 = 5.0;
 
 /// Runs the cases, and says what is wrong with all of them.

@@ -10,8 +10,8 @@ use spmesh_io::source::{read_mask, read_polylines};
 
 use crate::programs::{Folder, outcome, run};
 
-/// Runs a tool with an input of the size of a limit, and of one more. The second must be refused with `part`, the
-/// first not: it is taken, or another message says what is wrong with it.
+/// Runs a tool with an input of the size of a limit, and of one more. The second must be refused with `part`,
+/// the first not: it is taken, or another message says what is wrong with it.
 fn assert_sides(arguments: &[&str], most: usize, part: &str, input: impl Fn(usize) -> Vec<u8>) {
     for (size, is_refused) in [(most, false), (most + 1, true)] {
         let (code, message) = outcome(&run(arguments[0], &arguments[1..], &input(size)));

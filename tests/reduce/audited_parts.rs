@@ -94,7 +94,8 @@ fn what_does_not_fit_is_named_by_input_and_block() {
     assert!(message.starts_with(&format!("west.spm: block {} at byte ", number + 1)), "{message}");
 }
 
-/// Adds residual points in and around what is final: some lie in final simplices, some in balls, some nowhere.
+/// Adds residual points in and around what is final: some lie in final simplices, some in balls, some
+/// nowhere.
 #[test]
 fn what_the_audit_proves_can_be_merged() {
     for dims in [2, 3] {

@@ -1,5 +1,5 @@
-//! A mesh in parts: leaves and inner nodes, whose residuals are streams of their own, together have the simplices of
-//! one run, each of them once.
+//! A mesh in parts: leaves and inner nodes, whose residuals are streams of their own, together have the
+//! simplices of one run, each of them once.
 
 use std::io::{Cursor, Read};
 use std::sync::Arc;
@@ -77,8 +77,8 @@ fn join<const D: usize>(inputs: &[&[u8]], outputs: Outputs<Vec<u8>>, options: &O
 }
 
 impl<const D: usize> Tree<'_, D> {
-    /// Makes the nodes of a region that is cut `depth` times at random, and returns the number of the highest; `None`
-    /// if no points are there.
+    /// Makes the nodes of a region that is cut `depth` times at random, and returns the number of the
+    /// highest; `None` if no points are there.
     fn node(&mut self, region: Region<D>, depth: usize) -> Option<u32> {
         let inside = self.points.iter().filter(|&&point| region.contains(point)).count();
         let is_root = region == Region::EVERYTHING;

@@ -118,8 +118,8 @@ impl Cavity {
         self.make_room(2 * self.room);
     }
 
-    /// Forgets facets of an earlier complex. In their place is a tetrahedron of this one, and of this part: the
-    /// search reads its words, which others must not write.
+    /// Forgets facets of an earlier complex. In their place is a tetrahedron of this one, and of this part:
+    /// the search reads its words, which others must not write.
     pub(super) fn clear(&mut self, t: u32) {
         self.entered.fill(Face::new([0; 3], t));
         self.border.fill(Face::default());

@@ -75,7 +75,8 @@ fn lanes_agree(count: usize) {
     }
 }
 
-/// Uniform points, and a lattice full of ties: few in Miri (scripts/check-unsafe), which takes seconds for each.
+/// Uniform points, and a lattice full of ties: few in Miri (scripts/check-unsafe), which takes seconds for
+/// each.
 fn small_sets() -> [Vec<Point3>; 2] {
     let (count, side) = if cfg!(miri) { (28, 3) } else { (800, 9) };
     let lattice = (0..side * side * side).map(|i| [i % side, i / side % side, i / (side * side)]);

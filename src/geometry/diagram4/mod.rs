@@ -76,8 +76,8 @@ pub fn diagram(points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram
     diagram_by(Route::default(), NonZeroUsize::MIN, points, values)
 }
 
-/// As [`diagram`], by a given route. The result does not depend on the number of threads, which join simplices
-/// to cells.
+/// As [`diagram`], by a given route. The result does not depend on the number of threads, which join
+/// simplices to cells.
 ///
 /// # Errors
 /// As [`diagram`].

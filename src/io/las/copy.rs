@@ -38,8 +38,8 @@ pub struct Changes {
     pub is_compressed: bool,
 }
 
-/// A LAS or LAZ file that is written again. The header, all other records and their order stay as they are, except
-/// that a COPC file becomes a LAZ file: its index would be that of another file.
+/// A LAS or LAZ file that is written again. The header, all other records and their order stay as they are,
+/// except that a COPC file becomes a LAZ file: its index would be that of another file.
 ///
 /// Memory: 64 KiB, and the chunks that are being compressed.
 pub struct LasCopy<W: Write + Seek> {
@@ -261,8 +261,8 @@ fn read_header(file: &FileView) -> Result<Vec<u8>> {
     Ok(header)
 }
 
-/// The extended records that the header counts; `None` if not all of them are in the file, or the header is older
-/// than they are.
+/// The extended records that the header counts; `None` if not all of them are in the file, or the header is
+/// older than they are.
 fn extended_records(file: &FileView, header: &[u8]) -> Result<Option<RecordList>> {
     if header.len() < EVLR_COUNT + 4 {
         return Ok(None);

@@ -35,7 +35,8 @@ impl Mask {
     }
 }
 
-/// Reads polygons from GeoJSON (polygons, multipolygons, collections and features of them) or WKT (any number of
+/// Reads polygons from GeoJSON (polygons, multipolygons, collections and features of them) or WKT (any number
+/// of
 /// `POLYGON` and `MULTIPOLYGON`). Third coordinates are ignored.
 ///
 /// # Errors

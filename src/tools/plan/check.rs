@@ -4,6 +4,8 @@ use super::node::NodeBox;
 use super::plan::Plan;
 use spmesh_core::error::{Error, Result};
 
+const DISAGREEMENT: &str = "parent and children disagree";
+
 /// Checks that the nodes form a tree of boxes, and that they name files that are there.
 ///
 /// # Errors
@@ -17,34 +19,30 @@ pub(super) fn check(plan: &Plan) -> Result<()> {
     if root.parent.is_some() {
         return fault("the last node is not the root");
     }
+    let of_node = |number: u32, what: &str| Err(Error::malformed(what).at(format!("node {number}")));
     let mut is_listed = vec![false; plan.nodes.len()];
     for (number, node) in (0..).zip(&plan.nodes) {
-        let faults = |what: &str| Error::malformed(what).at(format!("node {number}"));
         let mut is_child = |&child: &u32| {
             child < number
                 && plan.nodes[child as usize].parent == Some(number)
                 && !std::mem::replace(&mut is_listed[child as usize], true)
         };
         if node.number != number || (node.parent.is_none() && number != root.number) {
-            return Err(faults("it is not where the tree has it"));
+            return of_node(number, "it is not where the tree has it");
         }
         if !node.children.iter().all(&mut is_child) {
-            return Err(faults("parent and children disagree"));
+            return of_node(number, DISAGREEMENT);
         }
         if !is_whole(&node.region, usize::from(plan.dims())) {
-            return Err(faults("its box has other axes than the plan, or is empty"));
+            return of_node(number, "its box has other axes than the plan, or is empty");
         }
         if node.files.iter().any(|&file| file as usize >= plan.files.len()) {
-            return Err(faults("it names a file that is not in the plan"));
+            return of_node(number, "it names a file that is not in the plan");
         }
     }
     // Each node but the root is among the children of its parent once, so that every walk meets it once.
-    match is_listed[..root.number as usize].iter().position(|&is_listed| !is_listed) {
-        Some(number) => {
-            fault("parent and children disagree").map_err(|error| error.at(format!("node {number}")))
-        }
-        None => Ok(()),
-    }
+    let missing = (0..root.number).find(|&number| !is_listed[number as usize]);
+    missing.map_or(Ok(()), |number| of_node(number, DISAGREEMENT))
 }
 
 fn is_whole(region: &NodeBox, dims: usize) -> bool {

@@ -2,8 +2,8 @@
 //!
 //! A [`Plan`] divides the box of all points into the boxes of leaves, and says which files reach into each of
 //! them; the nodes above join what their children left. It is made from the headers of files alone
-//! ([`plan_of`]). A node writes its part of the mesh, its residual, and a [`NodeReport`], which says that it is
-//! complete. [`check_sums`] compares the reports of all nodes with what the files state.
+//! ([`plan_of`]). A node writes its part of the mesh, its residual, and a [`NodeReport`], which says that it
+//! is complete. [`check_sums`] compares the reports of all nodes with what the files state.
 
 mod align;
 mod check;

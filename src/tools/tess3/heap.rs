@@ -13,8 +13,8 @@ thread_local! {
     static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
-/// The allocator of all programs, with counts per thread. A program that reports these counts installs it as its
-/// global allocator.
+/// The allocator of all programs, with counts per thread. A program that reports these counts installs it as
+/// its global allocator.
 ///
 /// A sweep works on several files at a time. The system reports the memory of the whole process only; the
 /// heap of each thread is the memory that each file took.

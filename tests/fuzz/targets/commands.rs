@@ -1,8 +1,8 @@
 //! Programs as users call them, in this process, with the bytes of an input as one of their files.
 //!
-//! A target has several lines. `put FILE` writes the bytes to a file; `seal FILE` does so with corrected checksums.
-//! Every other line is a command. A file name begins with `HERE/`, the folder of the thread, or `DATA/`, the samples
-//! of the tests.
+//! A target has several lines. `put FILE` writes the bytes to a file; `seal FILE` does so with corrected
+//! checksums. Every other line is a command. A file name begins with `HERE/`, the folder of the thread, or
+//! `DATA/`, the samples of the tests.
 
 use std::fs;
 use std::path::Path;

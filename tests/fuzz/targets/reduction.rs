@@ -77,6 +77,23 @@ impl Cuts {
         })
     }
 
+    /// The proved results of all slabs that are not empty.
+    fn parts<const D: usize>(
+        &self,
+        points: &[Point],
+        code: impl Fn() -> String,
+        triangulate: impl Fn(&Options<D>) -> Vec<u8>,
+    ) -> Vec<Vec<u8>> {
+        let slabs = self.regions(points).into_iter();
+        let slabs = slabs.filter(|region| region.min[self.axis] < region.max[self.axis]);
+        let of_slab = |region| {
+            let part = triangulate(&Options { part: Some(Part::Region(region)), ..self.options() });
+            prove(&part, &code);
+            part
+        };
+        slabs.map(of_slab).collect()
+    }
+
     fn options<const D: usize>(&self) -> Options<D> {
         Options { threads: self.threads, every_node: self.every_node, ..Options::default() }
     }
@@ -100,12 +117,7 @@ pub fn plane(bytes: &[u8]) {
     let (whole, _) = streams::triangulate(&input, &cuts.options()).expect("a stream of points");
     assert_eq!(streams::read_mesh(&whole).triangles, expected, "{}", code());
     prove(&whole, code);
-    let part = |region| Options { part: Some(Part::Region(region)), ..cuts.options() };
-    let parts =
-        cuts.regions(&points).into_iter().filter(|region| region.min[cuts.axis] < region.max[cuts.axis]);
-    let parts: Vec<Vec<u8>> =
-        parts.map(|region| streams::triangulate(&input, &part(region)).expect("a part").0).collect();
-    parts.iter().for_each(|part| prove(part, code));
+    let parts = cuts.parts(&points, code, |options| streams::triangulate(&input, options).expect("a part").0);
     let readers = parts.iter().map(|part| StreamReader::new(&part[..], "part").expect("a part")).collect();
     let (merged, _) = merge_triangles(readers, Vec::new(), &cuts.options(), |_| ()).expect("parts that fit");
     assert_eq!(streams::read_mesh(&merged).triangles, expected, "merged: {}", code());
@@ -129,12 +141,8 @@ pub fn space(bytes: &[u8]) {
     let (whole, _) = solids::tetrahedralize(&input, &cuts.options()).expect("a stream of points");
     assert_eq!(solids::read_mesh(&whole).0, expected, "{}", code());
     prove(&whole, code);
-    let part = |region| Options { part: Some(Part::Region(region)), ..cuts.options() };
     let parts =
-        cuts.regions(&points).into_iter().filter(|region| region.min[cuts.axis] < region.max[cuts.axis]);
-    let parts: Vec<Vec<u8>> =
-        parts.map(|region| solids::tetrahedralize(&input, &part(region)).expect("a part").0).collect();
-    parts.iter().for_each(|part| prove(part, code));
+        cuts.parts(&points, code, |options| solids::tetrahedralize(&input, options).expect("a part").0);
     let readers = parts.iter().map(|part| StreamReader::new(&part[..], "part").expect("a part")).collect();
     let (merged, _) = merge_tetrahedra(readers, Vec::new(), &cuts.options(), |_| ()).expect("parts that fit");
     assert_eq!(solids::read_mesh(&merged).0, expected, "merged: {}", code());

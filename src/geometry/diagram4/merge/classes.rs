@@ -3,7 +3,7 @@
 use super::AHEAD;
 use super::borders::Borders;
 use super::marks::Marks;
-use super::numbers::{Joined, Numbers};
+use super::numbers::{Joined, Numbers, Section};
 use super::search::{BLOCK, Search};
 use crate::diagram4::simplices::{FACETS, Facet, Simplex, simplex_of};
 use spmesh_core::parallel::{for_each, map};
@@ -69,12 +69,12 @@ impl<'a> Classes<'a> {
     /// The parts of the joined lists.
     pub(super) fn joined(&self) -> Joined {
         let mut end = 0;
-        let start = |part: &Part| {
-            end += part.len();
-            (end - part.len(), part.finite, part.numbers)
+        let section = |part: &Part| {
+            let (start, count) = (end, part.len());
+            end += count;
+            Section { start, count, finite: part.finite, numbers: part.numbers }
         };
-        let parts = self.parts.iter().map(start).collect();
-        Joined { parts, end }
+        Joined(self.parts.iter().map(section).collect())
     }
 
     /// The vertices of each class, and for each part the numbers of the classes around each, in any order.

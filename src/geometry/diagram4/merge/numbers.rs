@@ -17,37 +17,38 @@ impl Numbers {
     }
 }
 
-/// The classes of all parts, one part after the other.
-pub(super) struct Joined {
-    /// Start, count of finite classes, which come first, and numbers of each part.
-    pub(super) parts: Vec<(usize, usize, Numbers)>,
-    /// Number of all classes.
-    pub(super) end: usize,
+/// The classes of one part among those of all parts, one part after the other.
+pub(super) struct Section {
+    pub(super) start: usize,
+    /// Number of classes, and of the finite ones, which come first.
+    pub(super) count: usize,
+    pub(super) finite: usize,
+    pub(super) numbers: Numbers,
 }
+
+/// The classes of all parts.
+pub(super) struct Joined(pub(super) Vec<Section>);
 
 impl Joined {
     /// The places of the finite classes of each part.
     pub(super) fn finite(&self) -> Vec<Range<usize>> {
-        self.parts.iter().map(|&(start, finite, _)| start..start + finite).collect()
+        self.0.iter().map(|part| part.start..part.start + part.finite).collect()
     }
 
     /// The places of the infinite classes of each part.
     pub(super) fn infinite(&self) -> Vec<Range<usize>> {
-        let ends = self.parts.iter().skip(1).map(|part| part.0).chain([self.end]);
-        self.parts.iter().zip(ends).map(|(&(start, finite, _), end)| start + finite..end).collect()
+        self.0.iter().map(|part| part.start + part.finite..part.start + part.count).collect()
     }
 
     /// The number of the class at a place.
     #[inline(always)]
     pub(super) fn number(&self, place: usize) -> u32 {
-        let mut parts = self.parts.iter().rev();
-        parts.find(|part| part.0 <= place).map_or(0, |&(start, _, numbers)| numbers.of(place - start))
+        let mut parts = self.0.iter().rev();
+        parts.find(|part| part.start <= place).map_or(0, |part| part.numbers.of(place - part.start))
     }
 
     /// A number above those of all classes.
     pub(super) fn numbers_end(&self) -> usize {
-        let parts = self.parts.len();
-        self.finite().into_iter().zip(self.infinite()).map(|(a, b)| b.end - a.start).max().unwrap_or(0)
-            * parts
+        self.0.iter().map(|part| part.numbers.of(part.count) as usize).max().unwrap_or(0)
     }
 }

@@ -11,8 +11,8 @@ const PIECES: usize = 4;
 
 /// Classes of one kind, finite or infinite, in canonical order of their cells.
 ///
-/// Cells are put into groups by their first vertex. Within a group, keys of the next three vertices decide all
-/// but few comparisons; every cell has at least four vertices.
+/// Cells are put into groups by their first vertex. Within a group, keys of the next three vertices decide
+/// all but few comparisons; every cell has at least four vertices.
 pub(super) fn canonical(vertices: &Lists4, classes: &[Range<usize>], threads: NonZeroUsize) -> Vec<u32> {
     let (ends, mut keys) = grouped(vertices, classes);
     sort(&mut keys, &ends, vertices, threads);

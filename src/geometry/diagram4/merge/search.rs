@@ -15,8 +15,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// simplices of all ages.
 pub(super) const BLOCK: usize = 1 << 10;
 
-/// One part of the search for classes. It begins at the simplices of its blocks, and makes those classes whose
-/// first simplex is one of these.
+/// One part of the search for classes. It begins at the simplices of its blocks, and makes those classes
+/// whose first simplex is one of these.
 pub(super) struct Search<'a> {
     simplices: &'a [Simplex],
     sites: &'a [u32],
@@ -108,7 +108,8 @@ impl<'a> Search<'a> {
             let simplex = &search.simplices[simplex];
             search.of[simplex_of(simplex.neighbours[simplex.faraway_side()])].load(Ordering::Relaxed)
         };
-        // Earlier simplices of this part were all visited: one that joins makes the class one of another part.
+        // Earlier simplices of this part were all visited: one that joins makes the class one of another
+        // part.
         let mut is_of_another = false;
         let mut next = start;
         while next < self.end {

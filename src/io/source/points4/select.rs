@@ -8,6 +8,7 @@ use super::{Selected4, Selection, Share};
 use spmesh_core::allocator::may_fail;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_model::cells4::Point4;
+use std::collections::TryReserveError;
 
 /// The selected points, in the order of the input; `orientation` is that of an oblique grid.
 ///
@@ -162,14 +163,19 @@ struct Intake {
     warning: Option<String>,
 }
 
+/// Makes room for one more item. Few calls have to ask for memory.
+fn make_room<T>(items: &mut Vec<T>) -> std::result::Result<(), TryReserveError> {
+    if items.len() < items.capacity() { Ok(()) } else { may_fail(|| items.try_reserve(1)) }
+}
+
 impl Intake {
     fn push(&mut self, point: Point4, value: Option<f64>) -> Result<()> {
         let count = self.points.len();
         let no_memory = |_| Error::new(ErrorKind::Memory, format!("not enough memory for {count} points"));
-        may_fail(|| self.points.try_reserve(1)).map_err(no_memory)?;
+        make_room(&mut self.points).map_err(no_memory)?;
         self.points.push(point);
         if let (Some(values), Some(value)) = (&mut self.values, value) {
-            may_fail(|| values.try_reserve(1)).map_err(no_memory)?;
+            make_room(values).map_err(no_memory)?;
             values.push(value);
         }
         Ok(())
