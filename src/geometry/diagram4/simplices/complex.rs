@@ -5,6 +5,7 @@ use super::lanes::{LANES, Lanes};
 use crate::diagram4::determinant::{difference, dot, lift, lifted_sphere};
 use crate::diagram4::exact::{in_sphere, orientation};
 use crate::diagram4::sites::Sites;
+use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::prefetch::prefetch;
 use spmesh_model::cells4::Point4;
 use std::cmp::Ordering;
@@ -38,7 +39,7 @@ pub(in crate::diagram4) fn facet(simplex: usize, side: usize) -> Facet {
 pub(super) const NO_NEIGHBOUR: Facet = 0;
 
 /// Maximum number of simplices: facets are numbered in 31 bits.
-pub(super) const SIMPLICES_MAX: usize = 1 << 28;
+const SIMPLICES_MAX: usize = 1 << 28;
 
 /// A positively oriented simplex: det(b - a, c - a, d - a, e - a) > 0. The faraway point stands for any point
 /// beyond the facet of the hull.
@@ -73,8 +74,8 @@ pub(in crate::diagram4) struct Complex<'a, C> {
     /// The first is a dummy: see [`NO_NEIGHBOUR`].
     pub(in crate::diagram4) simplices: Vec<Simplex>,
     pub(in crate::diagram4) spheres: Vec<Sphere<C>>,
-    /// Numbers of dead simplices.
-    pub(super) free: Vec<u32>,
+    /// Number of places that were taken, at least that of simplices.
+    pub(super) end: usize,
     /// Values of greater magnitude have the correct sign.
     rounding: f64,
 }
@@ -86,7 +87,48 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         order.insert(INFINITE as usize, u32::MAX);
         let rounding = if sites.exactness.is_double() { 0.0 } else { ROUNDING };
         let (simplices, spheres) = (vec![Simplex::default()], vec![[C::DEAD; 6]]);
-        Complex { sites, order, near, simplices, spheres, free: Vec::new(), rounding }
+        Complex { sites, order, near, simplices, spheres, end: 1, rounding }
+    }
+
+    /// Takes places for new simplices: free ones first, then those behind all others, which are reserved but
+    /// not part of the arrays until [`Complex::extend`].
+    ///
+    /// # Errors
+    /// I/O, if there are too many simplices.
+    #[inline(always)]
+    pub(super) fn allocate(
+        &mut self,
+        wanted: usize,
+        free: &mut Vec<u32>,
+        places: &mut Vec<u32>,
+    ) -> Result<()> {
+        let reused = free.len().min(wanted);
+        let end = self.end + wanted - reused;
+        if end > SIMPLICES_MAX {
+            let message =
+                format!("more than {SIMPLICES_MAX} simplices, the most that a diagram can be made of");
+            return Err(Error::new(ErrorKind::Io, message));
+        }
+        self.simplices.reserve(end - self.simplices.len());
+        self.spheres.reserve(end - self.spheres.len());
+        places.clear();
+        places.extend(free.drain(free.len() - reused..).rev());
+        places.extend(self.end as u32..end as u32);
+        self.end = end;
+        Ok(())
+    }
+
+    /// Makes all reserved places part of the arrays.
+    ///
+    /// # Safety
+    /// The simplices and spheres in these places have been written.
+    #[inline(always)]
+    pub(super) unsafe fn extend(&mut self) {
+        // SAFETY: they were reserved, and the promise of this function.
+        unsafe {
+            self.simplices.set_len(self.end);
+            self.spheres.set_len(self.end);
+        }
     }
 
     /// The point of a vertex, as given.
@@ -214,53 +256,53 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         let sign = orientation(exactness, facet, point);
         if side == 0 { sign.reverse() } else { sign }
     }
+}
 
-    /// The spheres of simplices of four vertices each and, as the last, the one at `o`; hyperplanes of
-    /// infinite ones.
-    ///
-    /// The row of a vertex is (x, |x|^2), seen from `o`. That of the faraway point, which is the first or the
-    /// second, is (0, 1), the limit of rows of points far away, divided by their lift.
-    #[inline(always)]
-    pub(super) fn spheres_of<L: Lanes>(
-        &self,
-        token: L::Token,
-        o: &Point4,
-        facets: &[[u32; 4]; LANES],
-    ) -> [Sphere<C>; LANES] {
-        let splat = |x: f64| L::new(token, [x; LANES]);
-        let origin = [splat(o[0]), splat(o[1]), splat(o[2]), splat(o[3])];
-        let vectors = |i: usize| self.vectors(token, facets, i, &origin);
-        let (a, b, c, d) = (vectors(0), vectors(1), vectors(2), vectors(3));
-        let (a_lift, b_lift) = (lift(&a).or(1.0), lift(&b).or(1.0));
-        let finite = |[x, y, z, t]: [L; 4]| [x.or(0.0), y.or(0.0), z.or(0.0), t.or(0.0)];
-        let (a, b) = (finite(a), finite(b));
-        let (n, m) = lifted_sphere([(&a, a_lift), (&b, b_lift), (&c, lift(&c)), (&d, lift(&d))]);
-        let s = (m * lift(&origin) - dot(&n, &origin)).array();
-        let twice = m + m;
-        let shifted = |axis: usize| n[axis] - twice * origin[axis];
-        let n = L::columns([shifted(0), shifted(1), shifted(2), shifted(3)]);
-        let m = m.array();
-        let sphere = |lane: usize| -> Sphere<C> {
-            let [x, y, z, t] = n[lane].array();
-            let is_infinite = facets[lane][0].min(facets[lane][1]) == INFINITE;
-            let m = C::determinant(m[lane], is_infinite);
-            [C::of(x), C::of(y), C::of(z), C::of(t), m, C::of(s[lane])]
-        };
-        [sphere(0), sphere(1), sphere(2), sphere(3)]
-    }
+/// The spheres of simplices of four vertices each and, as the last, the one at `o`; hyperplanes of infinite
+/// ones.
+///
+/// The row of a vertex is (x, |x|^2), seen from `o`. That of the faraway point, which is the first or the
+/// second, is (0, 1), the limit of rows of points far away, divided by their lift.
+#[inline(always)]
+pub(super) fn spheres_of<C: Coefficient, L: Lanes>(
+    token: L::Token,
+    points: &[Point4],
+    o: &Point4,
+    facets: &[[u32; 4]; LANES],
+) -> [Sphere<C>; LANES] {
+    let splat = |x: f64| L::new(token, [x; LANES]);
+    let origin = [splat(o[0]), splat(o[1]), splat(o[2]), splat(o[3])];
+    let vectors = |i: usize| vectors(token, points, facets, i, &origin);
+    let (a, b, c, d) = (vectors(0), vectors(1), vectors(2), vectors(3));
+    let (a_lift, b_lift) = (lift(&a).or(1.0), lift(&b).or(1.0));
+    let finite = |[x, y, z, t]: [L; 4]| [x.or(0.0), y.or(0.0), z.or(0.0), t.or(0.0)];
+    let (a, b) = (finite(a), finite(b));
+    let (n, m) = lifted_sphere([(&a, a_lift), (&b, b_lift), (&c, lift(&c)), (&d, lift(&d))]);
+    let s = (m * lift(&origin) - dot(&n, &origin)).array();
+    let twice = m + m;
+    let shifted = |axis: usize| n[axis] - twice * origin[axis];
+    let n = L::columns([shifted(0), shifted(1), shifted(2), shifted(3)]);
+    let m = m.array();
+    let sphere = |lane: usize| -> Sphere<C> {
+        let [x, y, z, t] = n[lane].array();
+        let is_infinite = facets[lane][0].min(facets[lane][1]) == INFINITE;
+        let m = C::determinant(m[lane], is_infinite);
+        [C::of(x), C::of(y), C::of(z), C::of(t), m, C::of(s[lane])]
+    };
+    [sphere(0), sphere(1), sphere(2), sphere(3)]
+}
 
-    /// The vectors from an origin to a vertex of each facet, axis by axis.
-    #[inline(always)]
-    fn vectors<L: Lanes>(
-        &self,
-        token: L::Token,
-        facets: &[[u32; 4]; LANES],
-        i: usize,
-        origin: &[L; 4],
-    ) -> [L; 4] {
-        let near = |lane: usize| L::new(token, self.near[facets[lane][i] as usize]);
-        difference(L::columns([near(0), near(1), near(2), near(3)]), origin)
-    }
+/// The vectors from an origin to a vertex of each facet, axis by axis.
+#[inline(always)]
+fn vectors<L: Lanes>(
+    token: L::Token,
+    points: &[Point4],
+    facets: &[[u32; 4]; LANES],
+    i: usize,
+    origin: &[L; 4],
+) -> [L; 4] {
+    let near = |lane: usize| L::new(token, points[facets[lane][i] as usize]);
+    difference(L::columns([near(0), near(1), near(2), near(3)]), origin)
 }
 
 /// The product of a sphere and a point.

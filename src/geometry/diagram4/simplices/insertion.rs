@@ -1,25 +1,29 @@
 //! Inserts points: a star around the new point replaces the simplices in conflict.
 
+use super::arrays::Arrays;
 use super::cavity::Cavity;
 use super::coefficient::Coefficient;
-use super::complex::{
-    Complex, FACETS, Facet, INFINITE, SIMPLICES_MAX, Simplex, facet, facet_of, simplex_of, without,
-};
+use super::complex::{Complex, FACETS, Facet, INFINITE, Simplex, facet, simplex_of, spheres_of};
 #[cfg(target_arch = "x86_64")]
 use super::lanes::Avx2;
 use super::lanes::{LANES, Lanes, Portable};
 use super::links::Links;
+use super::star;
 use crate::diagram4::exact::orientation;
 #[cfg(target_arch = "x86_64")]
 use crate::processor::Avx2Fma;
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::error::Result;
 use std::cmp::Ordering;
 
 pub(super) struct Insertion<'a, C> {
     pub(super) complex: Complex<'a, C>,
+    /// Where the next walk starts: near the last point.
+    start: usize,
     cavity: Cavity,
     /// The simplices around the new point, one for each facet of the border.
     star: Vec<u32>,
+    /// Places of dead simplices.
+    free: Vec<u32>,
     links: Links,
     pub(super) created: u64,
     pub(super) tests: u64,
@@ -28,8 +32,8 @@ pub(super) struct Insertion<'a, C> {
 impl<'a, C: Coefficient> Insertion<'a, C> {
     /// A triangulation of the first five points, which span space.
     pub(super) fn new(complex: Complex<'a, C>) -> Insertion<'a, C> {
-        let (cavity, links) = (Cavity::default(), Links::default());
-        let mut insertion = Insertion { complex, cavity, star: Vec::new(), links, created: 6, tests: 0 };
+        let (cavity, star, free, links) = (Cavity::default(), Vec::new(), Vec::new(), Links::default());
+        let mut insertion = Insertion { complex, start: 1, cavity, star, free, links, created: 6, tests: 0 };
         insertion.insert_first();
         insertion
     }
@@ -62,11 +66,16 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         }
         for number in 1..complex.simplices.len() {
             let [a, b, c, d, last] = complex.simplices[number].vertices;
-            let [sphere, ..] =
-                complex.spheres_of::<Portable>((), &complex.near[last as usize], &[[a, b, c, d]; LANES]);
+            let [sphere, ..] = spheres_of::<C, Portable>(
+                (),
+                &complex.near,
+                &complex.near[last as usize],
+                &[[a, b, c, d]; LANES],
+            );
             complex.spheres.push(sphere);
         }
         fix_sides(&mut complex.simplices);
+        complex.end = complex.simplices.len();
     }
 
     /// Inserts all other points, with AVX2 where the processor has it.
@@ -90,86 +99,34 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
 
     #[inline(always)]
     fn run_with<L: Lanes>(&mut self, token: L::Token) -> Result<()> {
-        let mut start = 1;
+        // In a closure it would not be compiled for the processor.
         for q in 6..self.complex.order.len() as u32 {
-            start = self.insert::<L>(token, q, start)?;
+            self.insert::<L>(token, q)?;
         }
         Ok(())
     }
 
-    /// Inserts vertex `q`; returns a simplex to start from for a point nearby.
+    /// Inserts vertex `q`.
     #[inline(always)]
-    fn insert<L: Lanes>(&mut self, token: L::Token, q: u32, start: usize) -> Result<usize> {
-        let p = self.complex.lifted(q);
-        let found = self.complex.locate(q, &p, start);
-        self.cavity.find::<C, L>(token, &mut self.complex, q, found);
-        self.allocate()?;
-        self.make_star::<L>(token, q);
-        self.tests += (self.cavity.dead().len() + self.cavity.border().len()) as u64;
-        self.created += self.star.len() as u64;
-        self.complex.free.extend(self.cavity.dead().iter().map(|&dead| simplex_of(dead) as u32));
-        Ok(self.star[0] as usize)
-    }
-
-    /// Allocates the new simplices: dead ones are reused first.
-    #[inline(always)]
-    fn allocate(&mut self) -> Result<()> {
-        let Complex { simplices, spheres, free, .. } = &mut self.complex;
-        let wanted = self.cavity.border().len();
-        if simplices.len() + wanted > SIMPLICES_MAX {
-            let message =
-                format!("more than {SIMPLICES_MAX} simplices, the most that a diagram can be made of");
-            return Err(Error::new(ErrorKind::Io, message));
-        }
-        let (reused, before) = (free.len().min(wanted), simplices.len());
-        self.star.clear();
-        self.star.extend(free.drain(free.len() - reused..).rev());
-        simplices.resize(before + wanted - reused, simplices[0]);
-        spheres.resize(simplices.len(), spheres[0]);
-        self.star.extend(before as u32..simplices.len() as u32);
+    fn insert<L: Lanes>(&mut self, token: L::Token, q: u32) -> Result<()> {
+        let Insertion { complex, start, cavity, star, free, links, .. } = self;
+        let p = complex.lifted(q);
+        let found = complex.locate(q, &p, *start);
+        cavity.find::<C, L>(token, complex, q, found);
+        complex.allocate(cavity.border().len(), free, star)?;
+        // SAFETY: the cavity and what is beyond its border are in the arrays, and the star is in reserved
+        // places, which are read when they have been written.
+        let mut arrays = unsafe { Arrays::of(&mut complex.simplices, &mut complex.spheres) };
+        star::make::<C, L>(token, &mut arrays, &complex.near, q, cavity, star, links);
+        // SAFETY: the star has all places that were taken.
+        unsafe { complex.extend() };
+        free.extend(cavity.dead().iter().map(|&dead| simplex_of(dead) as u32));
+        *start = star[0] as usize;
+        self.created += star.len() as u64;
+        self.tests += (cavity.dead().len() + cavity.border().len()) as u64;
         Ok(())
-    }
-
-    /// Makes a simplex of each facet of the border and the new point, in the allocated places, and links
-    /// them.
-    #[inline(always)]
-    fn make_star<L: Lanes>(&mut self, token: L::Token, q: u32) {
-        let o = self.complex.near[q as usize];
-        self.links.clear(self.star.len());
-        for (facets, star) in self.cavity.border().chunks(LANES).zip(self.star.chunks(LANES)) {
-            let last = facets.len() - 1;
-            let vertices = |lane: usize| self.facet_vertices(facets[lane.min(last)]);
-            let vertices = [vertices(0), vertices(1), vertices(2), vertices(3)];
-            let spheres = self.complex.spheres_of::<L>(token, &o, &vertices);
-            for (lane, &new) in star.iter().enumerate() {
-                let (new, simplices) = (new as usize, &mut self.complex.simplices);
-                let outer = simplices[simplex_of(facets[lane])].neighbours[facet_of(facets[lane])];
-                simplices[simplex_of(outer)].neighbours[facet_of(outer)] = facet(new, LAST);
-                self.complex.spheres[new] = spheres[lane];
-                let [a, b, c, d] = vertices[lane];
-                let simplex = &mut simplices[new];
-                simplex.vertices = [a, b, c, d, q];
-                simplex.neighbours[LAST] = outer;
-                self.links.link(simplices, new, &vertices[lane]);
-            }
-        }
-    }
-
-    /// The vertices of a facet of the border, in the order that makes a positive simplex with the new point
-    /// as the last.
-    ///
-    /// The new point, greater than all others, replaces the vertex opposite to the facet, and goes to the
-    /// end, past all vertices after it. The first two vertices are swapped if that turns the simplex.
-    #[inline(always)]
-    fn facet_vertices(&self, facet: Facet) -> [u32; 4] {
-        let side = facet_of(facet);
-        let [a, b, c, d] = without(self.complex.simplices[simplex_of(facet)].vertices, side);
-        if side.is_multiple_of(2) { [a, b, c, d] } else { [b, a, c, d] }
     }
 }
-
-/// The place of the new point in its simplices.
-const LAST: usize = FACETS - 1;
 
 /// Sorts the vertices of a simplex, and its neighbours alike; returns the number of swaps.
 fn sort(vertices: &mut [u32; FACETS], neighbours: &mut [Facet; FACETS]) -> usize {
@@ -199,6 +156,7 @@ fn fix_sides(all: &mut [Simplex]) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::complex::facet_of;
     use super::*;
     use crate::diagram4::Stats;
     use crate::diagram4::simplices::triangulate;

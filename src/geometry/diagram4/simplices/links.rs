@@ -1,7 +1,9 @@
 //! Links the simplices of a star: two are neighbours if they have three vertices besides the centre in
 //! common.
 
-use super::complex::{Facet, NO_NEIGHBOUR, Simplex, facet, facet_of, simplex_of};
+use super::arrays::Arrays;
+use super::coefficient::Coefficient;
+use super::complex::{Facet, NO_NEIGHBOUR, facet};
 
 /// Slots per simplex of a star, at least. The table holds two triangles per simplex.
 const SLOTS: usize = 8;
@@ -38,17 +40,23 @@ impl Links {
 
     /// Links a simplex of the star with those at its triangles that came before it, if they have come.
     ///
-    /// `vertices` are those besides the centre, in increasing order but for the first two. A facet without
-    /// neighbour so far is linked to [`NO_NEIGHBOUR`], whose own links are written but mean nothing. That
-    /// saves a branch on which of the two came first, which is unpredictable.
+    /// `vertices` are those besides the centre, in increasing order but for the first two. The first of two
+    /// is linked to itself until the other one comes. That saves a branch on which it is, which is
+    /// unpredictable.
     #[inline(always)]
-    pub(super) fn link(&mut self, simplices: &mut [Simplex], new: usize, &[a, b, c, d]: &[u32; 4]) {
+    pub(super) fn link<C: Coefficient>(
+        &mut self,
+        arrays: &mut Arrays<'_, C>,
+        new: usize,
+        &[a, b, c, d]: &[u32; 4],
+    ) {
         let (least, second) = (a.min(b), a.max(b));
         let mut link = |place: usize, triangle: [u32; 3]| {
             let here = facet(new, place);
             let there = self.meet(triangle, here);
-            simplices[new].neighbours[place] = there;
-            simplices[simplex_of(there)].neighbours[facet_of(there)] = here;
+            let there = if there == NO_NEIGHBOUR { here } else { there };
+            arrays.set_neighbour(there, here);
+            arrays.set_neighbour(here, there);
         };
         link(0, [b, c, d]);
         link(1, [a, c, d]);
