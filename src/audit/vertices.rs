@@ -1,12 +1,8 @@
 //! The vertices between their patch and their finalization.
 
-use std::collections::HashMap;
-
-use foldhash::fast::RandomState;
-
 use super::check::{Check, Ledger, Violation};
 use spmesh_model::bounds::Point;
-use spmesh_stream::Patch;
+use spmesh_stream::{Ascending, Patch, Place};
 
 /// A vertex with data about its star, the simplices that have it.
 #[derive(Debug, Clone, Copy)]
@@ -21,12 +17,22 @@ pub(super) struct Vertex<S> {
 /// Live vertices, and the vertices of the current patch in the order of their local indices.
 ///
 /// Memory: the width of the stream.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Vertices<S> {
-    live: HashMap<u64, Vertex<S>, RandomState>,
+    /// Those that the current patch imports are here, too, as they were before it.
+    live: Ascending<Vertex<S>>,
     pub(super) local: Vec<Vertex<S>>,
+    /// Where the imported vertices of the current patch are.
+    places: Vec<Place>,
     seen: u64,
     live_max: usize,
+}
+
+impl<S> Default for Vertices<S> {
+    fn default() -> Self {
+        let (live, local, places) = (Ascending::default(), Vec::new(), Vec::new());
+        Vertices { live, local, places, seen: 0, live_max: 0 }
+    }
 }
 
 impl<S: Copy + Default> Vertices<S> {
@@ -36,16 +42,20 @@ impl<S: Copy + Default> Vertices<S> {
         for (&at, id) in patch.new.iter().zip(patch.first_id..) {
             self.local.push(Vertex { id, at, weight: 0.0, star: S::default() });
         }
+        self.places.clear();
+        let mut near = Place::default();
         for id in &patch.imported {
-            let Some(vertex) = self.live.remove(id) else {
+            let Some(place) = self.live.find(*id, near) else {
                 let message = format!("vertex {id} is used after it was finalized");
                 return Err(Violation::new(Check::Finalization, message));
             };
-            self.local.push(vertex);
+            self.local.push(*self.live.at(place));
+            self.places.push(place);
+            near = place;
         }
         ledger.add(Check::Finalization, patch.vertices() as u64);
         self.seen += patch.new.len() as u64;
-        self.live_max = self.live_max.max(self.live.len() + self.local.len());
+        self.live_max = self.live_max.max(self.live.len() + patch.new.len());
         Ok(())
     }
 
@@ -61,25 +71,34 @@ impl<S: Copy + Default> Vertices<S> {
         mut finalize: impl FnMut(&Vertex<S>) -> Result<(), Violation>,
     ) -> Result<(), Violation> {
         let mut finalized = patch.finalized.iter().map(|&local| local as usize).peekable();
+        let mut gone = 0;
         for (local, vertex) in self.local.iter().enumerate() {
-            if finalized.next_if_eq(&local).is_some() {
-                finalize(vertex)?;
-            } else {
-                self.live.insert(vertex.id, *vertex);
+            let place = local.checked_sub(patch.new.len());
+            let is_finalized = finalized.next_if_eq(&local).is_some();
+            match place {
+                _ if is_finalized => finalize(vertex)?,
+                Some(place) => *self.live.at_mut(self.places[place]) = *vertex,
+                None => self.live.push(vertex.id, *vertex),
+            }
+            if let Some(place) = place.filter(|_| is_finalized) {
+                // The places of those that are finalized move to the front.
+                self.places[gone] = self.places[place];
+                gone += 1;
             }
         }
+        self.live.forget(&self.places[..gone]);
         self.local.clear();
         Ok(())
     }
 
     /// The vertex, if it is live.
     pub(super) fn live(&self, id: u64) -> Option<&Vertex<S>> {
-        self.live.get(&id)
+        self.live.get(id)
     }
 
     /// The live vertex with the smallest id that `is_wrong`.
     pub(super) fn first_live(&self, is_wrong: impl Fn(&Vertex<S>) -> bool) -> Option<&Vertex<S>> {
-        self.live.values().filter(|vertex| is_wrong(vertex)).min_by_key(|vertex| vertex.id)
+        self.live.iter().map(|(_, vertex)| vertex).find(|vertex| is_wrong(vertex))
     }
 
     /// Proves that no vertex is live any more.

@@ -54,6 +54,7 @@
 //! # }
 //! ```
 
+mod ascending;
 mod attribute_code;
 mod block;
 mod cell_words;
@@ -91,6 +92,7 @@ mod weights;
 mod write_configurations;
 mod writer;
 
+pub use ascending::{Ascending, Place};
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;
 pub use configurations::{check_degree, claim_from_name, claim_name};

@@ -1,30 +1,38 @@
 //! The vertices of a mesh stream that a later patch may still use.
 
-use foldhash::{HashMap, HashMapExt};
-
+use super::ascending::{Ascending, Place};
 use super::event::Patch;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 
 /// Vertices between their patch and their finalization, with a value `T` that the consumer keeps for each.
 ///
-/// Memory grows with the width of the stream, not with its length.
-#[derive(Debug, Default)]
+/// Memory grows with the width of the stream, not with its length: that of [`Ascending`].
+#[derive(Debug)]
 pub struct LiveVertices<T> {
-    live: HashMap<u64, T>,
+    live: Ascending<T>,
     local: Vec<(u64, T)>,
+    /// Where the imported vertices of the current patch are.
+    places: Vec<Place>,
     live_max: usize,
+}
+
+impl<T> Default for LiveVertices<T> {
+    fn default() -> Self {
+        LiveVertices { live: Ascending::default(), local: Vec::new(), places: Vec::new(), live_max: 0 }
+    }
 }
 
 impl<T: Copy> LiveVertices<T> {
     /// No vertices.
     #[must_use]
     pub fn new() -> Self {
-        LiveVertices { live: HashMap::new(), local: Vec::new(), live_max: 0 }
+        LiveVertices::default()
     }
 
     /// Adds the new vertices of `patch`, with the values that `value_of` gives them. Returns id and value of
-    /// each local vertex, and forgets the vertices that the patch finalizes.
+    /// each local vertex, and forgets the vertices that the patch finalizes. Patches come in the order of the
+    /// stream.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Malformed`] if the patch uses a vertex that is finalized or unknown.
@@ -33,28 +41,41 @@ impl<T: Copy> LiveVertices<T> {
         for (&point, id) in patch.new.iter().zip(patch.first_id..) {
             self.local.push((id, value_of(id, point)));
         }
-        for &id in &patch.imported {
-            let Some(&value) = self.live.get(&id) else {
-                return Err(Error::malformed(if id < patch.first_id {
-                    format!("vertex {id} referenced after finalization")
-                } else {
-                    format!("vertex {id} referenced before it was written")
-                }));
-            };
-            self.local.push((id, value));
-        }
+        self.import(patch)?;
         self.live_max = self.live_max.max(self.live.len() + patch.new.len());
         // Most vertices are finalized by the patch that brings them: these never enter the map.
         let mut finalized = patch.finalized.iter().peekable();
         for (local, &(id, value)) in (0..).zip(&self.local[..patch.new.len()]) {
             if finalized.next_if_eq(&&local).is_none() {
-                self.live.insert(id, value);
+                self.live.push(id, value);
             }
         }
+        // The places of those that are finalized move to the front.
+        let mut count = 0;
         for &local in finalized {
-            self.live.remove(&patch.id(local));
+            self.places[count] = self.places[local as usize - patch.new.len()];
+            count += 1;
         }
+        self.live.forget(&self.places[..count]);
         Ok(&self.local)
+    }
+
+    /// Finds the imported vertices of a patch.
+    fn import(&mut self, patch: &Patch) -> Result<()> {
+        self.places.clear();
+        let mut near = Place::default();
+        for &id in &patch.imported {
+            near = self.live.find(id, near).ok_or_else(|| {
+                Error::malformed(if id < patch.first_id {
+                    format!("vertex {id} referenced after finalization")
+                } else {
+                    format!("vertex {id} referenced before it was written")
+                })
+            })?;
+            self.places.push(near);
+            self.local.push((id, *self.live.at(near)));
+        }
+        Ok(())
     }
 
     /// Forgets a live vertex that a residual point names, and returns its value: no later patch uses it.
@@ -63,20 +84,23 @@ impl<T: Copy> LiveVertices<T> {
     /// [`spmesh_core::error::ErrorKind::Malformed`] if the vertex is finalized or unknown, or was named
     /// before.
     pub fn retire(&mut self, id: u64) -> Result<T> {
-        self.live
-            .remove(&id)
-            .ok_or_else(|| Error::malformed(format!("residual point names vertex {id}, which is not live")))
+        let place = self.live.find(id, Place::default());
+        let unknown = || Error::malformed(format!("residual point names vertex {id}, which is not live"));
+        let place = place.ok_or_else(unknown)?;
+        let value = *self.live.at(place);
+        self.live.forget(&[place]);
+        Ok(value)
     }
 
-    /// Ids and values of all live vertices, in any order.
+    /// Ids and values of all live vertices, in the order of ids.
     pub fn iter(&self) -> impl Iterator<Item = (u64, T)> + '_ {
-        self.live.iter().map(|(&id, &value)| (id, value))
+        self.live.iter().map(|(id, &value)| (id, value))
     }
 
     /// Whether a vertex is live, so that a later patch may use it.
     #[must_use]
     pub fn contains(&self, id: u64) -> bool {
-        self.live.contains_key(&id)
+        self.live.get(id).is_some()
     }
 
     /// Number of live vertices.
