@@ -140,8 +140,8 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             let written = self.bulk.take_written(|simplex| states[simplex] == SimplexState::Open)?;
             if let Some(mut written) = written {
                 self.write_all(&mut written, points, &mut blocks, flush)?;
-                let merged = self.bulk.duplicates().len() as u64;
-                return Ok(Solved { blocks, merged, ..Solved::default() });
+                let merged_at_root = self.bulk.duplicates().len();
+                return Ok(Solved { blocks, merged: merged_at_root as u64, ..Solved::default() });
             }
         }
         self.bulk.arrange();
