@@ -263,7 +263,9 @@ mod tests {
                 near = found.unwrap_or(near);
                 places.extend(found);
             }
-            gone.iter().for_each(|id| drop(self.reference.remove(id)));
+            for id in &gone {
+                self.reference.remove(id);
+            }
             self.ids.retain(|id| self.reference.contains_key(id) || id % 64 == 0);
             self.map.forget(&places);
         }

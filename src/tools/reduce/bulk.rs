@@ -2,6 +2,7 @@
 
 use super::residual::Residual;
 use spmesh_core::error::Result;
+use spmesh_geometry::delaunay3::Corners;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
 use spmesh_stream::{Coordinates, Kind, Weights};
@@ -66,6 +67,20 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// As the kernel's.
     fn triangulate(&mut self, points: &Residual<D>, weights: Option<Weights>) -> Result<()>;
 
+    /// Finds the order of [`Bulk::nth`].
+    fn arrange(&mut self) {}
+
+    /// The corners of those simplices that `keep` accepts, in the order of [`Bulk::nth`] and as by
+    /// [`Bulk::written`], but as places in the vertices that come with them; if the threads of the node can
+    /// find them faster than one by one. The triangulation is empty then.
+    ///
+    /// # Errors
+    /// If a thread fails.
+    fn take_written(&mut self, keep: impl Fn(usize) -> bool) -> Result<Option<Corners>> {
+        let _ = keep;
+        Ok(None)
+    }
+
     /// Points that are not vertices, each with the vertex that it coincides with. The vertex has the least
     /// index.
     fn duplicates(&mut self) -> &mut Vec<[u32; 2]>;
@@ -78,7 +93,7 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// Number of simplices.
     fn len(&self) -> usize;
 
-    /// The `k`-th simplex in an order that keeps neighbours close to each other.
+    /// The `k`-th simplex in an order that keeps neighbours close to each other, after [`Bulk::arrange`].
     fn nth(&self, k: usize) -> u32;
 
     /// The corners of a simplex, in positive orientation.

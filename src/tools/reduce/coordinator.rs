@@ -300,7 +300,7 @@ fn dispatch<const D: usize>(
     }
 }
 
-fn thread_gone() -> Error {
+pub(super) fn thread_gone() -> Error {
     Error::new(ErrorKind::Io, "a thread ended before its time")
 }
 

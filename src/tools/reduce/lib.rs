@@ -20,6 +20,7 @@
 //! runs, each of which is a [`tile`]. All of it is for D dimensions; [`bulk`] hides the differences between
 //! [`plane`] and [`space`].
 
+mod beside;
 mod border;
 mod boxes;
 mod budget;

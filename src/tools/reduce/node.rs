@@ -1,5 +1,7 @@
 //! One node of the reduction: triangulate, drop what lies in holes, split final from not final.
 
+mod written;
+
 use super::bulk::{Bulk, Facet, WallSide};
 use super::misfit::{Misfit, overlap};
 use super::patches::{Flush, PatchBuilder};
@@ -132,6 +134,17 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         self.find_holes(&points.walls)?;
         let everything = *region == Region::EVERYTHING && !self.rules.is_partial;
         self.builder.start(points.len(), self.rules.code, self.bulk.hidden().len(), flush.is_some());
+        if everything && let Some(flush) = &mut flush {
+            self.find_point_states(points, everything);
+            let states = &self.simplex_states;
+            let written = self.bulk.take_written(|simplex| states[simplex] == SimplexState::Open)?;
+            if let Some(mut written) = written {
+                self.write_all(&mut written, points, &mut blocks, flush)?;
+                let merged_at_root = self.bulk.duplicates().len();
+                return Ok(Solved { blocks, merged: merged_at_root as u64, ..Solved::default() });
+            }
+        }
+        self.bulk.arrange();
         let hidden = self.bulk.hidden().iter().copied();
         if !self.builder.is_planned() {
             self.builder.isolated(hidden, points, self.rules.code, &mut blocks, None)?;
@@ -284,7 +297,8 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         self.wall_facets.get(facet.simplex as usize).is_some_and(|walls| walls & 1 << bit != 0)
     }
 
-    /// Finds the states of the points. If `everything` is final, so are the infinite simplices.
+    /// Finds the states of the points. If `everything` is final, so are the infinite simplices, and no
+    /// simplex is active.
     fn find_point_states(&mut self, points: &Residual<D>, everything: bool) {
         let mut point_states = std::mem::take(&mut self.point_states);
         point_states.clear();
@@ -297,7 +311,8 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
                 self.bulk.wall(facet).iter().for_each(|&v| point_states[v as usize] = PointState::Residual);
             }
         }
-        for &simplex in &self.active {
+        let active = if everything { &[] } else { &self.active[..] };
+        for &simplex in active {
             for &v in self.bulk.corners(simplex).as_ref() {
                 point_states[v as usize] = PointState::Residual;
             }
@@ -308,65 +323,6 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             .for_each(|&[point, _]| point_states[point as usize] = PointState::Merged);
         self.bulk.hidden().iter().for_each(|&point| point_states[point as usize] = PointState::Hidden);
         self.point_states = point_states;
-    }
-
-    /// Writes the final simplices that were planned, after hidden points.
-    ///
-    /// # Errors
-    /// As [`PatchBuilder::close`] and `flush`.
-    fn write_planned(
-        &mut self,
-        points: &Residual<D>,
-        blocks: &mut PatchBlocks,
-        flush: &mut Flush,
-    ) -> Result<()> {
-        let (builder, code) = (&mut self.builder, self.rules.code);
-        for (v, _) in (0..).zip(&self.point_states).filter(|&(_, &state)| state == PointState::Residual) {
-            builder.keep(v);
-        }
-        builder.isolated(self.bulk.hidden().iter().copied(), points, code, blocks, Some(flush))?;
-        for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
-            let is_final = self.simplex_states[simplex as usize] == SimplexState::Open;
-            if is_final && builder.add(self.bulk.written(simplex).as_ref()) {
-                builder.close(points, code, blocks)?;
-                flush(blocks)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Writes the points that are finalized here without being in a simplex: vertices of the hull whose
-    /// simplices were all written below, and at the root the points of an input without simplices.
-    ///
-    /// # Errors
-    /// Those of `flush`; [`spmesh_core::error::ErrorKind::Malformed`] if a point has no simplex outside of
-    /// the holes: no node leaves such a point.
-    fn write_rest(
-        &mut self,
-        points: &Residual<D>,
-        blocks: &mut PatchBlocks,
-        flush: Option<&mut Flush>,
-    ) -> Result<()> {
-        let (builder, code) = (&mut self.builder, self.rules.code);
-        let mut unused = Vec::new();
-        for (v, &state) in (0..).zip(&self.point_states) {
-            match state {
-                PointState::Hull if builder.is_unused(v) => unused.push(v),
-                PointState::Interior if builder.is_unused(v) => {
-                    let point = points.point(v as usize);
-                    self.misfit = Some(Misfit::Point(v));
-                    return Err(Error::malformed(format!(
-                        "residual point {point:?} lies inside of a final {}",
-                        B::SIMPLEX
-                    )));
-                }
-                PointState::Residual => builder.keep(v),
-                _ => {}
-            }
-        }
-        builder.isolated(unused.into_iter(), points, code, blocks, flush)?;
-        builder.finish(blocks);
-        Ok(())
     }
 
     /// Finds the walls: facets between a simplex that is not active and an active or infinite one.

@@ -270,7 +270,7 @@ fn mesh_header<B: Bulk<D>, const D: usize>(
 ///
 /// # Errors
 /// As [`triangulate`].
-fn alone<B: Bulk<D>, R: Read, W: Write, const D: usize>(
+fn alone<B: Bulk<D>, R: Read, W: Write + Send, const D: usize>(
     mut run: Run<D>,
     mut cells: CellReader<R, D>,
     mut sequencer: Sequencer<W>,

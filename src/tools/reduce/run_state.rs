@@ -3,8 +3,10 @@
 use std::io::Write;
 use std::num::NonZeroUsize;
 
+use super::beside::write_beside;
 use super::budget::Budget;
 use super::bulk::Bulk;
+use super::patches::Flush;
 use super::reader::{InputSummary, Piece};
 use super::residual::union;
 use super::rules::Rules;
@@ -85,7 +87,7 @@ impl<const D: usize> Run<D> {
     ///
     /// # Errors
     /// As [`super::run::triangulate`].
-    fn write_root<B: Bulk<D>, W: Write>(
+    fn write_root<B: Bulk<D>, W: Write + Send>(
         &mut self,
         sequencer: &mut Sequencer<W>,
         worker: &mut Worker<B, D>,
@@ -100,8 +102,12 @@ impl<const D: usize> Run<D> {
             self.check_memory(job.len())?;
             let (number, cell) = (job.number, job.cell);
             sequencer.open(&children);
-            let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
-            let solved = worker.solve(job, PatchBlocks::default(), drop, Some(flush));
+            let solve = |flush: &mut Flush| worker.solve(job, PatchBlocks::default(), drop, Some(flush));
+            let solved = if self.threads.get() > 1 {
+                write_beside(sequencer, solve)
+            } else {
+                solve(&mut |blocks| sequencer.patches(blocks))
+            };
             self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
             // One node with points, followed by the nodes above it, which have none.
             while let Some(output) = self.schedule.next_output() {
@@ -116,7 +122,7 @@ impl<const D: usize> Run<D> {
     ///
     /// # Errors
     /// As [`super::run::triangulate`].
-    pub(super) fn finish<B: Bulk<D>, W: Write>(
+    pub(super) fn finish<B: Bulk<D>, W: Write + Send>(
         mut self,
         ended: &InputSummary<D>,
         mut sequencer: Sequencer<W>,

@@ -8,8 +8,9 @@ use super::bulk::{Bulk, Facet, WallSide};
 use super::residual::Residual;
 use super::walls::{self, WallIndex};
 use spmesh_core::error::Result;
+use spmesh_core::parallel;
 use spmesh_core::prefetch::prefetch;
-use spmesh_geometry::delaunay3::{Corner, Kernel, Tetrahedralization, turned};
+use spmesh_geometry::delaunay3::{Corner, Corners, Kernel, Tetrahedralization, Tetrahedron, turned};
 use spmesh_geometry::order::sizes_to_starts;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_geometry::predicates::sphere::SphereBounds;
@@ -19,6 +20,9 @@ use spmesh_stream::{Coordinates, Kind, Weights};
 
 /// Distance of the prefetch, in tetrahedra.
 const AHEAD: usize = 12;
+
+/// Tetrahedra that a thread searches in one go.
+const PIECE: usize = 1 << 16;
 
 /// The kernel of space and its tetrahedralization.
 #[derive(Default)]
@@ -46,7 +50,7 @@ pub(super) struct Balls {
 
 impl Space {
     /// Finds the sequence of the tetrahedra, by a counting sort.
-    fn arrange(&mut self) {
+    fn sort_along_curve(&mut self) {
         let tetrahedra = self.mesh.tetrahedra();
         let last = |vertices: [u32; 4]| vertices.into_iter().fold(0, u32::max) as usize;
         // For each vertex, the places of the tetrahedra whose last vertex it is.
@@ -83,19 +87,33 @@ impl Space {
     #[cold]
     fn missing(&self, walls: &[[u32; 3]], index: &WallIndex) -> usize {
         let mut found = HashSet::new();
-        for simplex in 0..self.len() as u32 {
-            let vertices = self.corners(simplex);
-            for (corner, facet) in (0..).zip(TETRAHEDRON_FACETS_FROM_INSIDE) {
-                let [a, b, c] = facet.map(|i| vertices[i]);
-                let is_outer = self.neighbour(Facet { simplex, corner }).is_none();
-                let sides = [Some([a, b, c]), is_outer.then_some([b, a, c])];
-                found.extend(
-                    sides.into_iter().flatten().filter(|&side| index.contains(side)).map(walls::turned),
-                );
+        for side in find_walls(index, 0, self.mesh.tetrahedra()) {
+            let (WallSide::Final(facet) | WallSide::Open(facet)) = side;
+            let mut wall = self.wall(facet);
+            if matches!(side, WallSide::Open(_)) {
+                wall.swap(0, 1);
             }
+            found.insert(walls::turned(wall));
         }
         walls.iter().position(|&wall| !found.contains(&walls::turned(wall))).unwrap_or(0)
     }
+}
+
+/// The walls among the facets of tetrahedra, of which the first has the number `first`.
+fn find_walls(index: &WallIndex, first: usize, tetrahedra: &[Tetrahedron]) -> Vec<WallSide> {
+    let mut sides = Vec::new();
+    for (simplex, tetrahedron) in (first as u32..).zip(tetrahedra) {
+        for (corner, facet) in (0..).zip(TETRAHEDRON_FACETS_FROM_INSIDE) {
+            let side = Facet { simplex, corner };
+            let [a, b, c] = facet.map(|i| tetrahedron.vertices[i]);
+            if index.contains([a, b, c]) {
+                sides.push(WallSide::Final(side));
+            } else if tetrahedron.neighbour(corner as usize).is_none() && index.contains([b, a, c]) {
+                sides.push(WallSide::Open(side));
+            }
+        }
+    }
+    sides
 }
 
 impl Bulk<3> for Space {
@@ -128,9 +146,23 @@ impl Bulk<3> for Space {
             }
             None => self.kernel.triangulate(at, &mut self.mesh)?,
         }
-        self.arrange();
         self.find_hull();
         Ok(())
+    }
+
+    fn arrange(&mut self) {
+        self.sort_along_curve();
+    }
+
+    fn take_written(&mut self, keep: impl Fn(usize) -> bool) -> Result<Option<Corners>> {
+        if !self.is_shared {
+            return Ok(None);
+        }
+        let mut mesh = std::mem::take(&mut self.mesh);
+        self.mesh.duplicates = std::mem::take(&mut mesh.duplicates);
+        self.mesh.hidden = std::mem::take(&mut mesh.hidden);
+        self.hull.clear();
+        mesh.into_corners(keep, self.kernel.threads).map(Some)
     }
 
     fn duplicates(&mut self) -> &mut Vec<[u32; 2]> {
@@ -192,22 +224,14 @@ impl Bulk<3> for Space {
             return Ok(());
         }
         let mut index = std::mem::take(&mut self.walls);
-        index.fill(walls, self.mesh.vertices().len() + self.mesh.duplicates.len());
-        let mut count = 0;
-        for simplex in 0..self.len() as u32 {
-            let vertices = self.corners(simplex);
-            for (corner, facet) in (0..).zip(TETRAHEDRON_FACETS_FROM_INSIDE) {
-                let side = Facet { simplex, corner };
-                let [a, b, c] = facet.map(|i| vertices[i]);
-                if index.contains([a, b, c]) {
-                    count += 1;
-                    found(WallSide::Final(side));
-                } else if self.neighbour(side).is_none() && index.contains([b, a, c]) {
-                    count += 1;
-                    found(WallSide::Open(side));
-                }
-            }
-        }
+        let vertices = self.mesh.vertices().iter().map(|vertex| vertex.index);
+        index.fill(walls, vertices.len() + self.mesh.duplicates.len(), vertices);
+        let pieces = self.mesh.tetrahedra().chunks(PIECE).enumerate();
+        let search = |(number, piece)| Ok(find_walls(&index, number * PIECE, piece));
+        // The search never fails: the type is that of the threads.
+        let sides = parallel::map(self.kernel.threads, pieces, search).unwrap_or_default();
+        let count: usize = sides.iter().map(Vec::len).sum();
+        sides.into_iter().flatten().for_each(&mut found);
         let result = if count == walls.len() { Ok(()) } else { Err(self.missing(walls, &index)) };
         self.walls = index;
         result
