@@ -3,7 +3,7 @@
 /// Greatest number of entries of a block.
 const BLOCK_LEN: usize = 512;
 
-/// Blocks that are left alone, however few entries they have.
+/// Up to this many blocks are not joined, however few entries they have.
 const BLOCKS_MIN: usize = 16;
 
 /// Ids of a block differ by less than this: twice the difference is a key of 32 bits.
@@ -14,14 +14,13 @@ const FORGOTTEN: u32 = 1;
 
 /// Values of ids that are added in increasing order, and forgotten in any order.
 ///
-/// Entries are in the order of their ids, in blocks that never move, so nothing is copied as a whole when the
-/// map grows, as a hash table is, and its room is that of its entries. Ids that are looked up in increasing
-/// order are found near each other.
+/// Entries are in the order of their ids, in blocks. A map that grows adds blocks and copies none, whereas a
+/// hash table copies all its entries. Ids that are looked up in increasing order are found near each other.
 ///
 /// Memory: 4 bytes and the value for each entry, and an eighth more, for entries that are forgotten.
 #[derive(Debug)]
 pub struct Ascending<T> {
-    /// For each block, a number that is not above its ids, and above those of the blocks before.
+    /// For each block, a lower bound of its ids, above all ids of the blocks before.
     firsts: Vec<u64>,
     blocks: Vec<Block<T>>,
     len: usize,
@@ -50,7 +49,7 @@ impl<T> Default for Ascending<T> {
 }
 
 impl<T: Copy> Ascending<T> {
-    /// Adds a value. Its id is greater than all before.
+    /// Adds a value. Its id must be greater than all before.
     pub fn push(&mut self, id: u64, value: T) {
         let first = self.firsts.last().copied().unwrap_or_default();
         let has_room = |block: &Block<T>| block.keys.len() < BLOCK_LEN && id - first < SPAN;
@@ -125,8 +124,8 @@ impl<T: Copy> Ascending<T> {
         }
     }
 
-    /// Joins neighbours of few entries. Then two neighbours have more than [`BLOCK_LEN`] together, so many
-    /// blocks have to be added, or entries forgotten, before it is worth while again.
+    /// Joins neighbouring blocks that fit into one. Afterwards, two neighbours have more than [`BLOCK_LEN`]
+    /// entries together, so many entries are added or forgotten before the next call.
     fn join_blocks(&mut self) {
         let firsts = std::mem::take(&mut self.firsts);
         let blocks = std::mem::take(&mut self.blocks);

@@ -10,7 +10,7 @@ pub(super) const PARTS_MAX: usize = 1024;
 /// Parts are cut at borders of bins of vertices, at most 2^16.
 const BITS_OF_BINS: u32 = 16;
 
-/// A cut may be off the even one by one of so many vertices of a part.
+/// A cut may be off the even place by 1/`SLACK` of the vertices of a part.
 const SLACK: usize = 16;
 
 /// Greatest number of places along the curve, in each part, where walks may start.
@@ -23,11 +23,11 @@ pub(super) struct Part {
     pub(super) own: Range<u32>,
     /// Number of its tetrahedra.
     pub(super) size: usize,
-    /// Its tetrahedra along the curve, from which walks start that would cross other parts otherwise.
+    /// Tetrahedra of the part along the curve. Walks that come to a frozen tetrahedron start again at them.
     pub(super) starts: Vec<u32>,
 }
 
-/// Cuts a complex of finite vertices into parts, at most as many as asked for, and freezes the tetrahedra
+/// Cuts a complex with `finite` finite vertices into parts, at most as many as asked for, and freezes the tetrahedra
 /// between them.
 pub(super) fn cut(tetrahedra: &mut [Tetrahedron], finite: usize, parts: usize) -> Vec<Part> {
     let ends = ends(tetrahedra, finite, parts.min(PARTS_MAX));
@@ -60,7 +60,7 @@ pub(super) fn thaw(tetrahedra: &mut [Tetrahedron]) {
     }
 }
 
-/// Fills gaps with the entry before; none are left if there is any.
+/// Fills gaps with the entry before, the first ones with the first entry. Clears a list without entries.
 fn fill(starts: &mut Vec<u32>) {
     let Some(mut last) = starts.iter().copied().find(|&t| t != NONE) else {
         return starts.clear();
@@ -83,7 +83,7 @@ fn range(tetrahedron: &Tetrahedron, infinite: u32) -> (u32, u32) {
 /// Where to cut `count` vertices into parts of almost the same size: where the fewest tetrahedra are cut.
 fn ends(tetrahedra: &[Tetrahedron], count: usize, parts: usize) -> Vec<u32> {
     let shift = (usize::BITS - count.leading_zeros()).saturating_sub(BITS_OF_BINS);
-    // Before each bin, how many more tetrahedra are cut than before the last one.
+    // For each bin, how many more tetrahedra a cut before it splits than a cut before the previous bin.
     let mut cuts = vec![0i64; (count >> shift) + 2];
     for tetrahedron in tetrahedra.iter().filter(|tetrahedron| tetrahedron.vertices[0] < DELETED) {
         let (least, greatest) = range(tetrahedron, count as u32);

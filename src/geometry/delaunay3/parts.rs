@@ -1,17 +1,17 @@
 //! Insertion on several threads: each has a part of the complex, which others do not touch.
 //!
 //! The vertices, in order along the curve, are cut into ranges, one for each thread. A tetrahedron whose
-//! finite vertices are all in one range belongs to this part. Tetrahedra with vertices of several ranges
-//! belong to none; they lie between the parts, as neighbours have three vertices in common, and are *frozen*.
-//! A thread inserts points of its own range. If a frozen tetrahedron is in conflict with a point, the point
-//! is refused, and inserted when all threads are done. Otherwise the cavity and all around it are in the
-//! part, or frozen, and new tetrahedra are the part's as well: their vertices are those of the cavity and the
-//! point. So parts fit together whatever the threads did, and are Delaunay wherever no point is missing. The
-//! tetrahedralization is canonical: it does not depend on the order of insertion.
+//! finite vertices are all in one range belongs to that part. The others are *frozen*. They lie between the
+//! parts, as neighbours have three vertices in common. A thread inserts points of its own range. It refuses a
+//! point if the walk comes to a frozen tetrahedron, if a frozen one may be in conflict, or if there is no
+//! room; refused points are inserted when all threads are done. Otherwise the cavity is in the part, its
+//! neighbours are in the part or frozen, and the new tetrahedra belong to the part: their vertices are those
+//! of the cavity and the point. So the parts and the frozen tetrahedra form a Delaunay tetrahedralization of
+//! the points inserted so far. It is canonical: it does not depend on the order of insertion.
 //!
 //! All parts are in one array. A thread reads and writes words of its own tetrahedra. Of frozen ones it reads
-//! the vertices, which nobody writes, and it reads and writes the words of neighbours in its part, which are
-//! no neighbours of other parts.
+//! the vertices, which nobody writes, and it reads and writes the words that name neighbours in its part,
+//! which no other part uses.
 
 use super::build::Build;
 use super::complex::{Complex, DELETED, TETRAHEDRA_PER_VERTEX};
@@ -26,7 +26,7 @@ use spmesh_core::error::Result;
 use spmesh_core::parallel;
 use std::num::NonZeroUsize;
 
-/// A part has room for one of so many tetrahedra more than it is likely to have.
+/// A part has room for 1/`SPARE` more tetrahedra than it is likely to have.
 const SPARE: usize = 50;
 
 /// A place without a tetrahedron.
@@ -47,8 +47,8 @@ struct Done {
     tally: Tally,
 }
 
-/// Inserts vertices on so many threads, where `inserted` vertices are already. Returns those that are not
-/// inserted yet: the ones between parts.
+/// Inserts vertices on `threads` threads into a complex that has `inserted` of them. Returns the vertices that
+/// were refused.
 ///
 /// # Errors
 /// Never fails: the type is that of [`parallel::map`].
@@ -109,9 +109,9 @@ pub(super) fn insert<W: Weights>(
     Ok(refused)
 }
 
-/// Room for tetrahedra that a part needs for so many more vertices, given which share of all vertices is
-/// inserted: they are evenly spread along the curve, and there will be as many tetrahedra per vertex as there
-/// are now. If it is not enough, points are refused.
+/// Room for the tetrahedra of `count` more vertices of a part, where `share` of all vertices is inserted. It
+/// assumes that inserted vertices are spread evenly along the curve, and that tetrahedra per vertex stay as
+/// many. If the room is not enough, points are refused.
 fn room(part: &Part, share: f64, count: usize) -> usize {
     let now = share * part.own.len() as f64;
     let likely = (part.size as f64 * (now + count as f64) / now) as usize;
@@ -141,7 +141,7 @@ impl Job<'_> {
         // Without room, or without a tetrahedron to start at.
         refused.extend(insertions);
         let Complex { mut words, mut free, fresh, .. } = complex;
-        // The last one is taken first.
+        // In reverse, as the last of `free` is used first.
         for t in fresh.rev().map(|number| (number * WORDS) as u32) {
             words.write(t, GAP.vertices, GAP.neighbours);
             free.push(t);

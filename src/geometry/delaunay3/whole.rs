@@ -14,7 +14,7 @@ use crate::predicates::{Arithmetic3, PredicateCounts};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use std::num::NonZeroUsize;
 
-/// Tetrahedra whose words are numbered in 32 bits: no room is greater, or numbers would begin anew.
+/// Most tetrahedra whose words have numbers of 32 bits. No room is greater.
 pub(super) const NUMBERED: usize = 1 << 29;
 
 /// Greatest number of tetrahedra. It leaves numbers for one more star of all vertices.
@@ -33,7 +33,7 @@ pub(super) struct Setting<W> {
     /// The vertices of the first tetrahedron.
     pub(super) first: [u32; 4],
     pub(super) is_timed: bool,
-    /// Whether portable instructions are used only.
+    /// Whether only portable instructions are used.
     pub(super) is_portable: bool,
 }
 
@@ -58,8 +58,8 @@ pub(super) struct Whole {
     pub(super) vertices: Vec<Vertex>,
     pub(super) tetrahedra: Vec<Tetrahedron>,
     pub(super) free: Vec<u32>,
-    /// For how many tetrahedra there is room. The array may have more, of earlier uses, on which the order of
-    /// tetrahedra must not depend.
+    /// Number of tetrahedra that there is room for. The array may have more capacity, from earlier uses; the
+    /// order of tetrahedra must not depend on it.
     pub(super) room: usize,
     /// See [`Complex::numbers`].
     numbers: Vec<u32>,
@@ -99,7 +99,7 @@ impl Whole {
         unsafe { self.tetrahedra.set_len(len) };
     }
 
-    /// Inserts vertices on the calling thread, but those of the first tetrahedron.
+    /// Inserts vertices, except those of the first tetrahedron, on the calling thread.
     ///
     /// # Errors
     /// I/O, if there are too many tetrahedra.
@@ -163,16 +163,16 @@ fn first_room(vertices: usize) -> usize {
     (TETRAHEDRA_PER_VERTEX * vertices).min(NUMBERED)
 }
 
-/// Room where there are so many tetrahedra, at most [`TETRAHEDRA_MAX`].
+/// Room to enlarge an array of `len` tetrahedra to; `len` is at most [`TETRAHEDRA_MAX`].
 fn greater_room(len: usize, vertices: usize) -> usize {
     (len + len / 4 + 2 * vertices).min(NUMBERED)
 }
 
 /// The numbers of points at the ends of phases: all points of the first phase are inserted on one thread.
 ///
-/// A phase has `PHASE_FACTOR` times the points of the one before, so that tetrahedra between parts, which
-/// stay as they are during a phase, are thin. It is worth its own threads if it has so many points for each
-/// of two.
+/// After a phase there are `PHASE_FACTOR` times as many points as before it, so that tetrahedra between parts,
+/// which stay as they are during a phase, are thin. The last phase is split off while it has
+/// `points_per_thread` points for each of two threads.
 fn phases(count: usize, points_per_thread: usize) -> Vec<usize> {
     let mut ends = vec![count];
     let mut end = count;

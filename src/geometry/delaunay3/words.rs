@@ -1,8 +1,8 @@
 //! The words of tetrahedra, which the parts of a complex share.
 //!
-//! A part reads words that other parts read, and writes words that they do not touch. References to the whole
-//! array would claim more than that, so the words are behind a pointer. Their indices come from arrays of the
-//! kernel, too, and only debug builds, as tests are, check them: checks of bounds took 8 % of all time.
+//! Parts read some of the same words, but no part writes a word that another one uses. A reference to the
+//! whole array would claim more than that, so the words are behind a pointer. Indices come from the kernel's
+//! own arrays, so only debug builds, which tests are, check them: checks of bounds took 8 % of all time.
 
 use super::tetrahedralization::{Tetrahedron, WORDS};
 use spmesh_core::prefetch::prefetch_at;

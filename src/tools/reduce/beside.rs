@@ -11,14 +11,14 @@ use super::sequencer::Sequencer;
 use spmesh_core::error::Result;
 use spmesh_core::parallel::{self, BufferPool};
 
-/// Blocks of patches that wait to be written.
+/// Most buffers of blocks that wait to be written.
 const BLOCKS_AHEAD: usize = 2;
 
 /// Calls `make` with a function that takes patches. Another thread writes them to `sequencer`, in their
 /// order.
 ///
 /// # Errors
-/// Those of writing, or else those of `make`; I/O, if the system refuses a thread, or it panicked.
+/// Those of writing, or else those of `make`. I/O, if the writing thread cannot be started or panics.
 pub(super) fn write_beside<T, W: Write + Send>(
     sequencer: &mut Sequencer<W>,
     make: impl FnOnce(&mut Flush) -> Result<T>,
@@ -37,7 +37,7 @@ pub(super) fn write_beside<T, W: Write + Send>(
         let writer = parallel::spawn_scoped(scope, "writer", write)?;
         let made = make(&mut |blocks| {
             let filled = mem::replace(blocks, pool.take());
-            // It takes no more only after it failed.
+            // The writer stops receiving only when it has failed; `join` gives its error.
             full.send(filled).map_err(|_| thread_gone())
         });
         drop(full);

@@ -77,7 +77,7 @@ impl<'a> Classes<'a> {
         Joined(self.parts.iter().map(section).collect())
     }
 
-    /// The vertices of each class, and for each part the numbers of the classes around each, in any order.
+    /// The vertices of each class; and, for each part, the lists of its classes' neighbours, unsorted.
     pub(super) fn lists(self, threads: NonZeroUsize) -> (Lists4, Vec<Lists4>) {
         let around = |part: &Part| Ok(self.around(part));
         let neighbours = map(threads, &self.parts, around).expect("lists do not fail");
@@ -85,7 +85,7 @@ impl<'a> Classes<'a> {
         (Lists4::joined(self.parts.into_iter().map(|part| part.vertices)), neighbours)
     }
 
-    /// The numbers of the classes around each of a part.
+    /// For each class of a part, the numbers of the classes around it.
     fn around(&self, part: &Part) -> Lists4 {
         let of = |simplex: usize| self.of[simplex].load(Ordering::Relaxed);
         let mut lists = Lists4::with_capacity(part.len(), FACETS * part.members.len());

@@ -108,8 +108,8 @@ impl<'a> Search<'a> {
             let simplex = &search.simplices[simplex];
             search.of[simplex_of(simplex.neighbours[simplex.faraway_side()])].load(Ordering::Relaxed)
         };
-        // Earlier simplices of this part were all visited: one that joins makes the class one of another
-        // part.
+        // Simplices of this part before the seed were all visited. So an earlier simplex that joins is of
+        // another part, and so is the class.
         let mut is_of_another = false;
         let mut next = start;
         while next < self.end {
@@ -117,8 +117,8 @@ impl<'a> Search<'a> {
             next += 1;
             let (inner, neighbours) = (self.borders.inner(at), self.simplices[at].neighbours);
             for (side, neighbour) in neighbours.into_iter().enumerate() {
-                // Whether a neighbour joins is unpredictable: without branches, and with simplex 0, which
-                // never joins, in place of those across a border.
+                // Whether a neighbour joins is unpredictable, so there is no branch: simplex 0, which never
+                // joins, stands for the neighbour across a border.
                 let other = if inner >> side & 1 == 0 { 0 } else { simplex_of(neighbour) };
                 let mut joins = self.borders.is_new(other);
                 if is_infinite {

@@ -6,8 +6,8 @@ use std::marker::PhantomData;
 
 /// The simplices and spheres in arrays, and in the room behind them.
 ///
-/// New simplices are written there without a dummy before, and their indices, which come from the arrays of
-/// the kernel, too, are checked only by debug builds, as tests are: both together save 3 % of all time.
+/// New simplices are written to the room directly, not over dummies. Indices come from the kernel's own
+/// arrays, so only debug builds, which tests are, check them. Together this saves up to 3 % of the time.
 #[derive(Debug)]
 pub(super) struct Arrays<'s, C> {
     simplices: *mut Simplex,

@@ -57,9 +57,8 @@ pub(in crate::diagram4) type Sphere<C> = [C; 6];
 
 /// Bound on the rounding errors of values, if coordinates differ by at most 1.
 ///
-/// The sum of magnitudes of all terms that a value expands to is at most 480, and of each at most 47 factors
-/// 1 + e,
-/// |e| <= 2^-53, deviate: 480 * 47 < 2^15. Of hyperplanes it is less.
+/// The magnitudes of all terms that a value expands to sum to at most 480. Each term has at most 47 factors
+/// 1 + e with |e| <= 2^-53, and 480 * 47 < 2^15. Hyperplanes have less.
 const ROUNDING: f64 = 1.0 / (1u64 << 38) as f64;
 
 /// A point as the vector (x, |x|^2, 1) of in-sphere tests.
@@ -74,7 +73,7 @@ pub(in crate::diagram4) struct Complex<'a, C> {
     /// The first is a dummy: see [`NO_NEIGHBOUR`].
     pub(in crate::diagram4) simplices: Vec<Simplex>,
     pub(in crate::diagram4) spheres: Vec<Sphere<C>>,
-    /// Number of places that were taken, at least that of simplices.
+    /// Number of places taken, with those that are only reserved.
     pub(super) end: usize,
     /// Values of greater magnitude have the correct sign.
     rounding: f64,
@@ -258,8 +257,8 @@ impl<'a, C: Coefficient> Complex<'a, C> {
     }
 }
 
-/// The spheres of simplices of four vertices each and, as the last, the one at `o`; hyperplanes of infinite
-/// ones.
+/// The spheres of simplices, each of four given vertices and, as the last, the one at `o`; for infinite
+/// simplices, the hyperplanes.
 ///
 /// The row of a vertex is (x, |x|^2), seen from `o`. That of the faraway point, which is the first or the
 /// second, is (0, 1), the limit of rows of points far away, divided by their lift.

@@ -164,10 +164,10 @@ mod tests {
     use spmesh_core::random::Random;
     use spmesh_model::cells4::Point4;
 
-    /// Checks all simplices of a triangulation of random points with coordinates below `side`.
-    fn check<C: Coefficient>(side: u64) {
+    /// Checks all simplices of a triangulation of so many random points with coordinates below `side`.
+    fn check<C: Coefficient>(count: usize, side: u64) {
         let mut random = Random::new(side);
-        let points: Vec<Point4> = (0..300).map(|_| [(); 4].map(|()| random.below(side) as f64)).collect();
+        let points: Vec<Point4> = (0..count).map(|_| [(); 4].map(|()| random.below(side) as f64)).collect();
         let sites = Sites::new(distinct(points, None).0);
         let complex = triangulate::<C>(&sites, &mut Stats::default()).unwrap();
         let alive = (0..complex.simplices.len()).filter(|&number| !complex.is_dead(number));
@@ -191,8 +191,14 @@ mod tests {
 
     #[test]
     fn simplices_are_sorted_positive_and_linked() {
-        check::<i32>(6);
-        check::<f64>(100);
-        check::<f64>(1 << 20);
+        check::<i32>(300, 6);
+        check::<f64>(300, 100);
+        check::<f64>(300, 1 << 20);
+    }
+
+    #[test]
+    fn few_points_in_reserved_places() {
+        check::<i32>(16, 3);
+        check::<f64>(16, 100);
     }
 }

@@ -8,12 +8,12 @@ use super::complex::{Facet, NO_NEIGHBOUR, facet};
 /// Slots per simplex of a star, at least. The table holds two triangles per simplex.
 const SLOTS: usize = 8;
 
-/// A triangle of the border of a cavity, and the first facet of the star at it.
+/// A triangle of the border of a cavity, and the last facet of the star that came to it.
 #[derive(Debug, Clone, Copy)]
 struct Slot {
     /// In increasing order.
     triangle: [u32; 3],
-    /// That facet; [`NO_NEIGHBOUR`] in a free slot.
+    /// [`NO_NEIGHBOUR`] in a free slot.
     facet: Facet,
 }
 
@@ -38,11 +38,10 @@ impl Links {
         self.bits = size.ilog2();
     }
 
-    /// Links a simplex of the star with those at its triangles that came before it, if they have come.
+    /// Links a simplex of the star to those at its triangles that came before it.
     ///
-    /// `vertices` are those besides the centre, in increasing order but for the first two. The first of two
-    /// is linked to itself until the other one comes. That saves a branch on which it is, which is
-    /// unpredictable.
+    /// `vertices` are those besides the centre, in increasing order but for the first two. At a triangle where
+    /// none came before, the simplex is linked to itself: that saves an unpredictable branch.
     #[inline(always)]
     pub(super) fn link<C: Coefficient>(
         &mut self,
