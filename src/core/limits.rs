@@ -1,5 +1,7 @@
 //! All limits of inputs in one place, so that no input makes a reader allocate without bound.
 
+use crate::error::{Error, Result};
+
 /// Longest header body of a stream, in bytes.
 pub const HEADER_BODY_MAX: usize = 1 << 20;
 
@@ -13,8 +15,8 @@ pub const CRS_LEN_MAX: usize = HEADER_BODY_MAX - (1 << 12);
 /// Longest payload of a stream block, in bytes.
 pub const BLOCK_PAYLOAD_MAX: usize = 1 << 20;
 
-/// Most words of one cell of four dimensions: 8 GB, so that the block that completes it has fewer than 2^32
-/// words.
+/// Most words of one cell of four dimensions: 8 GB. The cells that one block completes then have fewer than
+/// 2^32 words in all.
 pub const CELL_WORDS_MAX: u64 = 1 << 31;
 
 /// Highest degree of configurations in a stream: an interior set then fits a block, and a line of a text
@@ -33,6 +35,15 @@ pub const PLAN_LEN_MAX: u64 = 1 << 30;
 /// Longest report of a node, in bytes: a leaf that a million files reach into.
 pub const REPORT_LEN_MAX: u64 = 1 << 26;
 
+/// Expanded bytes of gzip data that a program may hold, however small the data is. Lines take up to thirty times as
+/// much memory.
+pub const EXPANSION_FREE: u64 = 1 << 20;
+
+/// Most expanded bytes for each byte of gzip data of which a program holds the records, beyond
+/// [`EXPANSION_FREE`]. Structures expand 4 to 15 times, lattices of points 10 to 40 times; only records that
+/// repeat come near the 1,032 times of the format.
+pub const EXPANSION_MAX: u64 = 100;
+
 /// Longest line of a text input, in bytes.
 pub const TEXT_LINE_MAX: usize = 1 << 16;
 
@@ -45,7 +56,7 @@ pub const STRUCTURE_LINE_MAX: usize = 1 << 24;
 /// Most operators of a biological assembly of a structure.
 pub const ASSEMBLY_COPIES_MAX: usize = 1 << 14;
 
-/// Most copies of subchains in a biological assembly: sets of 40 MB. Virus capsids have some thousand.
+/// Most copies of subchains in a biological assembly: they take 40 MB. Virus capsids have some thousand.
 pub const ASSEMBLY_CHAINS_MAX: usize = 1 << 20;
 
 /// Most atoms of a biological assembly, in all models: 1.9 GB, and the names of chains.
@@ -54,8 +65,8 @@ pub const ASSEMBLY_ATOMS_MAX: usize = 1 << 25;
 /// Atoms that a biological assembly may have in any case: 40 MB with their tetrahedra.
 pub const ASSEMBLY_ATOMS_SMALL: usize = 1 << 17;
 
-/// Most atoms of a biological assembly of a file with some atoms. A few atoms do not become millions; ten
-/// thousand atoms of a capsid may have 1,680 copies.
+/// Most atoms of a biological assembly made from `atoms` atoms. It allows the 1,680 copies of ten thousand
+/// atoms of a capsid, but not that a few atoms become millions.
 #[must_use]
 pub const fn assembly_atoms_max(atoms: usize) -> usize {
     let copied = atoms.saturating_mul(atoms / 4);
@@ -99,6 +110,17 @@ pub const BREAKLINE_VERTICES_MAX: usize = 1 << 20;
 
 /// Most vertices of lines that become edges of a mesh: noding takes 2 GB for them.
 pub const LINE_VERTICES_MAX: usize = 1 << 24;
+
+/// Checks a number of vertices of lines.
+///
+/// # Errors
+/// Malformed, if there are more than [`LINE_VERTICES_MAX`].
+pub fn check_line_vertices(count: usize) -> Result<()> {
+    if count <= LINE_VERTICES_MAX {
+        return Ok(());
+    }
+    Err(Error::malformed(format!("more than {LINE_VERTICES_MAX} vertices of lines")))
+}
 
 /// Most crossings of lines: each becomes a vertex, and ends four edges.
 pub const LINE_CROSSINGS_MAX: usize = 1 << 23;
@@ -162,8 +184,17 @@ pub const WKB_DEPTH_MAX: u32 = 32;
 /// Longest file of radii, in bytes.
 pub const RADII_LEN_MAX: u64 = 1 << 24;
 
-/// Memory that SQLite may take, in bytes: the longest geometry must fit.
-pub const GEOPACKAGE_MEMORY_MAX: i64 = 1 << 30;
+/// Longest value that SQLite may make of a GeoPackage of so many bytes: a little more than the file.
+#[must_use]
+pub fn geopackage_value_max(len: u64) -> i32 {
+    i32::try_from(len.saturating_add(1 << 16)).unwrap_or(i32::MAX)
+}
+
+/// Most steps of SQLite for a GeoPackage of so many bytes. A row takes some ten steps, and at least as many bytes.
+#[must_use]
+pub fn geopackage_steps_max(len: u64) -> u64 {
+    len.saturating_mul(64).saturating_add(1_000_000)
+}
 
 /// Longest index of LAStools, in bytes: it takes five times as much while it is checked.
 pub const LAX_LEN_MAX: u64 = 1 << 25;
@@ -171,6 +202,13 @@ pub const LAX_LEN_MAX: u64 = 1 << 25;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_have_two_sides() {
+        assert!(check_line_vertices(LINE_VERTICES_MAX).is_ok());
+        let message = check_line_vertices(LINE_VERTICES_MAX + 1).unwrap_err().to_string();
+        assert_eq!(message, "more than 16777216 vertices of lines");
+    }
 
     #[test]
     fn assemblies_follow_their_files() {

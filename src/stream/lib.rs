@@ -93,6 +93,7 @@ mod write_configurations;
 mod writer;
 
 pub use ascending::{Ascending, Place};
+pub use cell_words::check_word_count;
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;
 pub use configurations::{check_degree, claim_from_name, claim_name};

@@ -7,12 +7,13 @@ use std::io::Read;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
+use rusqlite::limits::Limit;
 use rusqlite::types::ValueRef;
-use rusqlite::{Connection, OpenFlags};
+use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::{Breaklines, Collector, Properties, wkb};
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::{CRS_LEN_MAX, GEOPACKAGE_MEMORY_MAX};
+use spmesh_core::limits::{CRS_LEN_MAX, geopackage_steps_max, geopackage_value_max};
 use spmesh_crs::{System, differences, requested};
 use spmesh_stream::Crs;
 
@@ -30,11 +31,9 @@ struct Table {
 pub(super) fn read(path: &Path) -> Result<Breaklines> {
     let flags =
         OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    check_whole(path)?;
+    let len = check_whole(path)?;
     let database = Connection::open_with_flags(uri(path)?, flags).map_err(malformed)?;
-    // A file may not run code of its own, and may not take all memory.
-    database.pragma_update(None, "trusted_schema", false).map_err(malformed)?;
-    database.pragma_update(None, "hard_heap_limit", GEOPACKAGE_MEMORY_MAX).map_err(malformed)?;
+    confine(&database, len)?;
     let tables = tables(&database)?;
     let mut lines = Collector::default();
     let mut crs: Option<(Crs, &Table)> = None;
@@ -52,11 +51,28 @@ pub(super) fn read(path: &Path) -> Result<Breaklines> {
     lines.finish(crs.map_or(Crs::Unknown, |(crs, _)| crs))
 }
 
-/// Checks that the file has all of its pages: SQLite reads what it needs of a file that was cut off.
+/// How often steps of SQLite are counted.
+const STEPS: u32 = 1000;
+
+/// A file of so many bytes may not run code of its own, make values that are longer than itself, or compute
+/// for much longer than it takes to read it: views and generated columns are code.
+fn confine(database: &Connection, len: u64) -> Result<()> {
+    database.pragma_update(None, "trusted_schema", false).map_err(malformed)?;
+    database.set_limit(Limit::SQLITE_LIMIT_LENGTH, geopackage_value_max(len)).map_err(malformed)?;
+    let mut left = geopackage_steps_max(len) / u64::from(STEPS);
+    let is_over = move || {
+        left = left.saturating_sub(1);
+        left == 0
+    };
+    database.progress_handler(STEPS as i32, Some(is_over)).map_err(malformed)
+}
+
+/// Checks that the file has all of its pages: SQLite reads what it needs of a file that was cut off. Returns
+/// the length of the file.
 ///
 /// The header has the size of pages at byte 16 (1 stands for 65536) and their number at byte 28, which counts
 /// if bytes 24 and 92 state the same change.
-fn check_whole(path: &Path) -> Result<()> {
+fn check_whole(path: &Path) -> Result<u64> {
     let reading = |e| Error::io("reading", e);
     let mut file = File::open(path).map_err(|e| Error::io("opening", e))?;
     let found = file.metadata().map_err(reading)?.len();
@@ -75,7 +91,7 @@ fn check_whole(path: &Path) -> Result<()> {
             "the database was cut off: {found} bytes, expected {expected}"
         )));
     }
-    Ok(())
+    Ok(found)
 }
 
 /// The file as one that does not change: SQLite then makes no files beside it.
@@ -93,6 +109,12 @@ fn uri(path: &Path) -> Result<String> {
 }
 
 fn malformed(error: rusqlite::Error) -> Error {
+    if error.sqlite_error_code() == Some(ErrorCode::OperationInterrupted) {
+        return Error::malformed(
+            "the tables of the GeoPackage take far more steps than a file of its size should: save views as tables, \
+             for example with ogr2ogr",
+        );
+    }
     Error::malformed(format!("not a GeoPackage that can be read: {error}"))
 }
 
@@ -141,11 +163,11 @@ fn check_same(first: &Crs, other: &Table, own: &Crs, table: &Table) -> Result<()
 
 fn features(database: &Connection, table: &Table, lines: &mut Collector) -> Result<()> {
     let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-    let query = format!("SELECT {}, * FROM {}", quoted(&table.column), quoted(&table.name));
+    let properties_found = columns(database, table)?;
+    let names = std::iter::once(&table.column).chain(&properties_found).map(|name| quoted(name));
+    let query = format!("SELECT {} FROM {}", names.collect::<Vec<_>>().join(", "), quoted(&table.name));
     let mut statement = database.prepare(&query).map_err(malformed)?;
-    let names = statement.column_names().into_iter().map(str::to_string).enumerate().skip(1);
-    let columns: Vec<(usize, String)> =
-        names.filter(|(_, name)| Properties::default().of_name(name).is_some()).collect();
+    let columns: Vec<(usize, String)> = (1..).zip(properties_found).collect();
     let mut rows = statement.query([]).map_err(malformed)?;
     for number in 1u64.. {
         let position = || format!("table {:?}, row {number}", table.name);
@@ -163,6 +185,24 @@ fn features(database: &Connection, table: &Table, lines: &mut Collector) -> Resu
     Ok(())
 }
 
+/// The columns of a table that have properties of lines.
+fn columns(database: &Connection, table: &Table) -> Result<Vec<String>> {
+    let mut statement =
+        database.prepare("SELECT CAST(name AS BLOB) FROM pragma_table_xinfo(?)").map_err(malformed)?;
+    let mut rows = statement.query([&table.name]).map_err(malformed)?;
+    let mut found = Vec::new();
+    while let Some(row) = rows.next().map_err(malformed)? {
+        // Other names need not be text.
+        let name = row.get_ref(0).map_err(malformed)?.as_blob().unwrap_or_default();
+        if let Ok(name) = str::from_utf8(name)
+            && Properties::default().of_name(name).is_some()
+        {
+            found.push(name.to_string());
+        }
+    }
+    Ok(found)
+}
+
 fn properties(row: &rusqlite::Row, columns: &[(usize, String)]) -> rusqlite::Result<Properties> {
     let mut found = Properties::default();
     for (column, name) in columns {
@@ -177,4 +217,28 @@ fn properties(row: &rusqlite::Row, columns: &[(usize, String)]) -> rusqlite::Res
         }
     }
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_and_steps_have_limits() {
+        let database = Connection::open_in_memory().unwrap();
+        confine(&database, 0).unwrap();
+        let ask = |query: &str| database.query_row(query, [], |row| row.get::<_, i64>(0));
+        let longest = i64::from(geopackage_value_max(0));
+        assert_eq!(ask(&format!("SELECT length(zeroblob({longest}))")).unwrap(), longest);
+        let message = ask(&format!("SELECT length(zeroblob({}))", longest + 1)).unwrap_err().to_string();
+        assert!(message.contains("too big"), "{message}");
+        let count = |to: u32| {
+            ask(&format!(
+                "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c WHERE x < {to}) SELECT max(x) FROM c"
+            ))
+        };
+        assert_eq!(count(10_000).unwrap(), 10_000);
+        let message = malformed(count(10_000_000).unwrap_err()).to_string();
+        assert!(message.contains("more steps"), "{message}");
+    }
 }
