@@ -100,11 +100,17 @@ fn check_pipes(inputs: &[&Path]) -> Result<()> {
     Ok(())
 }
 
-/// Whether two outputs are one.
+/// Whether two outputs are one: a file, or a pipe.
 fn is_same(a: &Path, b: &Path) -> bool {
     let stdout = io::stdout();
     let place = |path| Place::of(path, stdout.as_fd());
-    is_standard(a) && is_standard(b) || place(a).is_some_and(|a| Some(a) == place(b))
+    let pipe = |path: &Path| {
+        let found = if is_standard(path) { metadata_of(stdout.as_fd()) } else { fs::metadata(path) };
+        found.ok().filter(|found| found.file_type().is_fifo()).map(|found| (found.dev(), found.ino()))
+    };
+    is_standard(a) && is_standard(b)
+        || place(a).is_some_and(|a| Some(a) == place(b))
+        || pipe(a).is_some_and(|a| Some(a) == pipe(b))
 }
 
 fn is_standard(path: &Path) -> bool {
@@ -176,6 +182,9 @@ mod tests {
         let pipe = path("pipe");
         check(&[pipe.clone(), path("a")], &[]).unwrap();
         symlink("pipe", path("soft")).unwrap();
+        check(&[], &[pipe.clone(), path("b")]).unwrap();
+        let error = check(&[], &[pipe.clone(), path("soft")]).unwrap_err();
+        assert!(error.to_string().contains("--one and --two would be mixed"), "{error}");
         for twice in [pipe.clone(), path("soft")] {
             let error = check(&[pipe.clone(), path("a"), twice.clone()], &[]).unwrap_err();
             let expected = format!("{}: is a pipe that is given twice", twice.display());

@@ -8,7 +8,8 @@ use crate::measured::{Measured, tool};
 
 pub struct Case {
     pub name: &'static str,
-    /// A command. `IN` is the input, `OUT` an output, `DATA/` the samples of the tests, `MESH` a mesh.
+    /// A command. `IN` is the input, `OUT` an output, `DATA/` the samples of the tests, `MESH` a mesh,
+    /// `POINTS` its points.
     pub line: &'static str,
     pub bytes: Vec<u8>,
     /// The exit code, and a part of the message: it must fail for the right reason.
@@ -47,7 +48,7 @@ impl Case {
     pub fn run(&self, folder: &Path) -> Measured {
         let here = |name: &str| folder.join(name).to_str().expect("the path is UTF-8").to_string();
         let data = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/");
-        if self.line.contains("MESH") && !folder.join("mesh.spm").exists() {
+        if (self.line.contains("MESH") || self.line.contains("POINTS")) && !folder.join("mesh.spm").exists() {
             fs::write(folder.join("points.txt"), "0 0 1\n9 0 2\n9 9 3\n0 9 4\n4 5 6\n").expect("a folder");
             let (points, mesh) = (here("points.spm"), here("mesh.spm"));
             assert!(tool("spfinalize").args([&here("points.txt"), "-qo", &points]).status().is_ok());
@@ -60,6 +61,7 @@ impl Case {
                 Some(("IN", ending)) => here(&format!("in.{ending}")),
                 Some(("OUT", ending)) => here(&format!("out.{ending}")),
                 _ if word == "MESH" => here("mesh.spm"),
+                _ if word == "POINTS" => here("points.spm"),
                 _ => word.replace("DATA/", data),
             })
             .collect();

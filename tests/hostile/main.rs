@@ -6,6 +6,7 @@
 
 mod bombs;
 mod cases;
+mod code;
 mod headers;
 mod measured;
 mod nested;
@@ -77,6 +78,12 @@ fn what_is_nested_stays_in_bounds() {
 #[test]
 fn what_multiplies_stays_in_bounds() {
     check(nested::products());
+}
+
+#[test]
+fn what_is_code_stays_in_bounds() {
+    check(code::databases());
+    check(code::shores());
 }
 
 /// The measurement sees memory and time that are really used.

@@ -1,9 +1,12 @@
 //! Wrong usage, damaged input, and outputs that cannot be written.
 
+use std::ffi::OsStr;
 use std::fs;
+use std::os::unix::ffi::OsStrExt;
+use std::path::Path;
 
 use super::molecules::{cloud, pdb};
-use crate::programs::{Folder, assert_silent_without_reader, cloud as scattered, outcome, run};
+use crate::programs::{Folder, assert_silent_without_reader, cloud as scattered, outcome, run, tool};
 
 #[test]
 fn wrong_usage_says_what_would_be_right() {
@@ -157,4 +160,28 @@ fn experiments_need_a_build_with_them() {
         assert!(message.contains("--features experiments"), "{flags:?}: {message}");
         assert!(!help.contains(flags[0]), "{flags:?}");
     }
+}
+
+#[test]
+fn names_that_are_no_text_stand_for_no_other_file() {
+    let folder = Folder::new();
+    // The first name is written as the second one.
+    let names = [OsStr::from_bytes(b"u\xff.xyz"), OsStr::new("u\u{fffd}.xyz")];
+    for (name, height) in names.into_iter().zip([1, 2]) {
+        let atoms = format!("0 0 0\n4 0 0\n0 4 0\n0 0 {height}\n");
+        fs::write(Path::new(&folder.path("")).join(name), atoms).unwrap();
+    }
+    let sweep = |names: &[&OsStr]| {
+        let mut tess3 = tool("tess3");
+        tess3.current_dir(folder.path("")).args(["--out-dir", "out", "--resume"]).args(names);
+        let output = tess3.output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{:?}", outcome(&output));
+    };
+    sweep(&names[..1]);
+    sweep(&names[1..]);
+    let output = Path::new(&folder.path("out")).join(OsStr::from_bytes(b"u\xff.spm"));
+    let first = fs::read(&output).unwrap();
+    fs::remove_file(&output).unwrap();
+    sweep(&names);
+    assert_eq!(fs::read(&output).unwrap(), first, "its output is not that of the other file");
 }

@@ -12,8 +12,13 @@ use spmesh_geometry::polygons::{Polygons, Side};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::points::Point2;
 
-/// Parts of the length of all shores that a cell has at least.
-const CELLS_ALONG: f64 = 1e6;
+/// Cells along all shores, at most: so many in any case, and so many for each edge. Few edges are found fast in
+/// large cells, too.
+const CELLS: f64 = 4096.0;
+const CELLS_PER_EDGE: f64 = 16.0;
+
+/// Cells along all shores, however many edges they have.
+const CELLS_MAX: f64 = 1e6;
 
 /// Mean distances between points that the width of shores is by default.
 const WIDTH_DISTANCES: f64 = 4.0;
@@ -65,7 +70,8 @@ impl Shores {
         let is_needed = |(number, _): &(u32, _)| needed[*number as usize];
         let edges: Vec<(u32, [Point2; 2])> = edges.into_iter().filter(is_needed).collect();
         let length: f64 = edges.iter().map(|(_, [a, b])| (b[0] - a[0]).hypot(b[1] - a[1])).sum();
-        let side = width.max(length / CELLS_ALONG).max(f64::MIN_POSITIVE);
+        let cells = (CELLS + CELLS_PER_EDGE * edges.len() as f64).min(CELLS_MAX);
+        let side = width.max(length / cells).max(f64::MIN_POSITIVE);
         let polygons = needed.len();
         let mut shores = Shores { edges, water, width, side, cells: HashMap::new(), polygons };
         for number in 0..shores.edges.len() {

@@ -146,7 +146,9 @@ fn stored(height: f64, place: &HeightPlace) -> Result<i32> {
     if height.is_nan() {
         return match place {
             HeightPlace::Field(_) => Ok(ExtraField::NO_DATA),
-            HeightPlace::Z => Err(Error::usage("the ground has no triangles: points have no heights")),
+            HeightPlace::Z => Err(Error::usage(
+                "points have no heights: the ground has no triangles, or they are too far away from it",
+            )),
         };
     }
     let stored = height as i32;

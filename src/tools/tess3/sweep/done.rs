@@ -65,16 +65,17 @@ impl Done {
         Ok(done)
     }
 
-    /// The file, if it is done with the same options by the same version.
+    /// The file, if it is done with the same options by the same version. A name that is not UTF-8 is written
+    /// with other characters, which may be the name of another file: it counts as not done.
     pub(super) fn file(&self, path: &Path, options: &str, version: &str) -> Option<&DoneFile> {
-        let file = self.by_file.get(&*path.to_string_lossy())?;
+        let file = self.by_file.get(path.to_str()?)?;
         let is_same = |row: &Row| row.get("options") == options && row.get("version") == version;
         file.rows.iter().all(is_same).then_some(file)
     }
 
     /// Takes out a file, which will be done again.
     pub(super) fn take(&mut self, path: &Path) -> Option<DoneFile> {
-        self.by_file.remove(&*path.to_string_lossy())
+        self.by_file.remove(path.to_str()?)
     }
 
     /// Names of all outputs, without one, two, ... of their extensions.
