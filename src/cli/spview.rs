@@ -23,7 +23,7 @@ use spmesh_core::system;
 use spmesh_io::raster::Light;
 use spmesh_stream::{Kind, StreamReader};
 use spmesh_view::{Extent, Fill, Form, Moments, Options, Picture, When};
-use tee::Tee;
+use tee::{Passed, Tee};
 
 const TOOL: &str = "spview";
 
@@ -237,7 +237,7 @@ enum WhenFlag {
 /// As [`spmesh_view::draw`], and if the input or an output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
-    let mut options = flags.options()?;
+    let options = flags.options()?;
     let is_numbered = flags.snapshot.is_some();
     check_apart(flags.outline.mask_path(), &[("--output", &flags.output)])?;
     let mut outputs = Outputs::new(&flags.output, flags.format, is_numbered, flags.tee, &flags.input)?;
@@ -253,19 +253,43 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if flags.eye.is_some() {
         return Err(Error::usage("--eye is for surfaces in PLY, this is none").of_input(name).into());
     }
-    let input: Box<dyn Read> = if flags.tee { Box::new(Tee::new(input)?) } else { Box::new(input) };
-    let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, input), name)?;
+    let input = BufReader::with_capacity(BUFFER_LEN, input);
+    draw_stream(&flags, options, outputs, input, name)
+}
+
+/// Draws a stream, and passes it on if `--tee` is given.
+fn draw_stream(
+    flags: &Flags,
+    mut options: Options,
+    mut outputs: Outputs,
+    input: impl Read + 'static,
+    name: String,
+) -> anyhow::Result<()> {
+    let passed = flags.tee.then(Passed::to_stdout).transpose()?;
+    let input: Box<dyn Read> = match &passed {
+        Some(passed) => Box::new(Tee::new(input, passed.clone())),
+        None => Box::new(input),
+    };
+    let mut reader = StreamReader::new(input, name)?;
+    // The header is right.
+    passed.iter().for_each(Passed::confirm);
     let extent = flags.extent(&reader)?;
     options.extent = extent.and_then(|extent| extent.bounds);
     let moments =
         Moments { at: flags.moment(&reader, extent)?, every: flags.snapshot.map(|Every(count)| count) };
     let mut progress = Progress::new(&flags.common, "drawing", reader.header().points);
     let mut take = |picture: &Picture| outputs.put(picture);
-    let drawn = spmesh_view::draw(&mut reader, &options, moments, &mut take, |count| progress.set(count));
+    let drawn = spmesh_view::draw(&mut reader, &options, moments, &mut take, |count| {
+        passed.iter().for_each(Passed::confirm);
+        progress.set(count);
+    });
     drop(progress);
     drawn?;
     drop(reader);
-    if let Some(summary) = outputs.finish()? {
+    let summary = outputs.finish()?;
+    // The end of the stream waits for the pictures: if one fails, the next program must not see a whole stream.
+    passed.iter().try_for_each(Passed::finish)?;
+    if let Some(summary) = summary {
         notice(TOOL, &flags.common, &summary);
     }
     Ok(())

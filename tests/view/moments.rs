@@ -1,7 +1,9 @@
 //! Pictures of moments of a stream, and the copy that `spview --tee` passes on.
 
 use std::collections::{HashMap, HashSet};
+use std::path::Path;
 
+use spmesh_core::upstream::mark;
 use spmesh_stream::{Event, StreamReader};
 use spmesh_view::{Moments, Options};
 
@@ -96,10 +98,55 @@ fn a_pipe_goes_through_unchanged() {
     let read = |name: &str| std::fs::read(folder.path(name)).unwrap();
     assert!(read("shots-003.png") == read("whole.png"));
     assert!(read("shots-002.png") != read("whole.png"));
-    // A malformed stream is passed on up to the fault, which the next reader will report.
-    let half = &points[..points.len() / 2];
-    let passed = run("spview", &["--tee", "-o", &whole], half);
-    assert_eq!((passed.status.code(), &passed.stdout[..]), (Some(3), half));
+}
+
+/// Where the blocks of a stream start, END included.
+fn starts(stream: &[u8]) -> Vec<usize> {
+    let mut reader = StreamReader::new(stream, "points").unwrap();
+    let mut starts = vec![reader.bytes_read() as usize];
+    while reader.next_event().unwrap().is_some() {
+        starts.push(reader.bytes_read() as usize);
+    }
+    assert_eq!(starts.pop(), Some(stream.len()));
+    starts
+}
+
+/// Of a malformed stream, the blocks before the fault are passed on: no damaged block, and no END.
+#[test]
+fn damaged_blocks_are_not_passed_on() {
+    let folder = Folder::new();
+    let points = output("spfinalize", &["--cell-points", "40", "-"], grid(20).as_bytes());
+    let picture = folder.path("picture.png");
+    let starts = starts(&points);
+    for block in [0, starts.len() / 2, starts.len() - 1] {
+        let start = starts[block];
+        let mut damaged = points.clone();
+        damaged[start + 20] ^= 1;
+        for input in [&damaged[..], &points[..start + 20]] {
+            let passed = run("spview", &["--tee", "-o", &picture], input);
+            let (code, message) = outcome(&passed);
+            assert_eq!(code, Some(3), "block {block}: {message}");
+            assert!(message.contains(&format!("block {block} at byte {start}")), "{message}");
+            let mark = &mark(3)[..];
+            assert!(passed.stdout == [&points[..start], mark].concat(), "block {block}");
+            let (code, message) = outcome(&run("spdelaunay2d", &[], &passed.stdout));
+            assert_eq!((code, &message[..]), (Some(3), ""));
+        }
+    }
+    // What follows END is not right either.
+    let longer = [&points[..], b"x"].concat();
+    let passed = run("spview", &["--tee", "-o", &picture], &longer);
+    assert_eq!(outcome(&passed).0, Some(3));
+    assert!(passed.stdout.len() < points.len() && !Path::new(&picture).exists());
+}
+
+/// A picture that cannot be written leaves the stream without its END.
+#[test]
+fn a_failed_picture_fails_the_pipe() {
+    let points = output("spfinalize", &["-"], grid(20).as_bytes());
+    let passed = run("spview", &["--tee", "--format", "png", "-o", "/dev/full"], &points);
+    assert_eq!(outcome(&passed).0, Some(1));
+    assert_eq!(outcome(&run("spdelaunay2d", &[], &passed.stdout)), (Some(1), String::new()));
 }
 
 #[test]
