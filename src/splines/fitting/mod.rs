@@ -77,7 +77,7 @@ pub use refine::{Refined, refine};
 pub use residuals::{Residual, Summary, for_each_residual, summarise};
 pub use robust::{Loss, RobustFit, RobustStart, robust, robust_from, robust_on};
 pub use solve::{Equations, Solution, Undetermined, least_squares};
-pub use spacing::spacing;
+pub use spacing::{Spacing, spacing};
 pub use spline_space::SplineSpace;
 pub use symmetric::Symmetric;
 pub use tension::{TENSIONS, Tense, choose_tension, with_tension};

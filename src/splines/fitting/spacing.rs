@@ -8,6 +8,17 @@ use spmesh_core::error::Result;
 const PER_CELL: f64 = 4.0;
 /// The most cells along a side.
 const CELLS_MAX: f64 = 4096.0;
+/// Observations of a cell that count as different places, at most.
+const PLACES_PER_CELL: f64 = 16.0;
+
+/// How observations are spread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spacing {
+    /// Their typical distance. Units: those of coordinates.
+    pub distance: f64,
+    /// About the number of their places, but of those that are crowded only some.
+    pub places: f64,
+}
 
 /// The typical distance of observations: the root of the area per observation. The area is that of the cells
 /// with observations, of a grid over the box with four of them per cell on average. So gaps do not count.
@@ -16,7 +27,7 @@ const CELLS_MAX: f64 = 4096.0;
 ///
 /// # Errors
 /// Observations that span no area; those of the source.
-pub fn spacing<O: Observations + ?Sized>(observations: &O) -> Result<f64> {
+pub fn spacing<O: Observations + ?Sized>(observations: &O) -> Result<Spacing> {
     let [lower, upper] = bounds(observations)?;
     let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
     let count = for_each(observations, |_| ())?;
@@ -30,8 +41,10 @@ pub fn spacing<O: Observations + ?Sized>(observations: &O) -> Result<f64> {
         });
         is_used[cell[1] * cells[0] + cell[0]] = true;
     })?;
-    let used = is_used.iter().filter(|&&used| used).count() as f64 / is_used.len() as f64;
-    Ok((used * sides[0] * sides[1] / count as f64).sqrt())
+    let used = is_used.iter().filter(|&&used| used).count() as f64;
+    let part = used / is_used.len() as f64;
+    let distance = (part * sides[0] * sides[1] / count as f64).sqrt();
+    Ok(Spacing { distance, places: (PLACES_PER_CELL * used).min(count as f64) })
 }
 
 fn for_each<O: Observations + ?Sized>(observations: &O, mut visit: impl FnMut([f64; 2])) -> Result<u64> {
@@ -59,12 +72,17 @@ mod tests {
             .map(|point| Observation::new(point, 0.0))
             .collect();
         let found = spacing(&all).unwrap();
-        assert!((found - 1.0).abs() < 0.05, "{found}");
+        assert!((found.distance - 1.0).abs() < 0.05 && found.places == 10_000.0, "{found:?}");
         // Half of the box is empty, except for its corner.
         let mut some: Vec<Observation> = all.iter().copied().filter(|one| one.point[0] < 50.0).collect();
         some.push(all[9_999]);
         let found = spacing(&some).unwrap();
-        assert!((found - 1.0).abs() < 0.1, "{found}");
+        assert!((found.distance - 1.0).abs() < 0.1 && found.places == 5_001.0, "{found:?}");
+        // Of a thousand observations at one place, a few count.
+        let mut crowded = vec![all[0]; 1_000];
+        crowded.push(all[9_999]);
+        let found = spacing(&crowded).unwrap();
+        assert!(found.distance < 0.3 && found.places == 32.0, "{found:?}");
         assert!(spacing(&all[..1]).is_err());
     }
 }

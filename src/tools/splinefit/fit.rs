@@ -13,7 +13,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_io::source::Opened;
 use spmesh_splines::fitting::{
     self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, Residual, RobustFit, Round,
-    Solution, SplineSpace,
+    Solution, Spacing, SplineSpace,
 };
 
 /// The default tolerance, as a part of the range of elevations.
@@ -28,6 +28,9 @@ const POINTS_PER_KNOT: u64 = 4;
 const KNOTS_MAX_FIRST: usize = 5_000;
 /// This grid: terrain needs several functions for each point.
 const FINE: GridSize = GridSize { step: 0.5, knots_max: 600_000.0 };
+/// Knots of a grid for each place of points, at most: four where no part of the box is empty. Without this limit, a
+/// thousand points at one place, with some far away, would take as many knots as a million points.
+const KNOTS_PER_PLACE: f64 = 16.0;
 /// The grid over which the smoothing is chosen, which takes many solutions. What these knots cannot follow
 /// counts as noise, and a little more smoothing predicts a little better.
 const CHOICE: GridSize = GridSize { step: 1.0, knots_max: 100_000.0 };
@@ -44,9 +47,10 @@ struct GridSize {
 }
 
 impl GridSize {
-    /// The side of cells over a box with this area, for this distance of points.
-    fn side(&self, area: f64, distance: f64) -> f64 {
-        (self.step * distance).max((area / self.knots_max).sqrt())
+    /// The side of cells over a box with this area, for points that are spread like this.
+    fn side(&self, area: f64, spread: Spacing) -> f64 {
+        let knots_max = self.knots_max.min(KNOTS_PER_PLACE * spread.places);
+        (self.step * spread.distance).max((area / knots_max).sqrt())
     }
 }
 
@@ -196,9 +200,9 @@ fn finer_grid(
     let frame = Frame::world(points.crs().clone());
     let all = points.in_frame(&frame, done);
     let [lower, upper] = fitting::bounds(&all).map_err(|error| error.of_input(points.name()))?;
-    let (area, distance) = ((upper[0] - lower[0]) * (upper[1] - lower[1]), fitting::spacing(&all)?);
+    let (area, spread) = ((upper[0] - lower[0]) * (upper[1] - lower[1]), fitting::spacing(&all)?);
     let grid = |size: GridSize| {
-        let side = size.side(area, distance);
+        let side = size.side(area, spread);
         if area / (side * side) < known as f64 {
             return Ok(None);
         }
