@@ -82,11 +82,8 @@ impl Polygons {
         if self.cells.side(cell) == Some(Side::Outside) {
             return;
         }
-        self.rows.for_each_at(place, |polygon, side| {
-            if side == Side::Inside {
-                found(polygon);
-            }
-        });
+        let inside = self.rows.at(place).filter(|(_, side)| *side == Side::Inside);
+        inside.for_each(|(polygon, _)| found(polygon));
     }
 }
 

@@ -108,30 +108,31 @@ impl Rows {
     /// Where a place lies.
     pub(super) fn side(&self, place: Point2) -> Side {
         let mut found = Side::Outside;
-        self.for_each_at(place, |_, side| found = found.max(side));
+        for (_, side) in self.at(place) {
+            found = found.max(side);
+            // Thousands of polygons may lie on each other, of which one decides.
+            if found == Side::Inside {
+                break;
+            }
+        }
         found
     }
 
-    /// Calls `found` with the polygons that have a place inside or on their border, in increasing order.
-    pub(super) fn for_each_at(&self, place: Point2, mut found: impl FnMut(u32, Side)) {
-        if self.edges.is_empty() {
-            return;
-        }
-        let row = self.row(place[1]);
-        let entries = self.entries.get(row);
-        for group in &self.groups[self.starts[row]..self.starts[row + 1]] {
-            let Group { width: [low, high], places: [first, behind] } = *group;
+    /// The polygons that have a place inside or on their border, in increasing order.
+    pub(super) fn at(&self, place: Point2) -> impl Iterator<Item = (u32, Side)> {
+        let row = if self.edges.is_empty() { None } else { Some(self.row(place[1])) };
+        let entries = row.map_or(&[][..], |row| self.entries.get(row));
+        let groups = row.map_or(&[][..], |row| &self.groups[self.starts[row]..self.starts[row + 1]]);
+        groups.iter().filter_map(move |&Group { width: [low, high], places: [first, behind] }| {
             // Beyond these edges, a ray to the right meets none of them, or each crossing has its
             // counterpart.
             if place[0] < low || place[0] > high {
-                continue;
+                return None;
             }
             let edges = &entries[first as usize..behind as usize];
             let side = self.side_of(edges, place);
-            if side != Side::Outside {
-                found(self.edges[edges[0] as usize].polygon, side);
-            }
-        }
+            (side != Side::Outside).then(|| (self.edges[edges[0] as usize].polygon, side))
+        })
     }
 
     /// Where a place lies for a polygon with these edges in its row.
