@@ -9,7 +9,7 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 
 use super::compression::Compression;
-use super::{Common, StatsFormat, notice, open_input, progress::Progress};
+use super::{Common, StatsFormat, notice, open_held, progress::Progress};
 use crate::endings;
 use spmesh_configgen::{Border, BoxName, Flips, Made, Options, Places, RuleName, Sites, SpecialKind};
 use spmesh_configgen::{read_features, read_patches};
@@ -268,7 +268,7 @@ fn is_stdin(path: &Path) -> bool {
 /// Parses a file, if there is one.
 fn read<T>(path: Option<&PathBuf>, parse: impl FnOnce(Box<dyn Read>) -> Result<T>) -> Result<Option<T>> {
     let parsed = path.map(|path| {
-        let (input, name) = open_input(path)?;
+        let (input, name) = open_held(path)?;
         parse(input).map_err(|e| e.of_input(name))
     });
     parsed.transpose()

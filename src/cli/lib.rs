@@ -180,17 +180,34 @@ pub fn peak_memory() -> u64 {
 /// # Errors
 /// If the file cannot be opened, or stdin is a terminal.
 pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Send>, String)> {
+    open_as(path, |input| Plain::new(input))
+}
+
+/// As [`open_input`], for a program that holds what it reads: see [`Plain::held`].
+///
+/// # Errors
+/// As [`open_input`].
+pub fn open_held(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Send>, String)> {
+    open_as(path, |input| Plain::held(input))
+}
+
+/// Opens an input, and decompresses it by `plain`.
+fn open_as(
+    path: &Path,
+    plain: impl Fn(Box<dyn Read + Send>) -> std::io::Result<Plain<Box<dyn Read + Send>>>,
+) -> spmesh_core::error::Result<(Box<dyn Read + Send>, String)> {
     let name = name_of(path);
     let reading = |e| Error::io("reading", e).of_input(&name);
     if path.as_os_str() == "-" {
         refuse_terminal()?;
-        return Ok((plain(open_stdin()?).map_err(reading)?, name));
+        let input = plain(Box::new(open_stdin()?)).map_err(reading)?;
+        return Ok((Box::new(input), name));
     }
     let (file, _) = open_file(path).map_err(|e| e.of_input(&name))?;
     if is_manifest(&file) {
         return Ok((Box::new(open_manifest(path)?), name));
     }
-    Ok((plain(file).map_err(reading)?, name))
+    Ok((Box::new(plain(Box::new(file)).map_err(reading)?), name))
 }
 
 /// The files that `--lof` lists, one per line; empty lines and lines that start with `#` do not
@@ -199,7 +216,7 @@ pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Sen
 /// # Errors
 /// If the list cannot be read, or is no list of at most [`LIST_FILES_MAX`] files; usage, if it lists no file.
 pub fn read_list(list: &Path) -> spmesh_core::error::Result<Vec<PathBuf>> {
-    let (input, name) = open_input(list)?;
+    let (input, name) = open_held(list)?;
     let files = listed(BufReader::new(input)).map_err(|e| e.of_input(&name))?;
     if files.is_empty() {
         return Err(Error::usage("lists no files").of_input(&name));
@@ -229,11 +246,6 @@ fn listed(mut input: impl BufRead) -> spmesh_core::error::Result<Vec<PathBuf>> {
         }
     }
     Ok(files)
-}
-
-/// The bytes of `input`, decompressed if they are compressed.
-fn plain(input: impl Read + Send + 'static) -> std::io::Result<Box<dyn Read + Send>> {
-    Plain::new(input).map(|plain| Box::new(plain) as Box<dyn Read + Send>)
 }
 
 /// Refuses to read from a terminal.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::open_input;
+use super::open_held;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::{Mask, read_mask};
 
@@ -55,7 +55,7 @@ impl OutlineFlags {
     /// If the file cannot be read, or is malformed.
     pub(super) fn mask(&self) -> Result<Option<Arc<Mask>>> {
         let Some(path) = &self.mask else { return Ok(None) };
-        let (input, name) = open_input(path)?;
+        let (input, name) = open_held(path)?;
         read_mask(input).map(|mask| Some(Arc::new(mask))).map_err(|error| error.of_input(name))
     }
 }

@@ -271,7 +271,13 @@ fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<PointSet>> {
         Coordinates::F64 => None,
         Coordinates::I32 { scale, offset } => Some((scale, offset)),
     };
-    let options = SourceOptions { reader: &SPINFO, dims: mesh.dims, grid, ..SourceOptions::default() };
+    let options = SourceOptions {
+        reader: &SPINFO,
+        dims: mesh.dims,
+        grid,
+        holds_points: true,
+        ..SourceOptions::default()
+    };
     let input = Input::open(&flags.points, &options)?;
     input.notices().iter().for_each(|text| notice("spinfo", &flags.common, text));
     let mut points = PointSet::new(input.description().coordinates, mesh.dims);

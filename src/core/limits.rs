@@ -1,5 +1,7 @@
 //! All limits of inputs in one place, so that no input makes a reader allocate without bound.
 
+use crate::error::{Error, Result};
+
 /// Longest header body of a stream, in bytes.
 pub const HEADER_BODY_MAX: usize = 1 << 20;
 
@@ -32,6 +34,15 @@ pub const PLAN_LEN_MAX: u64 = 1 << 30;
 
 /// Longest report of a node, in bytes: a leaf that a million files reach into.
 pub const REPORT_LEN_MAX: u64 = 1 << 26;
+
+/// Expanded bytes of gzip data that a program may hold, however small the data is. Lines take up to thirty times as
+/// much memory.
+pub const EXPANSION_FREE: u64 = 1 << 20;
+
+/// Most expanded bytes for each byte of gzip data of which a program holds the records, beyond
+/// [`EXPANSION_FREE`]. Structures expand 4 to 15 times, lattices of points 10 to 40 times; only records that
+/// repeat come near the 1,032 times of the format.
+pub const EXPANSION_MAX: u64 = 100;
 
 /// Longest line of a text input, in bytes.
 pub const TEXT_LINE_MAX: usize = 1 << 16;
@@ -99,6 +110,17 @@ pub const BREAKLINE_VERTICES_MAX: usize = 1 << 20;
 
 /// Most vertices of lines that become edges of a mesh: noding takes 2 GB for them.
 pub const LINE_VERTICES_MAX: usize = 1 << 24;
+
+/// Checks a number of vertices of lines.
+///
+/// # Errors
+/// Malformed, if there are more than [`LINE_VERTICES_MAX`].
+pub fn check_line_vertices(count: usize) -> Result<()> {
+    if count <= LINE_VERTICES_MAX {
+        return Ok(());
+    }
+    Err(Error::malformed(format!("more than {LINE_VERTICES_MAX} vertices of lines")))
+}
 
 /// Most crossings of lines: each becomes a vertex, and ends four edges.
 pub const LINE_CROSSINGS_MAX: usize = 1 << 23;
@@ -171,6 +193,13 @@ pub const LAX_LEN_MAX: u64 = 1 << 25;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_have_two_sides() {
+        assert!(check_line_vertices(LINE_VERTICES_MAX).is_ok());
+        let message = check_line_vertices(LINE_VERTICES_MAX + 1).unwrap_err().to_string();
+        assert_eq!(message, "more than 16777216 vertices of lines");
+    }
 
     #[test]
     fn assemblies_follow_their_files() {

@@ -64,7 +64,7 @@ pub(crate) struct Ring {
 pub(crate) fn rings(files: &[(Role, String, Breaklines)]) -> Result<Vec<Ring>> {
     let of_areas = numbered(files).filter(|line| matches!(line.role, Role::Hull | Role::Holes));
     let ring = |Numbered { role, file, number, polygon, line }: Numbered| {
-        check_ring(line).map_err(|error| error.at(&line.position).of_input(file))?;
+        check_ring(line).map_err(|error| error.at(&*line.position).of_input(file))?;
         Ok(Ring { role, line: number, polygon: polygon.expect("a ring has a polygon") })
     };
     of_areas.map(ring).collect()

@@ -1,6 +1,7 @@
 //! Rivers by two banks: what closes them at their ends, and whether all of this bounds an area.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::areas::Role;
 use spmesh_io::source::{Breakline, Breaklines, Properties};
@@ -62,7 +63,7 @@ fn ends([left, right]: &[Vec<&Breakline>; 2]) -> Vec<Breakline> {
         vertices: vec![left.vertices[a], right.vertices[b]],
         elevations: vec![left.elevations[a], right.elevations[b]],
         polygon: None,
-        properties: Properties { river: left.properties.river.clone(), ..Properties::default() },
+        properties: Arc::new(Properties { river: left.properties.river.clone(), ..Properties::default() }),
         position: left.position.clone(),
     };
     let last = [left, right].map(|bank| bank.vertices.len() - 1);

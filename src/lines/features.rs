@@ -1,5 +1,7 @@
 //! The features of water among the lines of files, before noding.
 
+use std::sync::Arc;
+
 use super::Target;
 use super::areas::Role;
 use super::banks::Bank;
@@ -7,7 +9,7 @@ use super::numbered::{Numbered, numbered};
 use super::polygons::check_ring;
 use super::water::{Place, Stated};
 use spmesh_core::error::{Error, Result};
-use spmesh_io::source::{Breakline, Breaklines};
+use spmesh_io::source::{Breakline, Breaklines, Properties};
 
 /// A feature of water, or one ring of it.
 pub(crate) struct Feature {
@@ -15,7 +17,7 @@ pub(crate) struct Feature {
     pub(crate) kind: FeatureKind,
     /// Of a lake: its level, if the file states one.
     pub(crate) level: Option<Stated>,
-    pub(crate) river: Option<String>,
+    properties: Arc<Properties>,
     /// Whether it has elevations.
     pub(crate) is_hard: bool,
     pub(crate) position: Place,
@@ -33,6 +35,11 @@ pub(crate) enum FeatureKind {
 }
 
 impl Feature {
+    /// The name of its river.
+    pub(crate) fn river(&self) -> Option<&str> {
+        self.properties.river.as_deref()
+    }
+
     /// The polygon that it is a ring of.
     pub(crate) fn polygon(&self) -> Option<u32> {
         match self.kind {
@@ -57,15 +64,15 @@ pub(crate) fn features(files: &[(Role, String, Breaklines)], target: &Target) ->
 
 fn feature(numbered: &Numbered, target: &Target) -> Result<Feature> {
     let &Numbered { file, number, line, .. } = numbered;
-    let position = Place { file: file.to_string(), position: line.position.clone() };
+    let position = Place { file: file.to_string(), position: Arc::clone(&line.position) };
     let kind = kind(numbered).map_err(|message| position.fault(message))?;
     if matches!(kind, FeatureKind::Ring(_)) {
-        check_ring(line).map_err(|error| error.at(&line.position).of_input(file))?;
+        check_ring(line).map_err(|error| error.at(&*line.position).of_input(file))?;
     }
     let level = level(line, target).map_err(|message| position.fault(message))?;
     let is_hard = line.elevations.iter().any(Option::is_some);
-    let river = line.properties.river.clone();
-    Ok(Feature { line: number, kind, level, river, is_hard, position })
+    let properties = Arc::clone(&line.properties);
+    Ok(Feature { line: number, kind, level, properties, is_hard, position })
 }
 
 fn kind(&Numbered { role, polygon, line, .. }: &Numbered) -> std::result::Result<FeatureKind, String> {

@@ -24,7 +24,7 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::{LINE_CROSSINGS_MAX, LINE_VERTICES_MAX};
+use spmesh_core::limits::{LINE_CROSSINGS_MAX, check_line_vertices};
 use spmesh_geometry::noding::{LineVertex, Noded, NodingOptions, node_lines};
 use spmesh_io::source::{Breaklines, name_of, read_breaklines};
 use spmesh_model::network::{Network, NetworkVertex};
@@ -134,10 +134,7 @@ fn read_all(
     let features = features::features(&files, target)?;
     let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
     let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
-    let noding = NodingOptions {
-        round_elevations: matches!(target.coordinates, Coordinates::I32 { .. }),
-        crossings_max: LINE_CROSSINGS_MAX,
-    };
+    let noding = noding(target);
     let mut note = |change, line, place| changes.note(ChangeKind::of(change), line, || grid.world(place));
     if rings.is_empty() && features.is_empty() {
         let noded = node_lines(Cow::Owned(vertices), &starts, &noding, &mut note)?;
@@ -147,6 +144,13 @@ fn read_all(
     let bent = Bent::new(&noded, &vertices, &starts);
     let (areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
     Ok((network(noded, &grid), areas, water, changes))
+}
+
+fn noding(target: &Target) -> NodingOptions {
+    NodingOptions {
+        round_elevations: matches!(target.coordinates, Coordinates::I32 { .. }),
+        crossings_max: LINE_CROSSINGS_MAX,
+    }
 }
 
 /// The vertices of all lines on the grid, and the number of the first one of each line.
@@ -162,13 +166,12 @@ fn stored(
             let number = starts.len() as u32;
             starts.push(vertices.len() as u32);
             let position = line.position.clone();
-            let fault = |error: Error| error.at(position.clone()).of_input(name.clone());
+            let fault = |error: Error| error.at(&*position).of_input(name.clone());
             let line = prepare::prepare(line, number, options.densify, changes).map_err(fault)?;
-            if vertices.len() + line.len() > LINE_VERTICES_MAX {
-                let remedy = if options.densify.is_some() { ": divide parts less (--densify)" } else { "" };
-                let message = format!("more than {LINE_VERTICES_MAX} vertices of lines{remedy}");
-                return Err(fault(Error::malformed(message)));
-            }
+            check_line_vertices(vertices.len() + line.len()).map_err(|error| match options.densify {
+                Some(_) => fault(error.noting("divide parts less: --densify")),
+                None => fault(error),
+            })?;
             let first = vertices.len();
             for &(place, z) in &line {
                 vertices.push(grid.vertex(place, z, number, changes).map_err(fault)?);
@@ -183,4 +186,16 @@ fn network(noded: Noded, grid: &Grid) -> Network {
     let vertex = |vertex: LineVertex| NetworkVertex { place: grid.stored(vertex.place), z: vertex.z };
     let vertices = noded.vertices.into_iter().map(vertex).collect();
     Network { vertices, segments: noded.segments, step: grid.step() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Noding itself is tested with fewer crossings, at both sides.
+    #[test]
+    fn crossings_are_limited() {
+        let target = Target { coordinates: Coordinates::F64, crs: Crs::Unknown, has_elevation: true };
+        assert_eq!(noding(&target).crossings_max, LINE_CROSSINGS_MAX);
+    }
 }

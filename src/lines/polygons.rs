@@ -26,7 +26,7 @@ pub fn read_polygons(paths: &[PathBuf], target: &Target) -> Result<(Vec<Rings>, 
         for same in file.lines.chunk_by(|a, b| a.polygon == b.polygon) {
             let ring = |line: &Breakline| {
                 let ring = ring(line, &target.coordinates);
-                ring.map_err(|error| error.at(&line.position).of_input(&name))
+                ring.map_err(|error| error.at(&*line.position).of_input(&name))
             };
             polygons.push(same.iter().map(ring).collect::<Result<_>>()?);
         }

@@ -1,8 +1,8 @@
 //! Lines before noding: without repeated vertices and gaps of elevations, and with long parts divided.
 
 use super::changes::{ChangeKind, Changes};
-use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::LINE_VERTICES_MAX;
+use spmesh_core::error::Result;
+use spmesh_core::limits::check_line_vertices;
 use spmesh_io::source::Breakline;
 use spmesh_model::points::Point2;
 
@@ -92,12 +92,9 @@ fn divide(vertices: &[Vertex], longest: f64, number: u32, changes: &mut Changes)
     for (index, &vertex) in vertices.iter().enumerate() {
         if let Some(&before) = index.checked_sub(1).and_then(|before| vertices.get(before)) {
             let count = (length(before.0, vertex.0) / longest).ceil();
-            if count + divided.len() as f64 > LINE_VERTICES_MAX as f64 {
-                return Err(Error::malformed(format!(
-                    "parts of at most {longest:?} make more than {LINE_VERTICES_MAX} vertices: divide lines \
-                     less"
-                )));
-            }
+            // A count beyond the numbers of `usize` becomes the greatest of them.
+            check_line_vertices((count as usize).saturating_add(divided.len()))
+                .map_err(|error| error.noting(&format!("parts of at most {longest:?}: divide lines less")))?;
             let is_reversed = vertex.0 < before.0;
             let (a, b) = if is_reversed { (vertex, before) } else { (before, vertex) };
             for step in 1..count as u32 {
@@ -116,6 +113,8 @@ fn divide(vertices: &[Vertex], longest: f64, number: u32, changes: &mut Changes)
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use spmesh_io::source::Properties;
 
@@ -125,8 +124,8 @@ mod tests {
             vertices,
             elevations,
             polygon: None,
-            properties: Properties::default(),
-            position: String::new(),
+            properties: Arc::default(),
+            position: "".into(),
         };
         let mut changes = Changes::new(false);
         (prepare(line, 0, densify, &mut changes).unwrap(), changes)
@@ -172,8 +171,8 @@ mod tests {
                     vertices: vec![[0.0, 0.0], [1.0, 0.0]],
                     elevations: vec![None; 2],
                     polygon: None,
-                    properties: Properties::default(),
-                    position: String::new()
+                    properties: Arc::default(),
+                    position: "".into()
                 },
                 0,
                 Some(1e-300),

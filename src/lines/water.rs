@@ -4,6 +4,7 @@
 //! `levels`.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::areas::odd;
 use super::banks::check;
@@ -75,12 +76,12 @@ pub(crate) enum Course {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Place {
     pub(crate) file: String,
-    pub(crate) position: String,
+    pub(crate) position: Arc<str>,
 }
 
 impl Place {
     pub(crate) fn fault(&self, message: impl Into<String>) -> Error {
-        Error::malformed(message).at(&self.position).of_input(&self.file)
+        Error::malformed(message).at(&*self.position).of_input(&self.file)
     }
 }
 
@@ -152,7 +153,7 @@ impl Water {
 pub(crate) fn water(features: &[Feature], bent: &Bent, grid: &Grid) -> Result<Water> {
     let mut rivers: BTreeMap<&str, Lines> = BTreeMap::new();
     for feature in features {
-        if let Some(river) = &feature.river {
+        if let Some(river) = feature.river() {
             rivers.entry(river).or_default().enter(feature)?;
         }
     }
@@ -162,8 +163,8 @@ pub(crate) fn water(features: &[Feature], bent: &Bent, grid: &Grid) -> Result<Wa
     }
     let rings: Vec<&Feature> = features.iter().filter(|feature| feature.polygon().is_some()).collect();
     for same in rings.chunk_by(|a, b| a.polygon() == b.polygon()) {
-        let number = |river: &String| rivers.keys().position(|name| name == river);
-        water.polygons.push(polygon(same, same[0].river.as_ref().and_then(number), bent)?);
+        let number = |river: &str| rivers.keys().position(|name| *name == river);
+        water.polygons.push(polygon(same, same[0].river().and_then(number), bent)?);
     }
     Ok(water)
 }
@@ -195,7 +196,7 @@ impl<'f> Lines<'f> {
             }
         };
         if own.replace(feature).is_some() {
-            let name = feature.river.as_deref().unwrap_or_default();
+            let name = feature.river().unwrap_or_default();
             let message = format!("the river {name:?} has a second {what}, expected one: join them");
             return Err(feature.position.fault(message));
         }

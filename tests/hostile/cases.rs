@@ -6,9 +6,6 @@ use std::path::Path;
 use crate::MEMORY_MAX;
 use crate::measured::{Measured, tool};
 
-/// Memory for each byte that a program holds: an atom or a vertex of a line.
-const BYTES_PER_BYTE: f64 = 16.0;
-
 pub struct Case {
     pub name: &'static str,
     /// A command. `IN` is the input, `OUT` an output, `DATA/` the samples of the tests, `MESH` a mesh.
@@ -17,8 +14,8 @@ pub struct Case {
     /// The exit code, and a part of the message: it must fail for the right reason.
     pub code: i32,
     pub part: &'static str,
-    /// Bytes that the program may hold expanded; 0 for one that streams.
-    pub held: usize,
+    /// Most memory beyond the start of the program. Units: MB.
+    pub memory_max: f64,
 }
 
 /// An input that a program must refuse as malformed.
@@ -28,12 +25,12 @@ pub fn malformed(
     bytes: impl Into<Vec<u8>>,
     part: &'static str,
 ) -> Case {
-    Case { name, line, bytes: bytes.into(), code: 3, part, held: 0 }
+    Case { name, line, bytes: bytes.into(), code: 3, part, memory_max: MEMORY_MAX }
 }
 
 /// An input that a program may accept.
 pub fn accepted(name: &'static str, line: &'static str, bytes: impl Into<Vec<u8>>) -> Case {
-    Case { name, line, bytes: bytes.into(), code: 0, part: "", held: 0 }
+    Case { name, line, bytes: bytes.into(), code: 0, part: "", memory_max: MEMORY_MAX }
 }
 
 impl Case {
@@ -44,10 +41,6 @@ impl Case {
 
     pub fn words(&self) -> Vec<String> {
         self.line.split(' ').map(str::to_string).collect()
-    }
-
-    pub fn memory_max(&self) -> f64 {
-        MEMORY_MAX.max(self.held as f64 * BYTES_PER_BYTE / 1e6)
     }
 
     /// Writes the input and runs the command.

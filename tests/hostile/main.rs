@@ -1,5 +1,6 @@
 //! Hostile inputs of at most 16 kB: no program takes more than 64 MB beyond its start, or longer than a
 //! second, whatever sizes they state, however deep they are, and however much they expand.
+//! `configgen` is the exception: data that expands 100-fold may be as many copies of a knot.
 //!
 //! This is a program of its own, because the peak of a child process is never less than what its parent had.
 
@@ -42,7 +43,7 @@ fn check(cases: Vec<Case>) {
         );
         println!("{outcome}");
         let is_right = found.code == Some(case.code) && found.message.contains(case.part);
-        if !is_right || memory > case.memory_max() || seconds > SECONDS_MAX {
+        if !is_right || memory > case.memory_max || seconds > SECONDS_MAX {
             faults.push(outcome);
         }
     }
@@ -54,10 +55,11 @@ fn what_expands_stays_in_bounds() {
     check(bombs::streamed());
 }
 
-/// Programs that hold atoms or lines take memory for those that are really there.
+/// Programs that hold atoms or lines refuse data that expands as records which differ do not, and take what is left.
 #[test]
-fn what_is_held_follows_the_expanded_input() {
+fn what_is_held_is_plausible() {
     check(bombs::held());
+    check(bombs::shared());
 }
 
 #[test]

@@ -12,7 +12,7 @@ use super::{Threads, check_stdin, report, say};
 use crate::compression::Compression;
 use crate::crs::CrsFlag;
 use crate::endings;
-use crate::{Common, StatsFormat, open_input, parse_box, progress::Progress};
+use crate::{Common, StatsFormat, open_held, parse_box, progress::Progress};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
@@ -259,6 +259,7 @@ impl Flags {
             invalid_advice: InvalidAdvice::SkipInvalid,
             threads: Some(self.threads.get()),
             crs: self.crs.system()?,
+            holds_points: true,
             ..SourceOptions::default()
         };
         let weights = self.weights.as_ref().map(|path| read_weights(path)).transpose()?;
@@ -271,8 +272,9 @@ impl Flags {
 
     fn knots(&self, common: &Common) -> Result<Option<(Opened, String)>> {
         let Some(path) = &self.knots else { return Ok(None) };
-        let source =
-            open_knots(path, &SourceOptions { reader: &SPLINEFIT, dims: 2, ..SourceOptions::default() })?;
+        let options =
+            SourceOptions { reader: &SPLINEFIT, dims: 2, holds_points: true, ..SourceOptions::default() };
+        let source = open_knots(path, &options)?;
         if let Opened::Points(input) = &source {
             input.notices().iter().for_each(|text| say(common, text));
         }
@@ -290,12 +292,12 @@ fn list<T>(output: Option<Output>, write: impl FnOnce(&mut Output) -> Result<T>)
 }
 
 fn read_features(path: &Path) -> Result<Vec<Polyline>> {
-    let (input, name) = open_input(path)?;
+    let (input, name) = open_held(path)?;
     read_polylines(input).map_err(|error| error.of_input(name))
 }
 
 fn read_weights(path: &Path) -> Result<Vec<f64>> {
-    let (input, name) = open_input(path)?;
+    let (input, name) = open_held(path)?;
     match read_values(input).map_err(|error| error.of_input(&name))? {
         Values::Numbers(numbers) => Ok(numbers),
         Values::Vectors(_) => {

@@ -89,7 +89,7 @@ impl Flags {
             return Ok(Compared { layout, coefficients: Some(coefficients), extent, residuals: None });
         }
         let spline = Spline::open(&self.spline)?;
-        let options = SourceOptions { reader: &SPLINEFIT, ..SourceOptions::default() };
+        let options = SourceOptions { reader: &SPLINEFIT, holds_points: true, ..SourceOptions::default() };
         let points = Points::open(&self.points, &options, None, false, |_| ())?;
         let found = Statistics::of(&spline, &points, |_| false, self.threads.get(), &|_| ())?;
         let Spline { layout, coefficients } = spline;

@@ -221,6 +221,7 @@ impl Source {
         notices: &mut Vec<String>,
     ) -> Result<Source> {
         let mut own_notices = Vec::new();
+        let origin = origin.of_use(options.purpose());
         let found = find_format(origin, &name, options, notices).map_err(|e| e.of_input(&name))?;
         let Found { origin, format, is_compressed } = found;
         let read = match format {

@@ -48,6 +48,7 @@ pub fn open_knots(path: &Path, options: &SourceOptions) -> Result<Opened> {
 fn open(path: &Path, options: &SourceOptions, is_wanted: impl Fn(Kind) -> bool) -> Result<Opened> {
     // No notice of the spool: the whole input will be held in memory anyway.
     let origin = Origin::new(path, options.admitted(), &options.temp_dir(), &mut Vec::new())?;
+    let origin = origin.of_use(options.purpose());
     let name = name_of(path);
     let events = open_events(&origin, &name, options).map_err(|e| e.of_input(&name))?;
     match events.filter(|events| is_wanted(events.header().kind)) {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::filters::{DropReason, Filters};
+use super::gzip::Use;
 use super::origin::Admitted;
 use super::raw_type::RawType;
 use super::row_plan::AttributeChoice;
@@ -74,6 +75,8 @@ pub struct SourceOptions {
     pub raw: Option<RawType>,
     /// The coordinate reference system, whatever the files state.
     pub crs: Option<Crs>,
+    /// Whether the program holds all points: a compressed file then must not expand implausibly.
+    pub holds_points: bool,
     /// Radii of atoms, which they then have as an attribute.
     pub radii: Option<Arc<Radii>>,
     /// How lines of text are laid out.
@@ -100,6 +103,11 @@ impl SourceOptions {
     /// What may be spooled.
     pub(super) fn admitted(&self) -> Admitted {
         if self.raw.is_some() { Admitted::Everything } else { Admitted::Formats(self.reader) }
+    }
+
+    /// What the program does with the points.
+    pub(super) fn purpose(&self) -> Use {
+        if self.holds_points { Use::Held } else { Use::Passed }
     }
 
     /// How many threads decompress points.

@@ -7,7 +7,7 @@ use std::os::unix::fs::{FileExt, FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::gzip::Plain;
+use super::gzip::{Plain, Use};
 use crate::detect::{HEAD_LEN, Reader, read_head};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::system;
@@ -24,7 +24,13 @@ pub(crate) type Bytes = Plain<FileView>;
 
 /// Bytes that can be read several times.
 #[derive(Debug)]
-pub(crate) enum Origin {
+pub(crate) struct Origin {
+    place: Place,
+    purpose: Use,
+}
+
+#[derive(Debug)]
+enum Place {
     /// A regular file, opened anew by each pass, so that an input of many tiles needs only one descriptor at
     /// a time.
     Path(PathBuf),
@@ -83,6 +89,15 @@ fn check_type(file: &File) -> Result<FileType> {
 }
 
 impl Origin {
+    fn at(place: Place) -> Origin {
+        Origin { place, purpose: Use::Passed }
+    }
+
+    /// The same bytes, for a program that holds what it reads of them, or passes it: see [`Plain::held`].
+    pub(crate) fn of_use(self, purpose: Use) -> Origin {
+        Origin { purpose, ..self }
+    }
+
     /// The bytes of `path`; "-" is standard input. An input that cannot be read twice (a pipe, a terminal, a
     /// socket) is spooled to an unlinked temporary file in `temp_dir`, with a notice, as far as it is
     /// `admitted`.
@@ -100,7 +115,7 @@ impl Origin {
         let mut open = || -> Result<Origin> {
             let (file, kind) = open_file(path)?;
             if kind.is_file() {
-                return Ok(Origin::Path(path.to_path_buf()));
+                return Ok(Origin::at(Place::Path(path.to_path_buf())));
             }
             spool_pipe(file, &name, admitted, temp_dir, notices)
         };
@@ -116,14 +131,14 @@ impl Origin {
         let descriptor = stdin.as_fd().try_clone_to_owned().map_err(|e| Error::io("opening", e))?;
         let mut file = File::from(descriptor);
         if check_type(&file)?.is_file() && file.stream_position().is_ok_and(|position| position == 0) {
-            return Ok(Origin::Open(Arc::new(file)));
+            return Ok(Origin::at(Place::Open(Arc::new(file))));
         }
         spool_pipe(Watched(file), "stdin", admitted, temp_dir, notices)
     }
 
     /// The content from its start, decompressed if necessary.
     pub(crate) fn plain(&self) -> Result<Bytes> {
-        Plain::new(self.view()?).map_err(|e| Error::io("reading", e))
+        Plain::of_use(self.view()?, self.purpose).map_err(|e| Error::io("reading", e))
     }
 
     /// The decompressed content as a file, for formats that are not read sequentially. Messages call it
@@ -142,17 +157,17 @@ impl Origin {
 
     /// The path of a regular file, beside which others may belong to it.
     pub(crate) fn path(&self) -> Option<&Path> {
-        match self {
-            Origin::Path(path) => Some(path),
-            Origin::Open(_) => None,
+        match &self.place {
+            Place::Path(path) => Some(path),
+            Place::Open(_) => None,
         }
     }
 
     /// A view of all bytes as stored, positioned at their start.
     pub(crate) fn view(&self) -> Result<FileView> {
-        let file = match self {
-            Origin::Path(path) => Arc::new(File::open(path).map_err(|e| Error::io("opening", e))?),
-            Origin::Open(file) => Arc::clone(file),
+        let file = match &self.place {
+            Place::Path(path) => Arc::new(File::open(path).map_err(|e| Error::io("opening", e))?),
+            Place::Open(file) => Arc::clone(file),
         };
         let end = file.metadata().map_err(|e| Error::io("opening", e))?.len();
         Ok(FileView { file, position: 0, end })
@@ -209,7 +224,7 @@ fn spool(mut input: impl Read, temp_dir: &Path) -> Result<(Origin, String)> {
     }
     let size =
         if bytes < 1_000_000 { format!("{bytes} bytes") } else { format!("{:.1} MB", bytes as f64 / 1e6) };
-    Ok((Origin::Open(Arc::new(file.into_file())), size))
+    Ok((Origin::at(Place::Open(Arc::new(file.into_file()))), size))
 }
 
 /// A reader with a position of its own over a shared file, so that passes do not disturb each other.

@@ -41,7 +41,8 @@ pub struct Sites {
 /// # Errors
 /// As [`open_planar`]; input that cannot be read or is malformed; more knots than can be handled.
 pub fn read_sites(paths: &[PathBuf], mut done: impl FnMut(u64)) -> Result<Sites> {
-    let options = SourceOptions { reader: &CONFIGGEN, dims: 2, ..SourceOptions::default() };
+    let options =
+        SourceOptions { reader: &CONFIGGEN, dims: 2, holds_points: true, ..SourceOptions::default() };
     match open_planar(paths, &options)? {
         Opened::Points(input) => read_points(&input, &mut done),
         Opened::Events(mesh) => read_mesh(mesh, name_of(&paths[0]), &mut done),

@@ -1,8 +1,10 @@
 //! Lines as they are read, with their limits.
 
+use std::sync::Arc;
+
 use super::{Breakline, Breaklines, Properties};
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::LINE_VERTICES_MAX;
+use spmesh_core::limits::check_line_vertices;
 use spmesh_stream::Crs;
 
 /// What the parts of a geometry are.
@@ -22,13 +24,13 @@ pub(super) struct Collector {
     polygons: u32,
     vertices: usize,
     /// Those of the feature whose lines are entered.
-    properties: Properties,
+    properties: Arc<Properties>,
 }
 
 impl Collector {
     /// Starts a feature.
     pub(super) fn feature(&mut self, properties: Properties) {
-        self.properties = properties;
+        self.properties = Arc::new(properties);
     }
 
     /// Starts a polygon.
@@ -48,29 +50,28 @@ impl Collector {
         position: impl Fn() -> String,
     ) -> Result<()> {
         self.vertices += vertices.len();
-        if self.vertices > LINE_VERTICES_MAX {
-            return Err(Error::malformed(format!("more than {LINE_VERTICES_MAX} vertices")).at(position()));
-        }
+        check_line_vertices(self.vertices).map_err(|error| error.at(position()))?;
         if let Some(index) = vertices.iter().position(|[x, y, _]| !(x.is_finite() && y.is_finite())) {
             let [x, y, _] = vertices[index];
             let message = format!("vertex {index} is at {x}, {y}, expected finite coordinates");
             return Err(Error::malformed(message).at(position()));
         }
         if shape == Shape::Points {
+            let position = position().into();
             vertices.chunks(1).for_each(|vertex| self.push(shape, vertex, &position));
         } else if !vertices.is_empty() {
-            self.push(shape, vertices, &position);
+            self.push(shape, vertices, &position().into());
         }
         Ok(())
     }
 
-    fn push(&mut self, shape: Shape, vertices: &[[f64; 3]], position: &impl Fn() -> String) {
+    fn push(&mut self, shape: Shape, vertices: &[[f64; 3]], position: &Arc<str>) {
         self.lines.push(Breakline {
             vertices: vertices.iter().map(|&[x, y, _]| [x, y]).collect(),
             elevations: vertices.iter().map(|&[_, _, z]| Some(z).filter(|z| z.is_finite())).collect(),
             polygon: (shape == Shape::Ring).then(|| self.polygons - 1),
-            properties: self.properties.clone(),
-            position: position(),
+            properties: Arc::clone(&self.properties),
+            position: Arc::clone(position),
         });
     }
 

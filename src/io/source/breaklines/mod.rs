@@ -14,6 +14,7 @@ mod wkt;
 
 use std::io::{BufReader, Read};
 use std::path::Path;
+use std::sync::Arc;
 
 use super::geojson::is_json;
 use super::gzip::Plain;
@@ -40,10 +41,10 @@ pub struct Breakline {
     pub elevations: Vec<Option<f64>>,
     /// Number of the polygon in the file that it is a ring of.
     pub polygon: Option<u32>,
-    /// Those of its feature.
-    pub properties: Properties,
+    /// Those of its feature, which all of its lines share.
+    pub properties: Arc<Properties>,
     /// Position in the file, for messages.
-    pub position: String,
+    pub position: Arc<str>,
 }
 
 /// What a feature says about water, as text.
@@ -110,7 +111,7 @@ fn read(path: &Path, takes_wkt: bool) -> Result<Breaklines> {
         let (file, kind) = open_file(path)?;
         (Box::new(file), kind.is_file())
     };
-    let mut input = Plain::new(input).map_err(|e| Error::io("reading", e))?;
+    let mut input = Plain::held(input).map_err(|e| Error::io("reading", e))?;
     // Other formats are read by their names again, or with files beside them.
     let is_plain = is_file && !input.is_compressed();
     let head = read_head(&mut input).map_err(|e| Error::io("reading", e))?;

@@ -7,7 +7,7 @@ use super::{Breaklines, Collector};
 use crate::source::lines::{number, quote};
 use crate::source::words::{finite, for_each_line_at};
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::LINE_VERTICES_MAX;
+use spmesh_core::limits::check_line_vertices;
 use spmesh_stream::Crs;
 
 /// A line that is being read.
@@ -66,10 +66,7 @@ impl Open {
             let z = vertex.get(2).map_or(Ok(f64::NAN), |&word| elevation(word))?;
             self.vertices.push([finite(vertex[0])?, finite(vertex[1])?, z]);
         }
-        if self.vertices.len() > LINE_VERTICES_MAX {
-            return Err(Error::malformed(format!("more than {LINE_VERTICES_MAX} vertices")));
-        }
-        Ok(())
+        check_line_vertices(self.vertices.len())
     }
 }
 

@@ -6,6 +6,7 @@ use super::scan::Supply;
 use super::volume::Volume;
 use super::{nifti, nrrd, stream, text};
 use crate::detect::{DD4, Format, read_head};
+use crate::source::gzip::Use;
 use crate::source::origin::Origin;
 use spmesh_core::error::{Error, Result};
 
@@ -23,7 +24,7 @@ pub(super) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<Strin
         Format::Nrrd => nrrd::open(origin, path, warnings).map(boxed),
         Format::Nifti => nifti::open(origin, &head, plain.is_compressed(), warnings).map(boxed),
         Format::Stream | Format::Twin => stream::open(origin, path, &head).map(Supply::Stream),
-        _ => text::open(origin).map(Supply::Text),
+        _ => text::open(origin.of_use(Use::Held)).map(Supply::Text),
     }
 }
 

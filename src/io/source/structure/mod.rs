@@ -112,7 +112,7 @@ fn read(
     path: Option<&Path>,
 ) -> Result<Structure> {
     let reading = |e| Error::io("reading", e).of_input(name);
-    let mut input = Plain::new(input).map_err(reading)?;
+    let mut input = Plain::held(input).map_err(reading)?;
     let head = read_head(&mut input).map_err(reading)?;
     let format = format.map_or_else(|| recognized(&head), |format| check(format, &head));
     let format = format.map_err(|e| e.of_input(name))?;

@@ -31,7 +31,7 @@ pub(super) fn read_copy(input: impl Read, name: &str) -> Result<Structure> {
 }
 
 fn options() -> SourceOptions {
-    SourceOptions { reader: &TESS3, dims: 3, ..SourceOptions::default() }
+    SourceOptions { reader: &TESS3, dims: 3, holds_points: true, ..SourceOptions::default() }
 }
 
 fn read_input(input: &Input) -> Result<Structure> {

@@ -7,7 +7,7 @@ use serde_core::de::{DeserializeSeed, Deserializer, Error as _, SeqAccess, Visit
 use crate::source::breaklines::Collector;
 use crate::source::breaklines::collect::Shape;
 use spmesh_core::error::Result;
-use spmesh_core::limits::LINE_VERTICES_MAX;
+use spmesh_core::limits::check_line_vertices;
 
 type JsonResult<T, E> = std::result::Result<T, E>;
 
@@ -147,9 +147,7 @@ impl<'de> Visitor<'de> for Item<'_> {
             (_, true, _) => return Err(A::Error::custom("coordinates are numbers and lists side by side")),
             _ => return Err(A::Error::custom("a position is not two numbers or more")),
         }
-        if found.vertices.len() > LINE_VERTICES_MAX {
-            return Err(A::Error::custom(format!("more than {LINE_VERTICES_MAX} vertices")));
-        }
+        check_line_vertices(found.vertices.len()).map_err(A::Error::custom)?;
         Ok(Value::List(inner + 1))
     }
 }
