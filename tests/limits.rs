@@ -1,5 +1,8 @@
 //! Programs whose memory or threads the system limits: an error with advice, never an abort or a panic.
 
+mod counts;
+mod formats;
+mod named;
 mod sides;
 
 use std::process::{Command, Output};

@@ -226,5 +226,8 @@ mod tests {
         assert_eq!(fault("A[1] B[2]"), "byte 5: expected the end of the text, found 'B'");
         assert_eq!(parse("A[1]]"), parse("A[1]"));
         assert!(fault(&"A[".repeat(100_000)).ends_with("more than 32 levels of brackets"));
+        let nested = |depth: usize| "A[".repeat(depth) + "1" + &"]".repeat(depth);
+        assert!(parse(&nested(CRS_DEPTH_MAX)).is_ok());
+        assert!(fault(&nested(CRS_DEPTH_MAX + 1)).ends_with("more than 32 levels of brackets"));
     }
 }

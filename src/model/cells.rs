@@ -311,4 +311,12 @@ mod tests {
         let bounds = Bounds { min: [-1.7e308, 0.0, 0.0], max: [1.7e308, 0.0, 0.0] };
         assert!(CellTree::covering(&bounds, 2, 4).is_none());
     }
+
+    #[test]
+    fn trees_have_a_depth() {
+        for (dims, most) in [(2, QUADTREE_DEPTH_MAX), (3, OCTREE_DEPTH_MAX)] {
+            assert!(CellTree::new(dims, most, [0.0; 3], 1.0).is_some());
+            assert!(CellTree::new(dims, most + 1, [0.0; 3], 1.0).is_none());
+        }
+    }
 }

@@ -50,19 +50,37 @@ fn split_cell(words: &[u32], points: u64) -> Result<Option<(Cell4<'_>, &[u32])>>
     let Some((&neighbours, rest)) = rest.split_first() else { return Ok(None) };
     let neighbours = u64::from(neighbours);
     check_neighbour_count(is_infinite, vertices, neighbours)?;
-    check_words(vertices, neighbours)?;
+    check_word_count(2 + vertices + neighbours)?;
     let len = (vertices + neighbours) as usize;
     let Some((lists, after)) = rest.split_at_checked(len) else { return Ok(None) };
     let (vertices, neighbours) = lists.split_at(vertices as usize);
     Ok(Some((Cell4 { is_infinite, vertices, neighbours }, after)))
 }
 
-/// Checks that a cell has at most `CELL_WORDS_MAX` words, which bounds the memory of a reader.
-fn check_words(vertices: u64, neighbours: u64) -> Result<()> {
-    if vertices + neighbours + 2 <= CELL_WORDS_MAX {
+/// Checks the number of words of a cell, which bounds the memory of a reader.
+///
+/// # Errors
+/// Malformed, if there are more than `CELL_WORDS_MAX`.
+pub fn check_word_count(words: u64) -> Result<()> {
+    if words <= CELL_WORDS_MAX {
         return Ok(());
     }
-    Err(Error::malformed(format!(
-        "cell of {vertices} vertices and {neighbours} neighbours, the maximum is {CELL_WORDS_MAX} words"
-    )))
+    Err(Error::malformed(format!("cell of {words} words, the maximum is {CELL_WORDS_MAX}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_have_a_limit() {
+        // Two words count the vertices and the neighbours; only the counts have arrived.
+        let started = |vertices: u64, neighbours: u64| {
+            split_cell(&[INFINITE | vertices as u32, neighbours as u32], u64::from(u32::MAX)).map(drop)
+        };
+        let half = CELL_WORDS_MAX / 2;
+        assert!(started(half - 1, half - 1).is_ok(), "{:?}", started(half - 1, half - 1));
+        let message = started(half, half - 1).unwrap_err().to_string();
+        assert!(message.contains("cell of 2147483649 words, the maximum is 2147483648"), "{message}");
+    }
 }

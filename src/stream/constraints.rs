@@ -298,4 +298,12 @@ mod tests {
         let points = Header::new(Kind::Points, Coordinates::F64, 2, false);
         assert!(Header { constrained: constrained(false, 0.0), ..points }.check().is_err());
     }
+
+    #[test]
+    fn segments_have_a_limit() {
+        let rules = |segments| ConstraintRules { segments, ..ConstraintRules::default() };
+        assert!(rules(SEGMENTS_MAX - 2).segments(&segments()).is_ok());
+        let message = rules(SEGMENTS_MAX - 1).segments(&segments()).unwrap_err().to_string();
+        assert!(message.contains("more than 4294967296 segments"), "{message}");
+    }
 }

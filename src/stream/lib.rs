@@ -91,6 +91,7 @@ mod weights;
 mod write_configurations;
 mod writer;
 
+pub use cell_words::check_word_count;
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;
 pub use configurations::{check_degree, claim_from_name, claim_name};

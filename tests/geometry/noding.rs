@@ -205,9 +205,14 @@ fn too_many_crossings_are_refused() {
         (0..100).flat_map(|i| [vec![[i, -1], [i, 100]], vec![[-1, i], [100, i]]]).collect();
     let vertices: Vec<LineVertex> = without_elevations(&lines).concat();
     let starts: Vec<u32> = (0..200).map(|line| 2 * line).collect();
-    let options = NodingOptions { crossings_max: 5000, ..OPTIONS };
-    let error = node_lines(Cow::Owned(vertices), &starts, &options, &mut |_, _, _| {}).unwrap_err();
-    assert!(error.to_string().contains("more than 5000 crossings"), "{error}");
+    let node = |crossings_max| {
+        let options = NodingOptions { crossings_max, ..OPTIONS };
+        node_lines(Cow::Borrowed(&vertices), &starts, &options, &mut |_, _, _| {})
+    };
+    assert_eq!(node(10_000).unwrap().vertices.len(), 10_000 + 400);
+    let error = node(9_999).unwrap_err();
+    assert!(error.to_string().contains("more than 9999 crossings"), "{error}");
+    let options = OPTIONS;
     let far = [LineVertex { place: [COORDINATE_MAX + 1, 0], z: None }];
     assert!(node_lines(Cow::Borrowed(&far), &[0], &options, &mut |_, _, _| {}).is_err());
     assert!(node_lines(Cow::Borrowed(&[]), &[], &options, &mut |_, _, _| {}).unwrap().vertices.is_empty());

@@ -12,7 +12,7 @@ use crate::programs::{Folder, outcome, run};
 
 /// Runs a tool with an input of the size of a limit, and of one more. The second must be refused with `part`,
 /// the first not: it is taken, or another message says what is wrong with it.
-fn assert_sides(arguments: &[&str], most: usize, part: &str, input: impl Fn(usize) -> Vec<u8>) {
+pub(super) fn assert_sides(arguments: &[&str], most: usize, part: &str, input: impl Fn(usize) -> Vec<u8>) {
     for (size, is_refused) in [(most, false), (most + 1, true)] {
         let (code, message) = outcome(&run(arguments[0], &arguments[1..], &input(size)));
         assert_eq!(message.contains(part), is_refused, "{arguments:?}, {size}: {code:?}, {message}");
@@ -21,7 +21,7 @@ fn assert_sides(arguments: &[&str], most: usize, part: &str, input: impl Fn(usiz
 }
 
 /// A line of `len` bytes.
-fn padded(text: &str, len: usize) -> Vec<u8> {
+pub(super) fn padded(text: &str, len: usize) -> Vec<u8> {
     [text.as_bytes(), &vec![b' '; len - text.len()], b"\n"].concat()
 }
 

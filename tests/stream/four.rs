@@ -2,6 +2,7 @@
 
 use spmesh_convert::Format;
 use spmesh_core::error::{ErrorKind, Result};
+use spmesh_core::limits::TEXT_NUMBERS_MAX;
 use spmesh_model::cells4::{Cell4, Cells4, Point4};
 use spmesh_stream::{
     Coordinates, Event, Header, Kind, Points4, StreamReader, StreamWriter, Totals, read_diagram4,
@@ -129,7 +130,9 @@ fn long_cell() -> (Vec<u32>, Vec<u8>) {
     let mut writer = StreamWriter::new(Vec::new(), header(Kind::Cells4, false)).unwrap();
     writer.points4(&points, None).unwrap();
     writer.cell4(Cell4 { is_infinite: false, vertices: &all, neighbours: &[1] }).unwrap();
-    writer.cell4(Cell4 { is_infinite: true, vertices: &all[1..5000], neighbours: &[0, 1] }).unwrap();
+    for len in [TEXT_NUMBERS_MAX + 1, TEXT_NUMBERS_MAX] {
+        writer.cell4(Cell4 { is_infinite: true, vertices: &all[..len], neighbours: &[0, 1] }).unwrap();
+    }
     (all, writer.end(300_000, 0).unwrap())
 }
 
@@ -140,10 +143,12 @@ fn cells_longer_than_a_block_or_a_line_come_back() {
     assert_eq!(diagram.cells.get(0), Cell4 { is_infinite: false, vertices: &all, neighbours: &[1] });
     assert_eq!(
         diagram.cells.get(1),
-        Cell4 { is_infinite: true, vertices: &all[1..5000], neighbours: &[0, 1] }
+        Cell4 { is_infinite: true, vertices: &all[..=TEXT_NUMBERS_MAX], neighbours: &[0, 1] }
     );
     let text = text_of(&bytes);
-    assert_eq!(text.lines().filter(|line| line.starts_with("+4 ")).count(), 299_999 / 4096 + 1);
+    // The second cell needs one line more, the third one none.
+    let further = text.lines().filter(|line| line.starts_with("+4 ")).count();
+    assert_eq!(further, 299_999 / TEXT_NUMBERS_MAX + 1);
     assert!(converted(text.as_bytes(), Format::Text, Format::Spm).unwrap() == bytes);
     if let Some(python) = run_python("scripts/spmesh_reader.py", &["-"], &bytes) {
         assert!(String::from_utf8(python.stdout).unwrap() == text);

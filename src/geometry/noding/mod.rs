@@ -29,7 +29,7 @@ mod search;
 use std::borrow::Cow;
 
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::LINE_VERTICES_MAX;
+use spmesh_core::limits::check_line_vertices;
 use spmesh_model::network::NetworkSegment;
 
 pub use chain::Chains;
@@ -115,9 +115,7 @@ pub fn node_lines(
 }
 
 fn check(vertices: &[LineVertex]) -> Result<()> {
-    if vertices.len() > LINE_VERTICES_MAX {
-        return Err(Error::malformed(format!("more than {LINE_VERTICES_MAX} vertices of lines")));
-    }
+    check_line_vertices(vertices.len())?;
     let range = -COORDINATE_MAX..=COORDINATE_MAX;
     match vertices.iter().find(|vertex| vertex.place.iter().any(|value| !range.contains(value))) {
         Some(vertex) => Err(Error::malformed(format!(

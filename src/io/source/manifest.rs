@@ -126,14 +126,16 @@ pub fn open_manifest(path: &Path) -> Result<JoinedMesh> {
     joined(path).map_err(|e| e.of_input(path.display().to_string()))
 }
 
+fn check_len(len: u64) -> Result<()> {
+    if len <= MANIFEST_LEN_MAX {
+        return Ok(());
+    }
+    Err(Error::malformed(format!("a manifest of {len} bytes, the maximum is {MANIFEST_LEN_MAX}")))
+}
+
 fn joined(path: &Path) -> Result<JoinedMesh> {
     let metadata = fs::metadata(path).map_err(|e| Error::io("reading", e))?;
-    if metadata.len() > MANIFEST_LEN_MAX {
-        let len = metadata.len();
-        return Err(Error::malformed(format!(
-            "a manifest of {len} bytes, the maximum is {MANIFEST_LEN_MAX}"
-        )));
-    }
+    check_len(metadata.len())?;
     let manifest = Manifest::parse(&fs::read(path).map_err(|e| Error::io("reading", e))?)?;
     let plan = manifest.plan_number()?;
     let folder = path.parent().map(PathBuf::from).unwrap_or_default();
@@ -167,4 +169,16 @@ fn open_part(path: &Path) -> Result<OpenedPart> {
     let (file, _) = open_file(path).map_err(named)?;
     let plain = Plain::new(file).map_err(|e| named(Error::io("reading", e)))?;
     Ok((Box::new(plain), name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn length_has_a_limit() {
+        assert!(check_len(MANIFEST_LEN_MAX).is_ok());
+        let message = check_len(MANIFEST_LEN_MAX + 1).unwrap_err().to_string();
+        assert_eq!(message, "a manifest of 268435457 bytes, the maximum is 268435456");
+    }
 }

@@ -2,9 +2,11 @@
 
 use super::statements::{expect_no_field, next_field, parse_decimals, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::CELL_WORDS_MAX;
+
 use spmesh_model::cells4::{Cell4, Cells4, Point4};
-use spmesh_stream::{Event, Header, Kind, Points4, check_neighbour_count, check_value, check_vertex_count};
+use spmesh_stream::{
+    Event, Header, Kind, Points4, check_neighbour_count, check_value, check_vertex_count, check_word_count,
+};
 
 /// Number of words from which a group of cells takes no further cell.
 const BATCH_WORDS: usize = 1 << 16;
@@ -202,10 +204,6 @@ impl OpenCell {
         } else {
             check_vertex_count(self.is_infinite, vertices, points)?;
         }
-        let words = 2 + self.vertices.len() + self.neighbours.as_ref().map_or(0, Vec::len);
-        if words as u64 <= CELL_WORDS_MAX {
-            return Ok(());
-        }
-        Err(Error::malformed(format!("cell of more than {CELL_WORDS_MAX} words")))
+        check_word_count(2 + vertices + neighbours.unwrap_or(0) as u64)
     }
 }

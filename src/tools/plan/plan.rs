@@ -137,6 +137,13 @@ fn stages_of(nodes: &[Node]) -> Vec<[u32; 2]> {
     stages
 }
 
+fn check_len(len: u64) -> Result<()> {
+    if len <= PLAN_LEN_MAX {
+        return Ok(());
+    }
+    Err(Error::malformed(format!("no plan: it has {len} bytes, the maximum is {PLAN_LEN_MAX}")))
+}
+
 impl Plan {
     /// Reads a plan.
     ///
@@ -146,10 +153,10 @@ impl Plan {
     pub fn read(path: &Path) -> Result<Plan> {
         let named = |error: Error| error.of_input(path.display().to_string());
         let found = fs::metadata(path).map_err(|e| named(Error::io("reading", e)))?;
-        if !found.is_file() || found.len() > PLAN_LEN_MAX {
-            let message = format!("no plan: it is no regular file, or longer than {PLAN_LEN_MAX} bytes");
-            return Err(named(Error::malformed(message)));
+        if !found.is_file() {
+            return Err(named(Error::malformed("no plan: it is no regular file")));
         }
+        check_len(found.len()).map_err(named)?;
         let text = fs::read(path).map_err(|e| named(Error::io("reading", e)))?;
         Plan::parse(&text).map_err(named)
     }
@@ -285,5 +292,17 @@ impl Plan {
             }
         }
         order
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn length_has_a_limit() {
+        assert!(check_len(PLAN_LEN_MAX).is_ok());
+        let message = check_len(PLAN_LEN_MAX + 1).unwrap_err().to_string();
+        assert!(message.contains("1073741825 bytes, the maximum is 1073741824"), "{message}");
     }
 }

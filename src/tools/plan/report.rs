@@ -34,6 +34,11 @@ pub struct FileSize {
     pub hash: String,
 }
 
+/// Whether a report may have this length.
+fn is_report_len(len: u64) -> bool {
+    len <= REPORT_LEN_MAX
+}
+
 /// The hash of a file.
 ///
 /// # Errors
@@ -135,7 +140,7 @@ impl NodeReport {
     pub fn read(path: &Path) -> Result<Option<NodeReport>> {
         match fs::metadata(path) {
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Ok(found) if !found.is_file() || found.len() > REPORT_LEN_MAX => return Ok(None),
+            Ok(found) if !found.is_file() || !is_report_len(found.len()) => return Ok(None),
             _ => {}
         }
         let text = match fs::read(path) {
@@ -174,5 +179,15 @@ impl NodeReport {
     /// The files that the node has written.
     pub fn outputs(&self) -> impl Iterator<Item = &FileSize> {
         std::iter::once(&self.mesh).chain(&self.residual)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn length_has_a_limit() {
+        assert!(is_report_len(REPORT_LEN_MAX) && !is_report_len(REPORT_LEN_MAX + 1));
     }
 }

@@ -32,9 +32,7 @@ pub(super) fn read(path: &Path) -> Result<Breaklines> {
         OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     check_whole(path)?;
     let database = Connection::open_with_flags(uri(path)?, flags).map_err(malformed)?;
-    // A file may not run code of its own, and may not take all memory.
-    database.pragma_update(None, "trusted_schema", false).map_err(malformed)?;
-    database.pragma_update(None, "hard_heap_limit", GEOPACKAGE_MEMORY_MAX).map_err(malformed)?;
+    confine(&database, GEOPACKAGE_MEMORY_MAX)?;
     let tables = tables(&database)?;
     let mut lines = Collector::default();
     let mut crs: Option<(Crs, &Table)> = None;
@@ -50,6 +48,12 @@ pub(super) fn read(path: &Path) -> Result<Breaklines> {
         return Err(Error::malformed("the database has no table of features: it is no GeoPackage of lines"));
     }
     lines.finish(crs.map_or(Crs::Unknown, |(crs, _)| crs))
+}
+
+/// A file may not run code of its own, and may not take all memory.
+fn confine(database: &Connection, memory: i64) -> Result<()> {
+    database.pragma_update(None, "trusted_schema", false).map_err(malformed)?;
+    database.pragma_update(None, "hard_heap_limit", memory).map_err(malformed)
 }
 
 /// Checks that the file has all of its pages: SQLite reads what it needs of a file that was cut off.
@@ -177,4 +181,23 @@ fn properties(row: &rusqlite::Row, columns: &[(usize, String)]) -> rusqlite::Res
         }
     }
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The limit counts for the process; no other test opens a database.
+    #[test]
+    fn memory_has_a_limit() {
+        let database = Connection::open_in_memory().unwrap();
+        let ask = |query: &str| database.query_row(query, [], |row| row.get::<_, i64>(0));
+        confine(&database, GEOPACKAGE_MEMORY_MAX).unwrap();
+        assert_eq!(ask("PRAGMA hard_heap_limit").unwrap(), GEOPACKAGE_MEMORY_MAX);
+        // A limit can be lowered only.
+        confine(&database, 8 << 20).unwrap();
+        assert_eq!(ask("SELECT length(randomblob(6000000))").unwrap(), 6_000_000);
+        let message = ask("SELECT length(randomblob(9000000))").unwrap_err().to_string();
+        assert!(message.contains("out of memory"), "{message}");
+    }
 }

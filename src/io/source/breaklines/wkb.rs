@@ -169,8 +169,18 @@ mod tests {
                 let _ = read(&bytes);
             }
         }
-        let mut nested = b"GP\0\x01\0\0\0\0".to_vec();
-        (0..100).for_each(|_| nested.extend([1, 7, 0, 0, 0, 1, 0, 0, 0]));
-        assert!(read(&nested).unwrap_err().to_string().contains("collections in collections"));
+    }
+
+    #[test]
+    fn collections_have_a_depth() {
+        let nested = |depth: u32| {
+            let mut bytes = b"GP\0\x01\0\0\0\0".to_vec();
+            (0..depth).for_each(|_| bytes.extend([1, 7, 0, 0, 0, 1, 0, 0, 0]));
+            bytes.extend(&line()[8 + 32..]);
+            read(&bytes)
+        };
+        assert_eq!(nested(WKB_DEPTH_MAX).unwrap(), [(2, Some(3.0))]);
+        let message = nested(WKB_DEPTH_MAX + 1).unwrap_err().to_string();
+        assert!(message.contains("more than 32 collections in collections"), "{message}");
     }
 }

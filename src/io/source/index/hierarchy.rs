@@ -70,9 +70,7 @@ pub(super) fn read_nodes(file: &FileView, root: Range<u64>) -> Result<Vec<Node>>
             return Err(at(wrong_index("the page is listed twice")));
         }
         entries += check_page(&page, file.len()).map_err(at)?;
-        if entries > COPC_ENTRIES_MAX.min(file.len() / ENTRY_LEN) {
-            return Err(at(wrong_index(format!("{entries} entries or more, too many for the file"))));
-        }
+        check_entries(entries, file.len()).map_err(at)?;
         let mut bytes = vec![0; (page.end - page.start) as usize];
         file.read_at(page.start, &mut bytes).map_err(|e| at(Error::io("reading", e)))?;
         for entry in bytes.as_chunks().0 {
@@ -85,6 +83,14 @@ pub(super) fn read_nodes(file: &FileView, root: Range<u64>) -> Result<Vec<Node>>
     nodes.sort_unstable_by_key(|node| node.key);
     check_tree(&nodes)?;
     Ok(nodes)
+}
+
+/// Checks the number of entries that the pages so far have.
+fn check_entries(entries: u64, file_len: u64) -> Result<()> {
+    if entries <= COPC_ENTRIES_MAX.min(file_len / ENTRY_LEN) {
+        return Ok(());
+    }
+    Err(wrong_index(format!("{entries} entries or more, too many for the file")))
 }
 
 /// The number of entries of a page.
@@ -188,6 +194,15 @@ mod tests {
         assert_wrong(2, &[node(), page(32, 0)], "a page of 0 bytes");
         assert_wrong(2, &[node(), page(32, -32)], "in -32 bytes");
         assert_wrong(0, &[node()], "a page of 0 bytes");
+    }
+
+    #[test]
+    fn entries_have_a_limit() {
+        let enough = (COPC_ENTRIES_MAX + 1) * ENTRY_LEN;
+        assert!(check_entries(COPC_ENTRIES_MAX, enough).is_ok());
+        let message = check_entries(COPC_ENTRIES_MAX + 1, enough).unwrap_err().to_string();
+        assert!(message.contains("4194305 entries or more, too many"), "{message}");
+        assert!(check_entries(3, 3 * ENTRY_LEN).is_ok() && check_entries(3, 3 * ENTRY_LEN - 1).is_err());
     }
 
     #[test]

@@ -65,3 +65,16 @@ fn read(mut from: impl Read, len: u64) -> Result<Vec<u8>> {
         outcome => outcome.map(|()| bytes).map_err(|e| Error::io("reading", e)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn length_has_a_limit() {
+        let read = |len| read(std::io::repeat(0), len).map(|bytes| bytes.len() as u64);
+        assert_eq!(read(LAX_LEN_MAX).unwrap(), LAX_LEN_MAX);
+        let message = read(LAX_LEN_MAX + 1).unwrap_err().to_string();
+        assert!(message.contains("33554433 bytes, the maximum is 33554432"), "{message}");
+    }
+}

@@ -159,3 +159,19 @@ fn read_lz4(data: &mut impl BufRead, size: u64, len: u64) -> io::Result<Vec<u8>>
 fn invalid(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, what.to_string())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_of_lz4_have_a_limit() {
+        let block = |len: u64| {
+            let compressed = lz4_flex::block::compress(&vec![0; len as usize]);
+            read_lz4(&mut &compressed[..], compressed.len() as u64, len).map(|block| block.len() as u64)
+        };
+        assert_eq!(block(VTK_BLOCK_MAX).unwrap(), VTK_BLOCK_MAX);
+        let message = block(VTK_BLOCK_MAX + 1).unwrap_err().to_string();
+        assert!(message.contains("67108865 bytes, the maximum for LZ4 is 67108864"), "{message}");
+    }
+}

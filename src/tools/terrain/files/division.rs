@@ -188,4 +188,26 @@ mod tests {
         assert!(refused(SheetSize::Counts([1 << 22, 1])).contains("more than"));
         assert!(refused(SheetSize::Counts([1, 1 << 21])).contains("cannot be divided"));
     }
+
+    #[test]
+    fn sheets_may_be_as_many_as_stated() {
+        let most = SHEETS_MAX as u32;
+        let count = |columns: u32, rows: u32, size: SheetSize| {
+            let grid = Grid { left: 0.0, top: f64::from(rows), step: 1.0, columns, rows };
+            let strips = Division { size, anchor: [0.0; 2], buffer: 0.0 }.strips(&grid);
+            strips.map(|[across, down]| across.len() * down.len()).map_err(|error| error.to_string())
+        };
+        let refused =
+            Err("more than 1048576 rasters: give --tiles a greater side or smaller numbers".to_string());
+        for size in [SheetSize::Side(1.0), SheetSize::Side(1.5)] {
+            // Of 1.5 cells, every second sheet has two.
+            let across = if size == SheetSize::Side(1.0) { most } else { most / 2 * 3 };
+            assert_eq!(count(across, 1, size), Ok(most as usize));
+            assert_eq!(count(across + 1, 1, size), refused);
+        }
+        assert_eq!(count(most, 1, SheetSize::Counts([most, 1])), Ok(most as usize));
+        assert_eq!(count(most + 1, 1, SheetSize::Counts([most + 1, 1])), refused);
+        assert_eq!(count(1025, 1024, SheetSize::Counts([1024, 1024])), Ok(most as usize));
+        assert_eq!(count(1025, 1024, SheetSize::Counts([1025, 1024])), refused);
+    }
 }

@@ -71,3 +71,20 @@ pub(crate) fn tiles_of(grid: &Grid) -> Result<[usize; 2]> {
 pub(crate) fn places([across, down]: [usize; 2]) -> impl Iterator<Item = TilePlace> {
     (0..down).flat_map(move |row| (0..across).map(move |column| [column, row]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_have_a_limit() {
+        let side = (RASTER_TILES_MAX as f64).sqrt() as usize;
+        let tiles = |columns: usize| {
+            let [columns, rows] = [columns, side * TILE].map(|count| count as u32);
+            tiles_of(&Grid { left: 0.0, top: 0.0, step: 1.0, columns, rows })
+        };
+        assert_eq!(tiles(side * TILE).unwrap(), [side, side]);
+        let message = tiles(side * TILE + 1).unwrap_err().to_string();
+        assert!(message.contains("are 4196352 tiles, at most 4194304"), "{message}");
+    }
+}
