@@ -28,7 +28,12 @@ fn wrong_uses_are_said() {
         (&["--hull", &polygon], &mesh, 3, "expected polygons"),
         (&["--hull", &open], &mesh, 3, "starts at 0, 0 and ends at 50000, 50000: repeat its first position"),
         (&["--holes", &open], &mesh, 3, "open.geojson: feature 0"),
-        (&["--lines", &lines, "--densify", "1e-300"], &mesh, 3, "(parts of at most 1e-300: divide lines less)"),
+        (
+            &["--lines", &lines, "--densify", "1e-300"],
+            &mesh,
+            3,
+            "(parts of at most 1e-300: divide lines less)",
+        ),
         (&["--kill", "nan"], &mesh, 2, "--kill"),
         (&["--kill", "0"], &mesh, 2, "--kill"),
         (&["--kill", "-1"], &mesh, 2, "--kill"),
