@@ -180,7 +180,7 @@ pub fn peak_memory() -> u64 {
 /// # Errors
 /// If the file cannot be opened, or stdin is a terminal.
 pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Send>, String)> {
-    open_as(path, |input| Plain::new(input))
+    open_as(path, Plain::new)
 }
 
 /// As [`open_input`], for a program that holds what it reads: see [`Plain::held`].
@@ -188,7 +188,7 @@ pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Sen
 /// # Errors
 /// As [`open_input`].
 pub fn open_held(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Send>, String)> {
-    open_as(path, |input| Plain::held(input))
+    open_as(path, Plain::held)
 }
 
 /// Opens an input, and decompresses it by `plain`.
