@@ -116,7 +116,6 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use spmesh_io::source::Properties;
 
     fn prepared(vertices: &[(Point2, Option<f64>)], densify: Option<f64>) -> (Vec<Vertex>, Changes) {
         let (vertices, elevations) = vertices.iter().copied().unzip();
