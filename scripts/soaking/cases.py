@@ -2,10 +2,14 @@
 
 import os
 import pathlib
+import re
 import signal
 import time
 
 from soaking import inputs, processes
+
+# What a job of a plan leaves.
+PART = re.compile(r"\d{6}(\.json|\.spm|\.rest\.spm)")
 
 
 class Fault(Exception):
@@ -177,6 +181,8 @@ def plan(trial):
         trial.pipe(["spnode", "-q", "run", plan, row.split("\t")[0], "-d", parts, "--threads", trial.threads])
     trial.pipe(["spnode", "-q", "collect", plan, "-d", parts, "-o", manifest])
     trial.pipe(["spconvert", "-q", manifest, "--to", "spm"], audit("--points", points))
+    if left := [path.name for path in parts.iterdir() if not PART.fullmatch(path.name)]:
+        raise Fault(f"files left by jobs: {sorted(left)}")
 
 
 def heights(trial):
@@ -225,9 +231,10 @@ def sweep(trial):
 
 
 def check_sweep(trial, out, count):
-    """All meshes are there, and nothing else; those of one structure are the same, and one is audited."""
-    if (left := {entry.name for entry in out.iterdir()}) != {f"{number}.spm" for number in range(count)}:
-        raise Fault(f"files of a sweep: {sorted(left)}"[:2000])
+    """All meshes and the summary are there, and nothing else; those of one structure are the same."""
+    expected = {"summary.tsv", *(f"{number}.spm" for number in range(count))}
+    if wrong := expected ^ {entry.name for entry in out.iterdir()}:
+        raise Fault(f"missing or too many in a sweep: {sorted(wrong)}"[:2000])
     for number in range(20, count):
         if (out / f"{number}.spm").read_bytes() != (out / f"{number % 20}.spm").read_bytes():
             raise Fault(f"meshes {number} and {number % 20} of one structure differ")

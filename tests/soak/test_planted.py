@@ -146,11 +146,12 @@ class Planted(unittest.TestCase):
     def test_wrong_results_of_a_sweep_are_reported(self):
         made, out = self.soak(), self.folder / "out"
         out.mkdir()
+        (out / "summary.tsv").touch()
         trial = cases.Trial(made, random.Random(1), out, out, True)
         for number in range(22):
             (out / f"{number}.spm").write_bytes(b"%d END\n" % (number % 20))
         cases.check_sweep(trial, out, 22)
-        for path, content, complaint in (("20.spm", b"1 END\n", "differ"), ("a.tmp", b"", "files of a sweep")):
+        for path, content, complaint in (("20.spm", b"1 END\n", "differ"), ("a.tmp", b"", "too many")):
             with self.subTest(path), self.assertRaisesRegex(cases.Fault, complaint):
                 (out / path).write_bytes(content)
                 cases.check_sweep(trial, out, 22)
