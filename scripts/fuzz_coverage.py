@@ -1,39 +1,46 @@
-"""Runs fuzz targets by cargo-fuzz in turn, and prints what each of them has done."""
+"""Runs fuzz targets by cargo-fuzz, and prints what each of them has done. Needs Linux."""
 
 import argparse
+import concurrent.futures
 import os
 import pathlib
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-FUZZ = ROOT / "tests" / "fuzz"
 TRIPLE = re.compile(r"host: (\S+)")
 # Restarts of a target after a finding: the same fault may end each of them.
 RESTARTS = 5
+# libFuzzer measures wall time. An input that takes this many times the limit is tried again, by processor
+# time.
+WALL = 20
 
 
 def arguments():
     parser = argparse.ArgumentParser(prog="scripts/fuzz coverage", description=__doc__)
     parser.add_argument("targets", nargs="*", metavar="TARGET", help="all targets if none is named")
-    parser.add_argument("--seconds", type=int, default=60, metavar="N", help="wall time for each target")
+    parser.add_argument("--seconds", type=int, default=60, metavar="N", help="processor time for each target")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="targets that run at once")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "target" / "fuzz", metavar="FOLDER",
                         help="folder for corpora, findings and logs; corpora grow from run to run")
     parser.add_argument("--target-dir", type=pathlib.Path, default=ROOT / "target" / "libfuzzer",
                         metavar="FOLDER", help="folder of the build")
     parser.add_argument("--max-len", type=int, default=1 << 14, metavar="N", help="most bytes of an input")
     parser.add_argument("--memory", type=int, default=1024, metavar="MIB", help="most memory of an input")
-    parser.add_argument("--timeout", type=int, default=30, metavar="N", help="seconds until an input hangs")
+    parser.add_argument("--timeout", type=int, default=30, metavar="N",
+                        help="processor time after which an input hangs")
     parser.add_argument("--nightly", action="store_true", help="check addresses, too, on nightly Rust")
     return parser.parse_args()
 
 
 def build(flags):
-    """Builds the program of all targets, and the driver that knows their names and samples."""
+    """Builds the program of all targets."""
     toolchain = ["+nightly"] if flags.nightly else []
     sanitizer = "address" if flags.nightly else "none"
     environment = os.environ | ({} if flags.nightly else {"RUSTC_BOOTSTRAP": "1"})
@@ -44,9 +51,12 @@ def build(flags):
     return flags.target_dir / TRIPLE.search(version)[1] / "release" / "any"
 
 
-def driver(*words):
-    command = ["cargo", "run", "--quiet", "--locked", "--package", "spmesh-fuzz", "--", *words]
-    return subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
+def names_of(program, corpus):
+    """The names of all targets, after their samples are written."""
+    corpus.mkdir(parents=True, exist_ok=True)
+    environment = os.environ | {"FUZZ_SAMPLES": str(corpus)}
+    listed = subprocess.run([program], env=environment, check=True, stdout=subprocess.PIPE, text=True)
+    return listed.stdout.split()
 
 
 def last(pattern, text, default=0):
@@ -54,53 +64,92 @@ def last(pattern, text, default=0):
     return int(found[-1]) if found else default
 
 
-def once(program, name, seconds, flags):
-    """Runs a target until time is up or a finding ends it: executions, coverage, and the finding's file."""
-    corpus, findings = flags.out / "corpus" / name, flags.out / "findings"
-    log = flags.out / f"{name}.log"
-    command = [str(program), f"-max_total_time={seconds}", f"-max_len={flags.max_len}", "-print_final_stats=1",
-               f"-rss_limit_mb={flags.memory}", f"-timeout={flags.timeout}", "-close_fd_mask=1",
-               f"-artifact_prefix={findings}/{name}-", str(corpus)]
-    with open(log, "wb") as output:
-        code = subprocess.run(command, env=os.environ | {"FUZZ_TARGET": name}, stdout=output, stderr=output).returncode
-    text = log.read_text(errors="replace")
-    executions = last(r"stat::number_of_executed_units:\s*(\d+)", text, last(r"\n#(\d+)\s", text))
-    finding = re.findall(r"Test unit written to (\S+)", text)
-    if code and not finding:
-        shutil.copy(log, findings / f"{name}-{int(time.time())}.log")
-        finding = [f"{name} ended with {code}: see the log in {findings}"]
-    return executions, last(r"cov: (\d+)", text), finding[-1] if code else None
+class Target:
+    """What is known of one target: executions, processor time, edges, and the files of findings."""
+
+    def __init__(self, program, name, flags):
+        self.program, self.name, self.flags = program, name, flags
+        self.corpus, self.findings = flags.out / "corpus" / name, flags.out / "findings"
+        self.executions, self.cpu, self.edges, self.found = 0, 0.0, 0, []
+
+    def __str__(self):
+        return f"{self.name:<15} {self.executions:>11} {self.cpu:>9.1f} {self.edges:>9} {len(self.found):>9}"
+
+    def run(self):
+        """Runs the target for its time, again after each finding."""
+        self.corpus.mkdir(parents=True, exist_ok=True)
+        while len(self.found) <= RESTARTS and self.cpu < self.flags.seconds and self.once():
+            pass
+        return self
+
+    def once(self):
+        """Runs the target until its time is up or an input ends it; then more may follow."""
+        flags, log = self.flags, self.flags.out / f"{self.name}.log"
+        command = [f"-max_len={flags.max_len}", "-print_final_stats=1", f"-rss_limit_mb={flags.memory}",
+                   f"-timeout={WALL * flags.timeout}", f"-report_slow_units={WALL * flags.timeout}",
+                   "-close_fd_mask=1", f"-artifact_prefix={self.findings}/{self.name}-", self.corpus]
+        code, cpu = self.call(command, log, flags.seconds - self.cpu)
+        text = log.read_text(errors="replace")
+        self.cpu += cpu
+        self.executions += last(r"stat::number_of_executed_units:\s*(\d+)", text, last(r"\n#(\d+)\s", text))
+        self.edges = max(self.edges, last(r"cov: (\d+)", text))
+        if code == 0:
+            return False
+        written = re.findall(r"Test unit written to (\S+)", text)
+        if not written:
+            copy = shutil.copy(log, self.findings / f"{self.name}-{int(time.time())}.log")
+            self.found.append(f"{self.name} ended with {code}: see {copy}")
+        elif f"{self.name}-timeout-" not in written[-1] or self.hangs(written[-1]):
+            self.found.append(written[-1])
+        return True
+
+    def hangs(self, path):
+        """Whether an input takes too much processor time: wall time says little of a process that waits."""
+        def limit():
+            resource.setrlimit(resource.RLIMIT_CPU, (self.flags.timeout, self.flags.timeout))
+        code, _ = self.call(["-timeout=0", path], os.devnull, None, preexec_fn=limit)
+        if code == 0:
+            os.unlink(path)
+        return code != 0
+
+    def call(self, words, log, seconds, **options):
+        """Runs the program of all targets, and asks it to end after some processor time: code and time."""
+        environment = os.environ | {"FUZZ_TARGET": self.name}
+        with open(log, "wb") as output, tempfile.TemporaryDirectory() as environment["TMPDIR"]:
+            process = subprocess.Popen([self.program, *map(str, words)], env=environment, stdout=output,
+                                       stderr=output, **options)
+            while not (ended := os.wait4(process.pid, os.WNOHANG))[0]:
+                if seconds is not None and processor_time(process.pid) >= seconds:
+                    # libFuzzer ends after the current input.
+                    process.send_signal(signal.SIGUSR1)
+                time.sleep(0.2)
+        process.returncode = os.waitstatus_to_exitcode(ended[1])
+        return process.returncode, ended[2].ru_utime + ended[2].ru_stime
 
 
-def run(program, name, flags):
-    """Runs a target for its time, again after each finding."""
-    (flags.out / "corpus" / name).mkdir(parents=True, exist_ok=True)
-    end, executions, coverage, findings = time.monotonic() + flags.seconds, 0, 0, []
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    while len(findings) <= RESTARTS and (left := round(end - time.monotonic())) > 0:
-        more, reached, finding = once(program, name, left, flags)
-        executions, coverage = executions + more, max(coverage, reached)
-        if finding is None:
-            break
-        findings.append(finding)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    print(f"{name:<15} {executions:>11} {cpu:>9.1f} {coverage:>9} {len(findings):>9}", flush=True)
-    return findings
+def processor_time(pid):
+    """Seconds that a process that has not ended took so far."""
+    fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def main():
     flags = arguments()
     flags.out, flags.target_dir = flags.out.resolve(), flags.target_dir.resolve()
-    known = driver("--list").split()
-    if unknown := [name for name in flags.targets if name not in known]:
-        sys.exit(f"there is no target {unknown[0]}; scripts/fuzz --list names all")
     program = build(flags)
+    known = names_of(program, flags.out / "corpus")
+    if unknown := [name for name in flags.targets if name not in known]:
+        sys.exit(f"there is no target {unknown[0]} among {' '.join(known)}")
     (flags.out / "findings").mkdir(parents=True, exist_ok=True)
     names = flags.targets or known
-    driver("--samples", str(flags.out / "corpus"), *names)
     print(f"{'target':<15} {'executions':>11} {'CPU s':>9} {'edges':>9} {'findings':>9}", flush=True)
-    findings = [finding for name in names for finding in run(program, name, flags)]
+    targets = [Target(program, name, flags) for name in names]
+    with concurrent.futures.ThreadPoolExecutor(flags.jobs) as pool:
+        for target in pool.map(Target.run, targets):
+            print(target, flush=True)
+    print(f"{len(targets)} targets: {sum(target.executions for target in targets)} executions, "
+          f"{sum(target.cpu for target in targets):.0f} s")
+    findings = [finding for target in targets for finding in target.found]
     print(*findings, sep="\n", end="\n" if findings else "")
     sys.exit(1 if findings else 0)
 

@@ -34,6 +34,7 @@ mod point_rasters;
 mod points4;
 mod programs;
 mod raster;
+mod soak;
 mod sources;
 mod spacetime;
 mod spconstrain;

@@ -2,10 +2,14 @@
 
 import os
 import pathlib
+import re
 import signal
 import time
 
 from soaking import inputs, processes
+
+# What a job of a plan leaves.
+PART = re.compile(r"\d{6}(\.json|\.spm|\.rest\.spm)")
 
 
 class Fault(Exception):
@@ -40,18 +44,23 @@ class Trial:
         self.given = found
         return path
 
-    def pipe(self, *commands, is_sampled=False, **redirected):
-        """Runs a pipe, all of whose programs must succeed."""
+    def start(self, commands, **redirected):
+        """A pipe that runs, and the file of its messages."""
         messages = self.folder.parent / "messages"
         with open(messages, "wb") as errors:
-            pipe = processes.Pipe(self.soak.meter, self.soak.programs, commands, self.folder, self.scratch, errors,
-                                  **redirected)
-            sampler = processes.Sampler(self.soak.meter, pipe, 0.02) if is_sampled else None
-            codes, peaks = pipe.wait()
+            pipe = processes.Pipe(self.soak.meter, self.soak.programs, commands, self.folder, self.scratch,
+                                  errors, **redirected)
+        return pipe, messages
+
+    def pipe(self, *commands, is_sampled=False, **redirected):
+        """Runs a pipe, all of whose programs must succeed."""
+        pipe, messages = self.start(commands, **redirected)
+        sampler = processes.Sampler(self.soak.meter, pipe, 0.02) if is_sampled else None
+        codes, peaks = pipe.wait()
         if sampler:
             self.samples += sampler.stop()
-        said = messages.read_text(errors="replace").strip()
-        if any(codes) or "panicked" in said:
+        said = processes.said(messages)
+        if any(codes) or processes.PANIC in said:
             words = " | ".join(" ".join(map(str, command)) for command in commands)
             raise Fault(f"exit codes {codes} of {words}: {said[:2000]}")
         for name, peak in zip(pipe.names, peaks):
@@ -172,6 +181,8 @@ def plan(trial):
         trial.pipe(["spnode", "-q", "run", plan, row.split("\t")[0], "-d", parts, "--threads", trial.threads])
     trial.pipe(["spnode", "-q", "collect", plan, "-d", parts, "-o", manifest])
     trial.pipe(["spconvert", "-q", manifest, "--to", "spm"], audit("--points", points))
+    if left := [path.name for path in parts.iterdir() if not PART.fullmatch(path.name)]:
+        raise Fault(f"files left by jobs: {sorted(left)}")
 
 
 def heights(trial):
@@ -187,12 +198,13 @@ def killed(trial):
     points, mesh = trial.file("points.raw"), trial.file("mesh.spm")
     inputs.write_raw(points, trial.random, 300_000)
     commands = [trial.finalize("--raw", "u16le", points), trial.reduce("-o", mesh)]
-    with open(trial.folder.parent / "messages", "wb") as errors:
-        pipe = processes.Pipe(trial.soak.meter, trial.soak.programs, commands, trial.folder, trial.scratch, errors)
-        time.sleep(trial.random.uniform(0, 0.5))
-        signals = (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP)
-        os.kill(trial.random.choice(pipe.processes).pid, trial.random.choice(signals))
-        codes, _ = pipe.wait()
+    pipe, messages = trial.start(commands)
+    time.sleep(trial.random.uniform(0, 0.5))
+    signals = (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP)
+    os.kill(trial.random.choice(pipe.processes).pid, trial.random.choice(signals))
+    codes, _ = pipe.wait()
+    if processes.PANIC in (said := processes.said(messages)):
+        raise Fault(f"a panic: {said[:2000]}")
     if mesh.exists():
         trial.pipe(audit(mesh))
     elif not any(codes):
@@ -215,10 +227,18 @@ def sweep(trial):
     listed.write_text("".join(f"{name}\n" for name in names))
     trial.pipe(["tess3", "-q", "--threads", trial.threads, "--lof", listed, "--out-dir", trial.file("out")],
                is_sampled=True)
-    meshes = [entry for entry in (trial.folder / "out").iterdir() if entry.suffix == ".spm"]
-    if len(meshes) != len(names):
-        raise Fault(f"{len(meshes)} meshes of {len(names)} structures")
-    trial.pipe(audit(trial.random.choice(meshes)))
+    check_sweep(trial, trial.folder / "out", len(names))
+
+
+def check_sweep(trial, out, count):
+    """All meshes and the summary are there, and nothing else; those of one structure are the same."""
+    expected = {"summary.tsv", *(f"{number}.spm" for number in range(count))}
+    if wrong := expected ^ {entry.name for entry in out.iterdir()}:
+        raise Fault(f"missing or too many in a sweep: {sorted(wrong)}"[:2000])
+    for number in range(20, count):
+        if (out / f"{number}.spm").read_bytes() != (out / f"{number % 20}.spm").read_bytes():
+            raise Fault(f"meshes {number} and {number % 20} of one structure differ")
+    trial.pipe(audit(out / f"{trial.random.randrange(count)}.spm"))
 
 
 ALL = [plane, bulk, space, raster, constrain, spline, configurations, diagram, molecule, convert, plan, heights,

@@ -31,8 +31,10 @@ class Endless(threading.Thread):
             left = {path.name for folder in (self.scratch, self.folder) for path in folder.iterdir()} - self.outputs
             if left:
                 raise RuntimeError(f"files left: {left}")
+            if processes.PANIC in processes.said(self.folder.parent / "messages"):
+                raise RuntimeError("a panic")
         except Exception as error:  # the thread reports to the one that started it
-            said = (self.folder.parent / "messages").read_text(errors="replace").strip()
+            said = processes.said(self.folder.parent / "messages")
             self.fault = f"{type(error).__name__} {error}: {said[:2000]}"
 
     def pipe(self, *commands, **redirected):

@@ -18,6 +18,13 @@ TICK = os.sysconf("SC_CLK_TCK")
 # a FIFO, or the shell might collect its exit code.
 LAUNCH = 'exec 3<&0; (read -r _ < "$0.go"; exec "$@") <&3 3<&- & echo $! > "$0"'
 SUBREAPER = 36
+# In the message of a panic, also in one of a thread whose end no other thread notices.
+PANIC = "panicked"
+
+
+def said(messages):
+    """What programs wrote to the file of their messages."""
+    return messages.read_text(errors="replace").strip()
 
 
 class Process:

@@ -20,6 +20,10 @@ mod reduction;
 pub mod samples;
 mod streams;
 
+use std::fs;
+use std::path::Path;
+
+use mutation::Inputs;
 use samples::{Made, Samples};
 
 /// A named target.
@@ -50,6 +54,19 @@ impl Target {
         match self.task {
             Task::Call(function) => function(bytes),
             Task::Commands(lines) => commands::run(lines, bytes),
+        }
+    }
+
+    /// Writes the first inputs as files of a folder.
+    ///
+    /// # Panics
+    /// If the folder is not writable.
+    pub fn write_samples(&self, folder: &Path, seed: u64) {
+        fs::create_dir_all(folder).expect("a writable folder");
+        let inputs = Inputs::new(self.samples, seed);
+        for number in 0..inputs.first() {
+            fs::write(folder.join(format!("sample-{number}")), inputs.input(number))
+                .expect("a writable folder");
         }
     }
 }
@@ -124,7 +141,6 @@ pub fn target(name: &str) -> Option<Target> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mutation::Inputs;
 
     /// A short fuzzing run: a few inputs of every target, including the samples.
     #[test]

@@ -24,6 +24,9 @@ struct Flags {
     /// Wall time for each target.
     #[arg(long, default_value_t = 60, value_name = "N")]
     seconds: u64,
+    /// Inputs of each target, instead of a time.
+    #[arg(long, value_name = "N", conflicts_with = "seconds")]
+    inputs: Option<u64>,
     /// Seed of all inputs.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -42,9 +45,6 @@ struct Flags {
     /// Folder for inputs that fail.
     #[arg(long, default_value = "target/fuzz", value_name = "FOLDER")]
     out: PathBuf,
-    /// Writes the samples of each target into a folder of its name in this folder.
-    #[arg(long, value_name = "FOLDER")]
-    samples: Option<PathBuf>,
     /// Lists the targets.
     #[arg(long)]
     list: bool,
@@ -70,10 +70,6 @@ fn main() -> ExitCode {
     if targets.is_empty() {
         targets = TARGETS.to_vec();
     }
-    if let Some(folder) = &flags.samples {
-        targets.iter().for_each(|target| write_samples(target, &folder.join(target.name), flags.seed));
-        return ExitCode::SUCCESS;
-    }
     fs::create_dir_all(&flags.out).expect("a folder for inputs that fail");
     bound_memory(flags.memory);
     let started = Instant::now();
@@ -88,15 +84,6 @@ fn main() -> ExitCode {
     if is_fine { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Writes the first inputs of a target as files.
-fn write_samples(target: &Target, folder: &Path, seed: u64) {
-    fs::create_dir_all(folder).expect("a writable folder");
-    let inputs = Inputs::new(target.samples, seed);
-    for number in 0..inputs.first() {
-        fs::write(folder.join(format!("sample-{number}")), inputs.input(number)).expect("a writable folder");
-    }
-}
-
 /// Whether the target handles the bytes without a panic.
 fn passes(target: &Target, bytes: &[u8]) -> bool {
     panic::catch_unwind(AssertUnwindSafe(|| target.run(bytes))).is_ok()
@@ -107,7 +94,11 @@ fn fuzz(target: &Target, flags: &Flags, started: Instant) -> bool {
     let inputs = Inputs::new(target.samples, flags.seed);
     let current = flags.out.join(format!("current-{}", target.name));
     let (end, mut number) = (Instant::now() + Duration::from_secs(flags.seconds), flags.first);
-    while Instant::now() < end {
+    let goes_on = |number| match flags.inputs {
+        Some(inputs) => number - flags.first < inputs,
+        None => Instant::now() < end,
+    };
+    while goes_on(number) {
         let bytes = inputs.input(number);
         // The file remains if the process ends: by the watchdog, or because memory ran out.
         fs::write(&current, &bytes).expect("a writable folder");
