@@ -20,13 +20,10 @@ fn a_signal_leaves_no_file_and_keeps_the_old_one() {
             // More than a pipe holds, so that the program has made its output and reads.
             let lines: String =
                 (0..500_000).map(|i| format!("{i} {} {} {}\n", i % 7, i % 11, i % 13)).collect();
-            // Open until the program has ended, so that it cannot be done before the signal arrives.
-            let mut input = child.stdin.take().unwrap();
-            input.write_all(lines.as_bytes()).unwrap();
+            child.stdin.as_mut().unwrap().write_all(lines.as_bytes()).unwrap();
             let kill = format!("kill -{name} {}", child.id());
             assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
             let output = child.wait_with_output().unwrap();
-            drop(input);
             assert_eq!(output.status.signal(), Some(number), "{:?}", outcome(&output));
         }
         assert_eq!(fs::read_to_string(&old).unwrap(), "old");
