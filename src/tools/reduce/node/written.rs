@@ -13,7 +13,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     /// Writes simplices, all that are left of all points, and the points that are finalized with them.
     ///
     /// # Errors
-    /// As [`PatchBuilder::close`] and `flush`.
+    /// As [`super::PatchBuilder::close`] and `flush`.
     pub(super) fn write_all(
         &mut self,
         simplices: &mut Corners,
@@ -38,7 +38,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     /// Writes the final simplices that were planned, after hidden points.
     ///
     /// # Errors
-    /// As [`PatchBuilder::close`] and `flush`.
+    /// As [`super::PatchBuilder::close`] and `flush`.
     pub(super) fn write_planned(
         &mut self,
         points: &Residual<D>,
