@@ -5,7 +5,6 @@ import concurrent.futures
 import os
 import pathlib
 import re
-import resource
 import shutil
 import signal
 import subprocess
@@ -105,23 +104,23 @@ class Target:
 
     def hangs(self, path):
         """Whether an input takes too much processor time: wall time says little of a process that waits."""
-        def limit():
-            resource.setrlimit(resource.RLIMIT_CPU, (self.flags.timeout, self.flags.timeout))
-        code, _ = self.call(["-timeout=0", path], os.devnull, None, preexec_fn=limit)
+        code, _ = self.call(["-timeout=0", path], os.devnull, self.flags.timeout, signal.SIGKILL)
         if code == 0:
             os.unlink(path)
         return code != 0
 
-    def call(self, words, log, seconds, **options):
-        """Runs the program of all targets, and asks it to end after some processor time: code and time."""
+    def call(self, words, log, seconds, end=signal.SIGUSR1):
+        """Runs the program of all targets, and sends a signal after some processor time: code and time.
+
+        After SIGUSR1, libFuzzer ends with the current input.
+        """
         environment = os.environ | {"FUZZ_TARGET": self.name}
         with open(log, "wb") as output, tempfile.TemporaryDirectory() as environment["TMPDIR"]:
             process = subprocess.Popen([self.program, *map(str, words)], env=environment, stdout=output,
-                                       stderr=output, **options)
+                                       stderr=output)
             while not (ended := os.wait4(process.pid, os.WNOHANG))[0]:
-                if seconds is not None and processor_time(process.pid) >= seconds:
-                    # libFuzzer ends after the current input.
-                    process.send_signal(signal.SIGUSR1)
+                if processor_time(process.pid) >= seconds:
+                    process.send_signal(end)
                 time.sleep(0.2)
         process.returncode = os.waitstatus_to_exitcode(ended[1])
         return process.returncode, ended[2].ru_utime + ended[2].ru_stime

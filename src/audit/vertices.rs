@@ -42,17 +42,10 @@ impl<S: Copy + Default> Vertices<S> {
         for (&at, id) in patch.new.iter().zip(patch.first_id..) {
             self.local.push(Vertex { id, at, weight: 0.0, star: S::default() });
         }
-        self.places.clear();
-        let mut near = Place::default();
-        for id in &patch.imported {
-            let Some(place) = self.live.find(*id, near) else {
-                let message = format!("vertex {id} is used after it was finalized");
-                return Err(Violation::new(Check::Finalization, message));
-            };
-            self.local.push(*self.live.at(place));
-            self.places.push(place);
-            near = place;
-        }
+        self.live.find_all(&patch.imported, &mut self.places).map_err(|id| {
+            Violation::new(Check::Finalization, format!("vertex {id} is used after it was finalized"))
+        })?;
+        self.local.extend(self.places.iter().map(|&place| *self.live.at(place)));
         ledger.add(Check::Finalization, patch.vertices() as u64);
         self.seen += patch.new.len() as u64;
         self.live_max = self.live_max.max(self.live.len() + patch.new.len());

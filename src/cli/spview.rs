@@ -287,7 +287,8 @@ fn draw_stream(
     drawn?;
     drop(reader);
     let summary = outputs.finish()?;
-    // The end of the stream waits for the pictures: if one fails, the next program must not see a whole stream.
+    // The end of the stream waits for the pictures: if one fails, the next program must not see a whole
+    // stream.
     passed.iter().try_for_each(Passed::finish)?;
     if let Some(summary) = summary {
         notice(TOOL, &flags.common, &summary);

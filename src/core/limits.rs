@@ -35,14 +35,25 @@ pub const PLAN_LEN_MAX: u64 = 1 << 30;
 /// Longest report of a node, in bytes: a leaf that a million files reach into.
 pub const REPORT_LEN_MAX: u64 = 1 << 26;
 
-/// Expanded bytes of gzip data that a program may hold, however small the data is. Lines take up to thirty times as
-/// much memory.
+/// Expanded bytes of gzip data that a program may hold, however small the data is. Lines take up to thirty
+/// times as much memory.
 pub const EXPANSION_FREE: u64 = 1 << 20;
 
 /// Most expanded bytes for each byte of gzip data of which a program holds the records, beyond
 /// [`EXPANSION_FREE`]. Structures expand 4 to 15 times, lattices of points 10 to 40 times; only records that
 /// repeat come near the 1,032 times of the format.
 pub const EXPANSION_MAX: u64 = 100;
+
+/// Checks the length of a file. `subject` is what the message says of it.
+///
+/// # Errors
+/// Malformed, if it has more than `most` bytes.
+pub fn check_len(subject: &str, len: u64, most: u64) -> Result<()> {
+    if len <= most {
+        return Ok(());
+    }
+    Err(Error::malformed(format!("{subject} {len} bytes, the maximum is {most}")))
+}
 
 /// Longest line of a text input, in bytes.
 pub const TEXT_LINE_MAX: usize = 1 << 16;
@@ -190,7 +201,8 @@ pub fn geopackage_value_max(len: u64) -> i32 {
     i32::try_from(len.saturating_add(1 << 16)).unwrap_or(i32::MAX)
 }
 
-/// Most steps of SQLite for a GeoPackage of so many bytes. A row takes some ten steps, and at least as many bytes.
+/// Most steps of SQLite for a GeoPackage of so many bytes. A row takes some ten steps, and at least as many
+/// bytes.
 #[must_use]
 pub fn geopackage_steps_max(len: u64) -> u64 {
     len.saturating_mul(64).saturating_add(1_000_000)

@@ -23,8 +23,7 @@ impl Place {
     /// The place of `path`, or of `standard` for "-". `None` for devices and pipes, which may be given
     /// several times, for folders, and for paths that cannot be created.
     fn of(path: &Path, standard: BorrowedFd<'_>) -> Option<Place> {
-        let found = if is_standard(path) { metadata_of(standard) } else { fs::metadata(path) };
-        match found {
+        match metadata_at(path, standard) {
             Ok(metadata) => metadata.is_file().then(|| Place::File(metadata.dev(), metadata.ino())),
             Err(_) => {
                 let target = target_of(path);
@@ -89,10 +88,8 @@ pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&
 fn check_pipes(inputs: &[&Path]) -> Result<()> {
     let mut pipes = HashSet::new();
     for &path in inputs {
-        let found = if is_standard(path) { metadata_of(io::stdin().as_fd()) } else { fs::metadata(path) };
-        let Ok(found) = found else { continue };
-        let is_new = !found.file_type().is_fifo() || pipes.insert((found.dev(), found.ino()));
-        if !is_new && !is_standard(path) {
+        let Some(pipe) = pipe_at(path, io::stdin().as_fd()) else { continue };
+        if !pipes.insert(pipe) && !is_standard(path) {
             let message = "is a pipe that is given twice, but its data can be read once: give a file";
             return Err(Error::usage(message).of_input(name_of_input(path)));
         }
@@ -104,10 +101,7 @@ fn check_pipes(inputs: &[&Path]) -> Result<()> {
 fn is_same(a: &Path, b: &Path) -> bool {
     let stdout = io::stdout();
     let place = |path| Place::of(path, stdout.as_fd());
-    let pipe = |path: &Path| {
-        let found = if is_standard(path) { metadata_of(stdout.as_fd()) } else { fs::metadata(path) };
-        found.ok().filter(|found| found.file_type().is_fifo()).map(|found| (found.dev(), found.ino()))
-    };
+    let pipe = |path| pipe_at(path, stdout.as_fd());
     is_standard(a) && is_standard(b)
         || place(a).is_some_and(|a| Some(a) == place(b))
         || pipe(a).is_some_and(|a| Some(a) == pipe(b))
@@ -130,8 +124,18 @@ fn name_of(path: &Path, standard: &str) -> String {
     if is_standard(path) { standard.to_string() } else { path.display().to_string() }
 }
 
-fn metadata_of(descriptor: BorrowedFd<'_>) -> io::Result<Metadata> {
-    File::from(descriptor.try_clone_to_owned()?).metadata()
+/// The device and inode of a pipe.
+fn pipe_at(path: &Path, standard: BorrowedFd<'_>) -> Option<(u64, u64)> {
+    let found = metadata_at(path, standard).ok()?;
+    found.file_type().is_fifo().then(|| (found.dev(), found.ino()))
+}
+
+/// What is at `path`, or is `standard` for "-".
+fn metadata_at(path: &Path, standard: BorrowedFd<'_>) -> io::Result<Metadata> {
+    if !is_standard(path) {
+        return fs::metadata(path);
+    }
+    File::from(standard.try_clone_to_owned()?).metadata()
 }
 
 #[cfg(test)]

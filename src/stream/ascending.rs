@@ -77,6 +77,20 @@ impl<T: Copy> Ascending<T> {
         (keys.get(entry) == Some(&key)).then_some(Place { block: block as u32, entry: entry as u32 })
     }
 
+    /// Finds the entries of several ids, which are found fast if they are near each other.
+    ///
+    /// # Errors
+    /// The first id that has no entry.
+    pub fn find_all(&self, ids: &[u64], places: &mut Vec<Place>) -> Result<(), u64> {
+        places.clear();
+        let mut near = Place::default();
+        for &id in ids {
+            near = self.find(id, near).ok_or(id)?;
+            places.push(near);
+        }
+        Ok(())
+    }
+
     /// The block that has `id`, if any has.
     fn block_of(&self, id: u64, near: usize) -> Option<usize> {
         let starts_after = |block: usize| self.firsts.get(block).is_none_or(|&first| id < first);

@@ -62,19 +62,15 @@ impl<T: Copy> LiveVertices<T> {
 
     /// Finds the imported vertices of a patch.
     fn import(&mut self, patch: &Patch) -> Result<()> {
-        self.places.clear();
-        let mut near = Place::default();
-        for &id in &patch.imported {
-            near = self.live.find(id, near).ok_or_else(|| {
-                Error::malformed(if id < patch.first_id {
-                    format!("vertex {id} referenced after finalization")
-                } else {
-                    format!("vertex {id} referenced before it was written")
-                })
-            })?;
-            self.places.push(near);
-            self.local.push((id, *self.live.at(near)));
-        }
+        self.live.find_all(&patch.imported, &mut self.places).map_err(|id| {
+            Error::malformed(if id < patch.first_id {
+                format!("vertex {id} referenced after finalization")
+            } else {
+                format!("vertex {id} referenced before it was written")
+            })
+        })?;
+        let values = self.places.iter().map(|&place| *self.live.at(place));
+        self.local.extend(patch.imported.iter().copied().zip(values));
         Ok(())
     }
 

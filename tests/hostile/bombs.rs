@@ -78,7 +78,7 @@ pub fn streamed() -> Vec<Case> {
         ),
         malformed(
             "properties of GeoJSON",
-            "spconstrain --lines IN.geojson MESH -o OUT.spm",
+            GEOJSON,
             bomb(
                 b"{\"type\":\"Feature\",\"properties\":{",
                 b"\"a\":[[[1]]],",
@@ -90,36 +90,29 @@ pub fn streamed() -> Vec<Case> {
     ]
 }
 
-/// The command that reads records which it holds, what the input is made of, and the exit code for records that
-/// repeat.
+/// The command that reads records which it holds, what the input is made of, and the exit code for records
+/// that repeat.
 type Held = (&'static str, &'static str, [&'static str; 3], i32);
 
 const ATOMS: &str =
     "data_a\nloop_\n_atom_site.id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n";
+const GEOJSON: &str = "spconstrain --lines IN.geojson MESH -o OUT.spm";
+const TEXT: &str = "spconstrain --lines IN.txt MESH -o OUT.spm";
+const MASK: &str = "spdem --columns 9 --mask IN.wkt MESH -o OUT.tif";
 const FIT: &str = "splinefit fit --features IN.txt DATA/hextest.las -o OUT.spm";
 
 const HELD: [Held; 17] = [
     ("points as atoms", "tess3 IN.txt -o OUT.spm", ["", "1 2 3\n", ""], 0),
     ("vertices as atoms", "tess3 IN.obj -o OUT.spm", ["", "v 1 2 3\n", ""], 0),
     ("atoms", "tess3 IN.cif -o OUT.spm", [ATOMS, "1 1 2 3\n", ""], 0),
-    (
-        "a line of GeoJSON",
-        "spconstrain --lines IN.geojson MESH -o OUT.spm",
-        ["{\"type\":\"LineString\",\"coordinates\":[", "[0,0],", "[1,1]]}"],
-        0,
-    ),
-    (
-        "points of GeoJSON",
-        "spconstrain --lines IN.geojson MESH -o OUT.spm",
-        ["{\"type\":\"MultiPoint\",\"coordinates\":[", "[0,0],", "[1,1]]}"],
-        0,
-    ),
-    ("a line of text", "spconstrain --lines IN.txt MESH -o OUT.spm", ["line 1 2 3\n", "4 5 6\n", ""], 0),
-    ("a line without z", "spconstrain --lines IN.txt MESH -o OUT.spm", ["soft 1 2\n", "4 5\n", ""], 0),
-    ("lines of text", "spconstrain --lines IN.txt MESH -o OUT.spm", ["", "soft 0 0 1 1\n", ""], 0),
+    ("a line of GeoJSON", GEOJSON, ["{\"type\":\"LineString\",\"coordinates\":[", "[0,0],", "[1,1]]}"], 0),
+    ("points of GeoJSON", GEOJSON, ["{\"type\":\"MultiPoint\",\"coordinates\":[", "[0,0],", "[1,1]]}"], 0),
+    ("a line of text", TEXT, ["line 1 2 3\n", "4 5 6\n", ""], 0),
+    ("a line without z", TEXT, ["soft 1 2\n", "4 5\n", ""], 0),
+    ("lines of text", TEXT, ["", "soft 0 0 1 1\n", ""], 0),
     ("areas", "spfinalize --clip IN.wkt DATA/hextest.las -o OUT.spm", ["", SQUARE, ""], 0),
-    ("a mask", "spdem --columns 9 --mask IN.wkt MESH -o OUT.tif", ["POLYGON((", "0 0,", "0 0))"], 0),
-    ("polygons of a mask", "spdem --columns 9 --mask IN.wkt MESH -o OUT.tif", ["", SQUARE, ""], 0),
+    ("a mask", MASK, ["POLYGON((", "0 0,", "0 0))"], 0),
+    ("polygons of a mask", MASK, ["", SQUARE, ""], 0),
     (
         "a mask of GeoJSON",
         "spdem --columns 9 --mask IN.geojson MESH -o OUT.tif",
@@ -145,7 +138,8 @@ const HELD: [Held; 17] = [
 
 const SQUARE: &str = "POLYGON((0 0,9 0,9 9,0 0))\n";
 
-/// Gzip data that expands as much as data of records may. A name in its header makes it as long as that takes.
+/// Gzip data that expands as much as data of records may. A name in its header makes it as long as that
+/// takes.
 fn plausible([head, unit, tail]: [&str; 3]) -> Vec<u8> {
     let packed = |name: Vec<u8>, copies: usize| {
         let mut encoder = GzBuilder::new().filename(name).write(Vec::new(), Compression::best());
@@ -169,7 +163,8 @@ pub fn held() -> Vec<Case> {
     HELD.iter().flat_map(both).chain(knots()).collect()
 }
 
-/// Knots: a copy of one counts as another knot, and takes 270 bytes. This is all that exceeds the usual memory.
+/// Knots: a copy of one counts as another knot, and takes 270 bytes. This is all that exceeds the usual
+/// memory.
 fn knots() -> [Case; 2] {
     let (name, line) = ("knots", "configgen --degree 1 IN.txt -o OUT.spm");
     let [head, unit] = ["0 0\n5 5\n0 5\n4 1\n", "1 2\n"];
@@ -180,9 +175,9 @@ fn knots() -> [Case; 2] {
 /// Lines that share what is long: the properties of their feature.
 pub fn shared() -> Vec<Case> {
     let feature = format!(
-        "{{\"type\":\"Feature\",\"properties\":{{\"river\":\"{}\"}},\"geometry\":{{\"type\":\"MultiPoint\",\"coordinates\":[",
+        "{{\"type\":\"Feature\",\"properties\":{{\"river\":\"{}\"}},\
+         \"geometry\":{{\"type\":\"MultiPoint\",\"coordinates\":[",
         "a".repeat(500_000)
     );
-    let line = "spconstrain --lines IN.geojson MESH -o OUT.spm";
-    vec![accepted("properties of lines", line, plausible([&feature, "[0,0],", "[1,1]]}}"]))]
+    vec![accepted("properties of lines", GEOJSON, plausible([&feature, "[0,0],", "[1,1]]}}"]))]
 }

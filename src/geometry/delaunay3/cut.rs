@@ -27,8 +27,8 @@ pub(super) struct Part {
     pub(super) starts: Vec<u32>,
 }
 
-/// Cuts a complex with `finite` finite vertices into parts, at most as many as asked for, and freezes the tetrahedra
-/// between them.
+/// Cuts a complex with `finite` finite vertices into parts, at most as many as asked for, and freezes the
+/// tetrahedra between them.
 pub(super) fn cut(tetrahedra: &mut [Tetrahedron], finite: usize, parts: usize) -> Vec<Part> {
     let ends = ends(tetrahedra, finite, parts.min(PARTS_MAX));
     let mut first = 0;

@@ -47,8 +47,8 @@ struct Done {
     tally: Tally,
 }
 
-/// Inserts vertices on `threads` threads into a complex that has `inserted` of them. Returns the vertices that
-/// were refused.
+/// Inserts vertices on `threads` threads into a complex that has `inserted` of them. Returns the vertices
+/// that were refused.
 ///
 /// # Errors
 /// Never fails: the type is that of [`parallel::map`].

@@ -170,8 +170,8 @@ fn greater_room(len: usize, vertices: usize) -> usize {
 
 /// The numbers of points at the ends of phases: all points of the first phase are inserted on one thread.
 ///
-/// After a phase there are `PHASE_FACTOR` times as many points as before it, so that tetrahedra between parts,
-/// which stay as they are during a phase, are thin. The last phase is split off while it has
+/// After a phase there are `PHASE_FACTOR` times as many points as before it, so that tetrahedra between
+/// parts, which stay as they are during a phase, are thin. The last phase is split off while it has
 /// `points_per_thread` points for each of two threads.
 fn phases(count: usize, points_per_thread: usize) -> Vec<usize> {
     let mut ends = vec![count];

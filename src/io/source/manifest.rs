@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::gzip::Plain;
 use super::origin::open_file;
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::MANIFEST_LEN_MAX;
+use spmesh_core::limits::{self, MANIFEST_LEN_MAX};
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::{Header, JoinedMesh, OpenedPart, PartSize, StreamReader, Totals};
 
@@ -127,10 +127,7 @@ pub fn open_manifest(path: &Path) -> Result<JoinedMesh> {
 }
 
 fn check_len(len: u64) -> Result<()> {
-    if len <= MANIFEST_LEN_MAX {
-        return Ok(());
-    }
-    Err(Error::malformed(format!("a manifest of {len} bytes, the maximum is {MANIFEST_LEN_MAX}")))
+    limits::check_len("a manifest of", len, MANIFEST_LEN_MAX)
 }
 
 fn joined(path: &Path) -> Result<JoinedMesh> {

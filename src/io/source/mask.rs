@@ -36,8 +36,7 @@ impl Mask {
 }
 
 /// Reads polygons from GeoJSON (polygons, multipolygons, collections and features of them) or WKT (any number
-/// of
-/// `POLYGON` and `MULTIPOLYGON`). Third coordinates are ignored.
+/// of `POLYGON` and `MULTIPOLYGON`). Third coordinates are ignored.
 ///
 /// # Errors
 /// If reading fails; malformed, with the feature or the line, if there is something else, a ring is not closed

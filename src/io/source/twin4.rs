@@ -2,7 +2,6 @@
 
 use super::statements::{expect_no_field, next_field, parse_decimals, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
-
 use spmesh_model::cells4::{Cell4, Cells4, Point4};
 use spmesh_stream::{
     Event, Header, Kind, Points4, check_neighbour_count, check_value, check_vertex_count, check_word_count,

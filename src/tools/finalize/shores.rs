@@ -12,8 +12,8 @@ use spmesh_geometry::polygons::{Polygons, Side};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::points::Point2;
 
-/// Cells along all shores, at most: so many in any case, and so many for each edge. Few edges are found fast in
-/// large cells, too.
+/// Cells along all shores, at most: so many in any case, and so many for each edge. Few edges are found fast
+/// in large cells, too.
 const CELLS: f64 = 4096.0;
 const CELLS_PER_EDGE: f64 = 16.0;
 

@@ -13,7 +13,7 @@ use super::files::PlannedFile;
 use super::node::Node;
 use super::tree::{Division, Share};
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::PLAN_LEN_MAX;
+use spmesh_core::limits::{self, PLAN_LEN_MAX};
 use spmesh_io::source::{Description, Extent, Survey};
 use spmesh_stream::{Coordinates, Header, Kind, PartName};
 
@@ -138,10 +138,7 @@ fn stages_of(nodes: &[Node]) -> Vec<[u32; 2]> {
 }
 
 fn check_len(len: u64) -> Result<()> {
-    if len <= PLAN_LEN_MAX {
-        return Ok(());
-    }
-    Err(Error::malformed(format!("no plan: it has {len} bytes, the maximum is {PLAN_LEN_MAX}")))
+    limits::check_len("no plan: it has", len, PLAN_LEN_MAX)
 }
 
 impl Plan {

@@ -49,30 +49,6 @@ pub(super) struct Balls {
 }
 
 impl Space {
-    /// Finds the sequence of the tetrahedra, by a counting sort.
-    fn sort_along_curve(&mut self) {
-        let tetrahedra = self.mesh.tetrahedra();
-        let last = |vertices: [u32; 4]| vertices.into_iter().fold(0, u32::max) as usize;
-        // For each vertex, the places of the tetrahedra whose last vertex it is.
-        let mut places = vec![0u32; self.mesh.vertices().len()];
-        tetrahedra.iter().for_each(|tetrahedron| places[last(tetrahedron.vertices)] += 1);
-        sizes_to_starts(&mut places);
-        self.sequence.resize(tetrahedra.len(), 0);
-        for (t, tetrahedron) in (0..).zip(tetrahedra) {
-            let place = &mut places[last(tetrahedron.vertices)];
-            self.sequence[*place as usize] = t;
-            *place += 1;
-        }
-        if self.is_shared {
-            let mut start = 0;
-            for end in places {
-                let equal = &mut self.sequence[start..end as usize];
-                equal.sort_unstable_by_key(|&t| turned(tetrahedra[t as usize].vertices));
-                start = end as usize;
-            }
-        }
-    }
-
     fn find_hull(&mut self) {
         self.hull.clear();
         for (simplex, tetrahedron) in (0..).zip(self.mesh.tetrahedra()) {
@@ -150,8 +126,28 @@ impl Bulk<3> for Space {
         Ok(())
     }
 
+    /// By a counting sort.
     fn arrange(&mut self) {
-        self.sort_along_curve();
+        let tetrahedra = self.mesh.tetrahedra();
+        let last = |vertices: [u32; 4]| vertices.into_iter().fold(0, u32::max) as usize;
+        // For each vertex, the places of the tetrahedra whose last vertex it is.
+        let mut places = vec![0u32; self.mesh.vertices().len()];
+        tetrahedra.iter().for_each(|tetrahedron| places[last(tetrahedron.vertices)] += 1);
+        sizes_to_starts(&mut places);
+        self.sequence.resize(tetrahedra.len(), 0);
+        for (t, tetrahedron) in (0..).zip(tetrahedra) {
+            let place = &mut places[last(tetrahedron.vertices)];
+            self.sequence[*place as usize] = t;
+            *place += 1;
+        }
+        if self.is_shared {
+            let mut start = 0;
+            for end in places {
+                let equal = &mut self.sequence[start..end as usize];
+                equal.sort_unstable_by_key(|&t| turned(tetrahedra[t as usize].vertices));
+                start = end as usize;
+            }
+        }
     }
 
     fn take_written(&mut self, keep: impl Fn(usize) -> bool) -> Result<Option<Corners>> {
@@ -228,8 +224,7 @@ impl Bulk<3> for Space {
         index.fill(walls, vertices.len() + self.mesh.duplicates.len(), vertices);
         let pieces = self.mesh.tetrahedra().chunks(PIECE).enumerate();
         let search = |(number, piece)| Ok(find_walls(&index, number * PIECE, piece));
-        // The search never fails: the type is that of the threads.
-        let sides = parallel::map(self.kernel.threads, pieces, search).unwrap_or_default();
+        let sides = parallel::map(self.kernel.threads, pieces, search).expect("the search does not fail");
         let count: usize = sides.iter().map(Vec::len).sum();
         sides.into_iter().flatten().for_each(&mut found);
         let result = if count == walls.len() { Ok(()) } else { Err(self.missing(walls, &index)) };

@@ -28,8 +28,8 @@ const POINTS_PER_KNOT: u64 = 4;
 const KNOTS_MAX_FIRST: usize = 5_000;
 /// This grid: terrain needs several functions for each point.
 const FINE: GridSize = GridSize { step: 0.5, knots_max: 600_000.0 };
-/// Knots of a grid for each place of points, at most: four where no part of the box is empty. Without this limit, a
-/// thousand points at one place, with some far away, would take as many knots as a million points.
+/// Knots of a grid for each place of points, at most: four where no part of the box is empty. Without this
+/// limit, a thousand points at one place, with some far away, would take as many knots as a million points.
 const KNOTS_PER_PLACE: f64 = 16.0;
 /// The grid over which the smoothing is chosen, which takes many solutions. What these knots cannot follow
 /// counts as noise, and a little more smoothing predicts a little better.

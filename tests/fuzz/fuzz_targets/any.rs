@@ -31,8 +31,8 @@ libfuzzer_sys::fuzz_target!(
     },
     |bytes: &[u8]| {
         let target = TARGET.get_or_init(|| {
-            let name = std::env::var("FUZZ_TARGET").expect("FUZZ_TARGET names a target of scripts/fuzz --list");
-            target(&name).expect("FUZZ_TARGET names a target of scripts/fuzz --list")
+            let wanted = "FUZZ_TARGET names a target of scripts/fuzz --list";
+            target(&std::env::var("FUZZ_TARGET").expect(wanted)).expect(wanted)
         });
         target.run(bytes);
     }

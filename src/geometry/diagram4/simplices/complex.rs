@@ -73,8 +73,6 @@ pub(in crate::diagram4) struct Complex<'a, C> {
     /// The first is a dummy: see [`NO_NEIGHBOUR`].
     pub(in crate::diagram4) simplices: Vec<Simplex>,
     pub(in crate::diagram4) spheres: Vec<Sphere<C>>,
-    /// Number of places taken, with those that are only reserved.
-    pub(super) end: usize,
     /// Values of greater magnitude have the correct sign.
     rounding: f64,
 }
@@ -86,11 +84,11 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         order.insert(INFINITE as usize, u32::MAX);
         let rounding = if sites.exactness.is_double() { 0.0 } else { ROUNDING };
         let (simplices, spheres) = (vec![Simplex::default()], vec![[C::DEAD; 6]]);
-        Complex { sites, order, near, simplices, spheres, end: 1, rounding }
+        Complex { sites, order, near, simplices, spheres, rounding }
     }
 
     /// Takes places for new simplices: free ones first, then those behind all others, which are reserved but
-    /// not part of the arrays until [`Complex::extend`].
+    /// not part of the arrays until [`Complex::extend`]. Returns the length of the arrays with them.
     ///
     /// # Errors
     /// I/O, if there are too many simplices.
@@ -100,33 +98,32 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         wanted: usize,
         free: &mut Vec<u32>,
         places: &mut Vec<u32>,
-    ) -> Result<()> {
-        let reused = free.len().min(wanted);
-        let end = self.end + wanted - reused;
+    ) -> Result<usize> {
+        let (reused, before) = (free.len().min(wanted), self.simplices.len());
+        let end = before + wanted - reused;
         if end > SIMPLICES_MAX {
             let message =
                 format!("more than {SIMPLICES_MAX} simplices, the most that a diagram can be made of");
             return Err(Error::new(ErrorKind::Io, message));
         }
-        self.simplices.reserve(end - self.simplices.len());
-        self.spheres.reserve(end - self.spheres.len());
+        self.simplices.reserve(end - before);
+        self.spheres.reserve(end - before);
         places.clear();
         places.extend(free.drain(free.len() - reused..).rev());
-        places.extend(self.end as u32..end as u32);
-        self.end = end;
-        Ok(())
+        places.extend(before as u32..end as u32);
+        Ok(end)
     }
 
-    /// Makes all reserved places part of the arrays.
+    /// Makes places behind the arrays part of them, which have this length then.
     ///
     /// # Safety
-    /// The simplices and spheres in these places have been written.
+    /// The places were reserved, and the simplices and spheres in them have been written.
     #[inline(always)]
-    pub(super) unsafe fn extend(&mut self) {
-        // SAFETY: they were reserved, and the promise of this function.
+    pub(super) unsafe fn extend(&mut self, len: usize) {
+        // SAFETY: the promise of this function.
         unsafe {
-            self.simplices.set_len(self.end);
-            self.spheres.set_len(self.end);
+            self.simplices.set_len(len);
+            self.spheres.set_len(len);
         }
     }
 

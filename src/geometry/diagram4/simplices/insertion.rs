@@ -75,7 +75,6 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
             complex.spheres.push(sphere);
         }
         fix_sides(&mut complex.simplices);
-        complex.end = complex.simplices.len();
     }
 
     /// Inserts all other points, with AVX2 where the processor has it.
@@ -113,13 +112,13 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         let p = complex.lifted(q);
         let found = complex.locate(q, &p, *start);
         cavity.find::<C, L>(token, complex, q, found);
-        complex.allocate(cavity.border().len(), free, star)?;
+        let len = complex.allocate(cavity.border().len(), free, star)?;
         // SAFETY: the cavity and what is beyond its border are in the arrays, and the star is in reserved
         // places, which are read when they have been written.
         let mut arrays = unsafe { Arrays::of(&mut complex.simplices, &mut complex.spheres) };
         star::make::<C, L>(token, &mut arrays, &complex.near, q, cavity, star, links);
         // SAFETY: the star has all places that were taken.
-        unsafe { complex.extend() };
+        unsafe { complex.extend(len) };
         free.extend(cavity.dead().iter().map(|&dead| simplex_of(dead) as u32));
         *start = star[0] as usize;
         self.created += star.len() as u64;

@@ -40,8 +40,8 @@ impl Links {
 
     /// Links a simplex of the star to those at its triangles that came before it.
     ///
-    /// `vertices` are those besides the centre, in increasing order but for the first two. At a triangle where
-    /// none came before, the simplex is linked to itself: that saves an unpredictable branch.
+    /// `vertices` are those besides the centre, in increasing order but for the first two. At a triangle
+    /// where none came before, the simplex is linked to itself: that saves an unpredictable branch.
     #[inline(always)]
     pub(super) fn link<C: Coefficient>(
         &mut self,

@@ -3,9 +3,9 @@
 //!
 //! The thesis (4.4) lowers points, so that a point on a sphere counts as inside. Then each point of a grid
 //! retriangulates all cubes around it: in one pass along the curve, the full 16^4 grid creates 30 million
-//! simplices, but 10 million if points are raised. A point that is no vertex is inside the sphere of the simplex that contains it, or
-//! beyond the hull, so it is always in conflict with some simplex. A facet in a hyperplane with the point is
-//! never on the border of the cavity, so no new simplex is flat.
+//! simplices, but 10 million if points are raised. A point that is no vertex is inside the sphere of the
+//! simplex that contains it, or beyond the hull, so it is always in conflict with some simplex. A facet in a
+//! hyperplane with the point is never on the border of the cavity, so no new simplex is flat.
 //!
 //! Simplices and their spheres are in flat arrays. Points are inserted by the algorithm of Bowyer (1981) and
 //! Watson (1981), along a Hilbert curve; an in-sphere test is the product of two vectors of length six.

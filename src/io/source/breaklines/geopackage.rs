@@ -111,8 +111,8 @@ fn uri(path: &Path) -> Result<String> {
 fn malformed(error: rusqlite::Error) -> Error {
     if error.sqlite_error_code() == Some(ErrorCode::OperationInterrupted) {
         return Error::malformed(
-            "the tables of the GeoPackage take far more steps than a file of its size should: save views as tables, \
-             for example with ogr2ogr",
+            "the tables of the GeoPackage take far more steps than a file of its size should: save views as \
+             tables, for example with ogr2ogr",
         );
     }
     Error::malformed(format!("not a GeoPackage that can be read: {error}"))
@@ -163,11 +163,10 @@ fn check_same(first: &Crs, other: &Table, own: &Crs, table: &Table) -> Result<()
 
 fn features(database: &Connection, table: &Table, lines: &mut Collector) -> Result<()> {
     let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-    let properties_found = columns(database, table)?;
-    let names = std::iter::once(&table.column).chain(&properties_found).map(|name| quoted(name));
+    let columns = columns(database, table)?;
+    let names = std::iter::once(&table.column).chain(&columns).map(|name| quoted(name));
     let query = format!("SELECT {} FROM {}", names.collect::<Vec<_>>().join(", "), quoted(&table.name));
     let mut statement = database.prepare(&query).map_err(malformed)?;
-    let columns: Vec<(usize, String)> = (1..).zip(properties_found).collect();
     let mut rows = statement.query([]).map_err(malformed)?;
     for number in 1u64.. {
         let position = || format!("table {:?}, row {number}", table.name);
@@ -203,10 +202,11 @@ fn columns(database: &Connection, table: &Table) -> Result<Vec<String>> {
     Ok(found)
 }
 
-fn properties(row: &rusqlite::Row, columns: &[(usize, String)]) -> rusqlite::Result<Properties> {
+/// The properties of a row of the geometry and these columns.
+fn properties(row: &rusqlite::Row, columns: &[String]) -> rusqlite::Result<Properties> {
     let mut found = Properties::default();
-    for (column, name) in columns {
-        let text = match row.get_ref(*column)? {
+    for (column, name) in (1..).zip(columns) {
+        let text = match row.get_ref(column)? {
             ValueRef::Integer(value) => Some(value.to_string()),
             ValueRef::Real(value) => Some(value.to_string()),
             ValueRef::Text(bytes) => Some(String::from_utf8_lossy(bytes).into_owned()),
@@ -234,7 +234,8 @@ mod tests {
         assert!(message.contains("too big"), "{message}");
         let count = |to: u32| {
             ask(&format!(
-                "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c WHERE x < {to}) SELECT max(x) FROM c"
+                "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c WHERE x < {to}) \
+                 SELECT max(x) FROM c"
             ))
         };
         assert_eq!(count(10_000).unwrap(), 10_000);

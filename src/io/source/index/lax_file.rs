@@ -7,7 +7,7 @@ use std::path::Path;
 use super::super::las_header::{EVLR_HEADER_LEN, LAX, LasHeader};
 use super::super::origin::{FileView, Origin, open_file};
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::LAX_LEN_MAX;
+use spmesh_core::limits::{LAX_LEN_MAX, check_len};
 
 /// Finds an index, and returns its name in messages and its bytes; `None` if there is none.
 pub(super) fn find(
@@ -56,9 +56,7 @@ fn read_beside(of: &Path, path: &Path) -> Result<Vec<u8>> {
 }
 
 fn read(mut from: impl Read, len: u64) -> Result<Vec<u8>> {
-    if len > LAX_LEN_MAX {
-        return Err(Error::malformed(format!("it has {len} bytes, the maximum is {LAX_LEN_MAX}")));
-    }
+    check_len("it has", len, LAX_LEN_MAX)?;
     let mut bytes = vec![0; len as usize];
     match from.read_exact(&mut bytes) {
         Err(e) if e.kind() == ErrorKind::UnexpectedEof => Err(Error::malformed("it is cut off")),
