@@ -17,12 +17,13 @@ class Fault(Exception):
 
 
 class Trial:
-    """One run of one pipeline in an empty folder. A yardstick is a run whose size is always the same."""
+    """One run of one pipeline in an empty folder. A yardstick is a run of the same size with the same flags."""
 
     def __init__(self, soak, random, folder, scratch, is_yardstick):
         self.soak, self.random, self.folder, self.scratch = soak, random, folder, scratch
         self.is_yardstick = is_yardstick
         self.threads = 2 if is_yardstick else random.choice((1, 2))
+        self.cell_points = 500 if is_yardstick else random.choice((60, 500, 20_000))
         self.outputs, self.audits, self.peaks, self.samples = set(), 0, {}, []
 
     def size(self, most):
@@ -69,7 +70,7 @@ class Trial:
 
     def finalize(self, *flags):
         return ["spfinalize", "-q", "--memory", self.soak.memory, "--temp-dir", self.scratch,
-                "--threads", self.threads, "--cell-points", self.random.choice((60, 500, 20_000)), *flags]
+                "--threads", self.threads, "--cell-points", self.cell_points, *flags]
 
     def reduce(self, *flags):
         return ["spdelaunay2d", "-q", "--threads", self.threads, *flags]
