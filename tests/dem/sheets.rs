@@ -160,6 +160,7 @@ fn wrong_divisions_are_refused() {
     refused(&["--tiles", "0.5", "--step", "1"], "smaller than a cell");
     refused(&["--tiles", "51,1", "--step", "1"], "cannot be divided");
     assert_outcome("spdem", &["--tiles", "9"], &mesh, 2, "--tiles writes many files");
+    assert_outcome("spdem", &["--tiles", "9", "-o", "/dev/stdout"], &mesh, 2, "--tiles writes many files");
     assert_eq!(folder.names(""), Vec::<String>::new());
     let output = run("spdem", &["--step", "1", "--tiles", "1,1", "-o", &path], &mesh);
     assert!(output.status.success());

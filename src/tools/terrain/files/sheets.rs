@@ -39,7 +39,8 @@ impl Sheets {
     /// # Errors
     /// If no files can be made there.
     pub fn new(path: &Path, division: Division, inputs: Inputs, format: RasterFormat) -> Result<Sheets> {
-        if path == Path::new("-") || path.file_name().is_none() {
+        let is_stream = path == Path::new("-") || fs::metadata(path).is_ok_and(|found| !found.is_file());
+        if is_stream || path.file_name().is_none() {
             return Err(Error::usage("--tiles writes many files: give their name, as in -o folder/name.tif"));
         }
         path.parent().map_or(Ok(()), create_folder)?;
