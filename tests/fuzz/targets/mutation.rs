@@ -77,6 +77,11 @@ impl Inputs {
     }
 
     fn mutate(&self, bytes: &mut Vec<u8>, random: &mut Random) {
+        // Other changes make most texts nonsense.
+        if std::str::from_utf8(bytes).is_ok() && random.integer(0, 1) == 0 {
+            let at = below(random, bytes.len() + 1);
+            return replace_number(bytes, at, random);
+        }
         // Half of the changes are near the start, where lengths and counts are.
         let end = if random.integer(0, 1) == 0 { bytes.len().min(HEAD) } else { bytes.len() };
         let at = below(random, end + 1);
