@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::process::Output;
 
+use rustix::fs::Mode;
+
 use crate::programs::{Folder, assert_outcome, cloud, outcome, run, sample};
 use crate::sources::las_file::LasFile;
 
@@ -276,9 +278,20 @@ fn bad_requests_are_named() {
     assert_outcome("spinfo", &[&mesh], &[], 3, "vertices of its own, expected");
     fs::write(&mesh, &manifest[..manifest.len() / 2]).unwrap();
     assert_outcome("spinfo", &[&mesh], &[], 3, "no manifest");
+    let raster = folder.path("raster.tif");
+    let [bounds, points] = ["\"bounds\":", "\"points\":"].map(|name| manifest.find(name).unwrap());
+    for wrong in ["[[2,0,0],[1,1,1]]", "[[0,0,0],[0.123,1,1]]", "[[-1e308,0,0],[1e308,1,1]]"] {
+        let changed = format!("{}\"bounds\":{wrong},{}", &manifest[..bounds], &manifest[points..]);
+        fs::write(&mesh, changed).unwrap();
+        assert_outcome("spdem", &["--columns", "9", &mesh, "-o", &raster], &[], 3, "bounding box");
+    }
     fs::write(&mesh, &manifest).unwrap();
-    fs::remove_file(folder.path("parts/000001.spm")).unwrap();
+    let part = folder.path("parts/000001.spm");
+    fs::remove_file(&part).unwrap();
     assert_outcome("spinfo", &[&mesh], &[], 1, "000001.spm");
+    // A pipe that nothing writes to.
+    rustix::fs::mkfifoat(rustix::fs::CWD, &part, Mode::RUSR | Mode::WUSR).unwrap();
+    assert_outcome("spinfo", &[&mesh], &[], 3, "000001.spm: a part of a mesh is no regular file");
 }
 
 #[test]

@@ -86,7 +86,7 @@ impl Weights {
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Malformed`] if one is not finite, or greater than the header says.
-    pub(super) fn check(&self, rows: &[u8]) -> Result<()> {
+    pub fn check(&self, rows: &[u8]) -> Result<()> {
         // A NaN is no number up to the limit.
         match self.read(rows).find(|&weight| !(weight.is_finite() && weight <= self.greatest)) {
             Some(weight) => {

@@ -8,7 +8,7 @@ use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, Strea
 
 use super::{Random, frames, random_stream, seal, write_rows};
 use crate::convert::{converted, text_of};
-use crate::vectors::{verify, verify_rows};
+use crate::vectors::{repository, verify, verify_rows};
 
 const NUMBERS: [NumberType; 10] = [
     NumberType::U8,
@@ -101,6 +101,19 @@ fn a_line_of_a_row_must_be_there_and_fit() {
         ("#spmesh attribute \"class\" u8 1 \"\" \"\" - - -\n", "", "expected v, x or a comment"),
     ] {
         crate::convert::assert_refused(&text, found, replaced, expected);
+    }
+}
+
+#[test]
+fn a_weight_in_a_line_is_up_to_that_of_the_header() {
+    let text = std::fs::read_to_string(repository("formats/vectors/pass/weights-points.txt")).unwrap();
+    for weight in ["2.375", "inf", "nan"] {
+        crate::convert::assert_refused(
+            &text,
+            "a 1 2.125",
+            &format!("a 1 {weight}"),
+            "a finite number up to 2.25",
+        );
     }
 }
 

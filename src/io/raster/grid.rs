@@ -72,6 +72,9 @@ impl Grid {
             _ if width.max(height) == 0.0 => Err(Error::usage(
                 "the input spans no area, so the cells of a raster have no size: give --step",
             )),
+            _ if !width.max(height).is_finite() => Err(Error::usage(
+                "the window is wider than any number, so its cells have no size: give --bounds of a part of it",
+            )),
             Cells::Columns(count) => exactly(width / f64::from(count), [Some(count), None]),
             Cells::Rows(count) => exactly(height / f64::from(count), [None, Some(count)]),
             Cells::Default => Grid::covering(window, width.max(height) / CELLS_DEFAULT, window.min),
@@ -178,5 +181,10 @@ mod tests {
         }
         let error = Grid::covering(window, 1e-12, [0.0; 2]).unwrap_err().to_string();
         assert!(error.contains("take larger cells"), "{error}");
+        let widest = Window { min: [f64::MIN, 0.0], max: [f64::MAX, 1.0] };
+        for cells in [Cells::Columns(9), Cells::Rows(9), Cells::Default] {
+            let error = Grid::of(widest, cells).unwrap_err().to_string();
+            assert!(error.contains("the window is wider than any number"), "{error}");
+        }
     }
 }

@@ -91,11 +91,7 @@ impl Manifest {
                 "version {version} of a manifest; this program reads {VERSION}"
             )));
         }
-        let manifest: Manifest = serde_json::from_slice(text).map_err(not_one)?;
-        if manifest.bounds.is_some_and(|[min, max]| (0..3).any(|axis| min[axis] > max[axis])) {
-            return Err(Error::malformed("the bounding box is not ordered"));
-        }
-        Ok(manifest)
+        serde_json::from_slice(text).map_err(not_one)
     }
 
     /// The number by which streams name the plan.
@@ -152,6 +148,7 @@ fn joined(path: &Path) -> Result<JoinedMesh> {
     let header = StreamReader::new(input, name)?.header().clone();
     let bounds = manifest.bounds.map(|[min, max]| Bounds { min, max });
     let header = Header { bounds, tree: None, part: None, points: None, ..header };
+    header.check().map_err(Error::malformed)?;
     let stated = Totals { points: manifest.points, merged: manifest.merged, ..Totals::default() };
     JoinedMesh::new(header, plan, sizes, stated, Box::new(open))
 }
@@ -163,6 +160,10 @@ fn size_of(part: &ManifestPart) -> PartSize {
 fn open_part(path: &Path) -> Result<OpenedPart> {
     let name = path.display().to_string();
     let named = |e: Error| e.of_input(&name);
+    // Opening a pipe that nothing writes to would wait for ever.
+    if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        return Err(named(Error::malformed("a part of a mesh is no regular file")));
+    }
     let (file, _) = open_file(path).map_err(named)?;
     let plain = Plain::new(file).map_err(|e| named(Error::io("reading", e)))?;
     Ok((Box::new(plain), name))

@@ -258,6 +258,7 @@ impl<R: Read> TwinSource<R> {
         self.check_rows()?;
         self.rows.clear();
         std::mem::swap(&mut self.group_rows, &mut self.rows);
+        self.header.weights().map_or(Ok(()), |weights| weights.check(&self.rows))?;
         let vertices = self.tally.totals().vertices;
         let event = match std::mem::replace(&mut self.group, Group::Empty) {
             Group::Empty => unreachable!("the empty group takes every statement"),

@@ -1,11 +1,13 @@
 //! Programs as users call them, in this process, with the bytes of an input as one of their files.
 //!
 //! A target has several lines. `put FILE` writes the bytes to a file; `seal FILE` does so with corrected
-//! checksums. Every other line is a command. A file name begins with `HERE/`, the folder of the thread, or
+//! checksums, and with the names of the folder (see [`Here`]); `prove FILE` audits a file, if it is there, and
+//! removes it. Every other line is a command. A file name begins with `HERE/`, the folder of the thread, or
 //! `DATA/`, the samples of the tests.
 
-use std::fs;
-use std::path::Path;
+use std::fs::{self, File};
+use std::path::PathBuf;
+use std::time::{Duration, UNIX_EPOCH};
 
 use clap::Parser;
 use serde_json::Value;
@@ -17,7 +19,7 @@ use spmesh_io::source::{SourceOptions, Survey};
 use spmesh_plan::{NodeReport, Plan, Planning, hash_of_file, plan_of};
 use tempfile::TempDir;
 
-use crate::streams::sealed;
+use crate::streams::{prove, sealed};
 
 pub const PLAN: &[&str] = &[
     "seal HERE/in.json",
@@ -33,20 +35,24 @@ pub const REPORT: &[&str] = &[
 ];
 
 pub const MANIFEST: &[&str] = &[
-    "put HERE/in.json",
+    "seal HERE/in.json",
     "spconvert HERE/in.json -o HERE/out.obj",
     "spdem --columns 9 HERE/in.json -o HERE/out.tif",
 ];
 
 pub const RESUME: &[&str] =
-    &["put HERE/in.tsv", "tess3 --out-dir HERE/made --summary HERE/in.tsv --resume HERE/atoms.pdb"];
+    &["seal HERE/in.tsv", "tess3 --out-dir HERE/made --summary HERE/in.tsv --resume HERE/atoms.pdb"];
 
+/// Lines and polygons beside a sound mesh.
 pub const MASKS: &[&str] = &[
     "put HERE/in.geojson",
     "spfinalize --threads 1 --clip HERE/in.geojson HERE/points.txt -o HERE/out.spm",
     "spfinalize --threads 1 --flatten HERE/in.geojson HERE/points.txt -o HERE/out.spm",
     "spdem --columns 9 --mask HERE/in.geojson HERE/mesh.spm -o HERE/out.tif",
-    "spconstrain --hull HERE/in.geojson HERE/mesh.spm -o HERE/out.spm",
+    "spconstrain --hull HERE/in.geojson HERE/mesh.spm -o HERE/cut.spm",
+    "prove HERE/cut.spm",
+    "spconstrain --lines HERE/in.geojson HERE/mesh.spm -o HERE/lines.spm",
+    "prove HERE/lines.spm",
 ];
 
 pub const LIKE: &[&str] = &["put HERE/in.tif", "spdem --like HERE/in.tif HERE/mesh.spm -o HERE/out.tif"];
@@ -66,12 +72,16 @@ pub const PARTS: &[&str] = &[
 /// What reads points or partial meshes.
 pub const REDUCE: &[&str] = &[
     "seal HERE/in.spm",
-    "spdelaunay2d --threads 1 --memory 256M HERE/in.spm -o HERE/out.spm",
+    "spdelaunay2d --threads 1 --memory 256M HERE/in.spm -o HERE/mesh2.spm",
+    "prove HERE/mesh2.spm",
     "spdelaunay2d --merge --incomplete HERE/in.spm HERE/in.spm -o HERE/out.spm",
-    "spdelaunay3d --threads 2 --memory 256M HERE/in.spm -o HERE/out.spm",
+    "spdelaunay3d --threads 2 --memory 256M HERE/in.spm -o HERE/mesh3.spm",
+    "prove HERE/mesh3.spm",
     "spdelaunay3d --merge HERE/in.spm -o HERE/out.spm",
-    "spfinalize --threads 1 HERE/in.spm -o HERE/out.spm",
-    "configgen HERE/in.spm -o HERE/out.spm",
+    "spfinalize --threads 1 HERE/in.spm -o HERE/final.spm",
+    "prove HERE/final.spm",
+    "configgen HERE/in.spm -o HERE/links.spm",
+    "prove HERE/links.spm",
 ];
 
 /// What reads meshes of terrain.
@@ -105,7 +115,8 @@ pub const SOLID: &[&str] = &[
     "seal HERE/in.spm",
     "tess3 --filtration HERE/in.spm -o HERE/out.txt",
     "tess3 --contacts HERE/in.spm -o HERE/out.txt",
-    "dd4 HERE/in.spm -o HERE/out.spm",
+    "dd4 HERE/in.spm -o HERE/cells.spm",
+    "prove HERE/cells.spm",
     "dd4 --slice 0.5 HERE/in.spm -o HERE/out.ply",
 ];
 
@@ -119,6 +130,9 @@ pub const SPLINES: &[&str] = &[
 
 /// Points with ties, of which the files of the folder are made.
 const POINTS: &str = "0 0 1\n9 0 2\n9 9 3\n0 9 4\n5 5 9\n3 4 2\n7 2 2\n3 4 3\n1 8 0\n6 6 6\n";
+
+/// When files of the folder were changed: plans and summaries say so.
+const AGE: Duration = Duration::from_secs(1_000_000_000);
 
 /// Makes the files that commands read.
 const SETUP: &[&str] = &[
@@ -143,60 +157,126 @@ ATOM      4  O   ALA A   1       3.000   3.000   3.500  1.00  0.00           O
 ATOM      5  CB  ALA A   1       1.500   1.000   2.000  1.00  0.00           C
 ";
 
+/// A folder with the files that commands read.
+struct Here {
+    folder: TempDir,
+    /// What plans, reports, manifests and summaries of this folder say of it, and what stands for that in
+    /// inputs: so an input means the same in every folder.
+    names: Vec<[String; 2]>,
+}
+
 thread_local! {
-    static FOLDER: TempDir = set_up();
+    static HERE: Here = Here::new();
 }
 
-fn set_up() -> TempDir {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("atoms.pdb"), ATOMS).expect("a writable folder");
-    let run = |line: &&str| {
-        let outcome = run_line(line, folder.path(), POINTS.as_bytes());
-        outcome.unwrap_or_else(|error| panic!("{line}: {error}"));
-    };
-    SETUP.iter().for_each(run);
-    write_plan(folder.path());
-    JOBS.iter().for_each(run);
-    folder
+impl Here {
+    fn new() -> Here {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        fs::write(folder.path().join("atoms.pdb"), ATOMS).expect("a writable folder");
+        let mut here = Here { folder, names: Vec::new() };
+        here.run_all(SETUP);
+        for file in ["points.txt", "atoms.pdb"] {
+            let file = File::options().append(true).open(here.path(file)).expect("a file of the folder");
+            file.set_modified(UNIX_EPOCH + AGE).expect("a writable folder");
+        }
+        let plan = here.write_plan();
+        here.run_all(JOBS);
+        here.names = vec![[here.path(""), "HERE/".to_string()], [plan, "PLAN".to_string()]];
+        for node in 0..4 {
+            let rest = here.path(&format!("parts/00000{node}.rest.spm"));
+            let hash = hash_of_file(rest.as_ref()).expect("a file of the folder");
+            here.names.push([hash, format!("REST{node}")]);
+        }
+        here
+    }
+
+    fn path(&self, name: &str) -> String {
+        format!("{}/{name}", self.folder.path().display())
+    }
+
+    fn run_all(&self, lines: &[&str]) {
+        for line in lines {
+            self.run(line, POINTS.as_bytes()).unwrap_or_else(|error| panic!("{line}: {error}"));
+        }
+    }
+
+    /// Writes a plan as of the program, which takes arguments from its process; returns its hash.
+    fn write_plan(&self) -> String {
+        let paths = [PathBuf::from(self.path("points.txt"))];
+        let options = SourceOptions { dims: 2, ..SourceOptions::default() };
+        let survey = Survey::of(&paths, &options, |_| ()).expect("a file of points");
+        let planning = Planning { leaf_points: 4, arguments: &[], beside: &[] };
+        let plan = plan_of(&survey, &paths, planning).expect("a plan");
+        fs::write(self.path("plan.json"), plan.to_json().expect("a plan")).expect("a writable folder");
+        plan.id().to_string()
+    }
+
+    /// Runs a line with some bytes.
+    fn run(&self, line: &str, bytes: &[u8]) -> Result<(), String> {
+        let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/");
+        let place = |word: &str| word.replace("HERE/", &self.path("")).replace("DATA/", data);
+        let words: Vec<String> = line.split(' ').map(place).collect();
+        match &words[..] {
+            [put, path] if put == "put" => fs::write(path, bytes).expect("a writable folder"),
+            [seal, path] if seal == "seal" => {
+                fs::write(path, self.corrected(bytes)).expect("a writable folder");
+            }
+            // A program that refuses its input leaves no file.
+            [word, path] if word == "prove" => {
+                if let Ok(made) = fs::read(path) {
+                    fs::remove_file(path).expect("a writable folder");
+                    prove(&made);
+                }
+            }
+            [tool, arguments @ ..] => {
+                let all = [&[tool.clone(), "-q".into()], arguments].concat();
+                return call_tool(tool, &all);
+            }
+            [] => panic!("an empty line"),
+        }
+        Ok(())
+    }
+
+    /// The bytes with checksums that fit them, if they are a stream, a plan or a report.
+    fn corrected(&self, bytes: &[u8]) -> Vec<u8> {
+        let text = |bytes| {
+            let text = String::from_utf8(bytes).ok()?;
+            Some(self.names.iter().fold(text, |text, [own, general]| text.replace(general, own)).into_bytes())
+        };
+        sealed(bytes).unwrap_or_else(|| {
+            let bytes = text(bytes.to_vec()).unwrap_or(bytes.to_vec());
+            sealed_report(&bytes).or_else(|| self.sealed_plan(&bytes)).unwrap_or(bytes)
+        })
+    }
+
+    /// The hash of a plan is that of its text without the hash.
+    fn sealed_plan(&self, bytes: &[u8]) -> Option<Vec<u8>> {
+        let mut value: Value = serde_json::from_slice(bytes).ok()?;
+        *value.get_mut("id")? = "".into();
+        let bare: Plan = serde_json::from_value(value.clone()).ok()?;
+        let path = self.path("bare.json");
+        fs::write(&path, serde_json::to_vec(&bare).ok()?).expect("a writable folder");
+        value["id"] = hash_of_file(path.as_ref()).expect("a file that was just written").into();
+        serde_json::to_vec(&value).ok()
+    }
 }
 
-/// A plan as of the program, which takes arguments from its process.
-fn write_plan(folder: &Path) {
-    let paths = [folder.join("points.txt")];
-    let options = SourceOptions { dims: 2, ..SourceOptions::default() };
-    let survey = Survey::of(&paths, &options, |_| ()).expect("a file of points");
-    let planning = Planning { leaf_points: 4, arguments: &[], beside: &[] };
-    let plan = plan_of(&survey, &paths, planning).expect("a plan");
-    fs::write(folder.join("plan.json"), plan.to_json().expect("a plan")).expect("a writable folder");
-}
-
-/// A file of the folder, such as `plan.json`.
+/// A file of the folder, such as `plan.json`, as an input for any folder.
 pub fn made(name: &str) -> Vec<u8> {
-    FOLDER.with(|folder| fs::read(folder.path().join(name)).expect("a file of the folder"))
+    HERE.with(|here| {
+        let bytes = fs::read(here.path(name)).expect("a file of the folder");
+        match String::from_utf8(bytes) {
+            Ok(text) => {
+                here.names.iter().fold(text, |text, [own, general]| text.replace(own, general)).into()
+            }
+            Err(binary) => binary.into_bytes(),
+        }
+    })
 }
 
 /// Runs all lines with some bytes. Programs may refuse them.
 pub fn run(lines: &[&str], bytes: &[u8]) {
-    FOLDER.with(|folder| lines.iter().for_each(|line| drop(run_line(line, folder.path(), bytes))));
-}
-
-fn run_line(line: &str, folder: &Path, bytes: &[u8]) -> Result<(), String> {
-    let here = format!("{}/", folder.display());
-    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/");
-    let words: Vec<String> =
-        line.split(' ').map(|word| word.replace("HERE/", &here).replace("DATA/", data)).collect();
-    match &words[..] {
-        [put, path] if put == "put" => fs::write(path, bytes).expect("a writable folder"),
-        [seal, path] if seal == "seal" => {
-            fs::write(path, corrected(bytes, folder)).expect("a writable folder");
-        }
-        [tool, arguments @ ..] => {
-            let all = [&[tool.clone(), "-q".into()], arguments].concat();
-            return call_tool(tool, &all);
-        }
-        [] => panic!("an empty line"),
-    }
-    Ok(())
+    HERE.with(|here| lines.iter().for_each(|line| drop(here.run(line, bytes))));
 }
 
 fn call_tool(tool: &str, words: &[String]) -> Result<(), String> {
@@ -227,26 +307,33 @@ fn parsed<F: Parser, E: std::fmt::Display>(
     run(flags).map_err(|error| format!("{error:#}"))
 }
 
-/// The bytes with checksums that fit them, if they are a stream, a plan or a report.
-fn corrected(bytes: &[u8], folder: &Path) -> Vec<u8> {
-    sealed(bytes)
-        .or_else(|| sealed_report(bytes))
-        .or_else(|| sealed_plan(bytes, folder))
-        .unwrap_or(bytes.to_vec())
-}
-
 fn sealed_report(bytes: &[u8]) -> Option<Vec<u8>> {
     let report: NodeReport = serde_json::from_slice(bytes).ok()?;
     Some(report.to_json().expect("a report").into_bytes())
 }
 
-/// The hash of a plan is that of its text without the hash.
-fn sealed_plan(bytes: &[u8], folder: &Path) -> Option<Vec<u8>> {
-    let mut value: Value = serde_json::from_slice(bytes).ok()?;
-    *value.get_mut("id")? = "".into();
-    let bare: Plan = serde_json::from_value(value.clone()).ok()?;
-    let path = folder.join("bare.json");
-    fs::write(&path, serde_json::to_vec(&bare).ok()?).expect("a writable folder");
-    value["id"] = hash_of_file(&path).expect("a file that was just written").into();
-    serde_json::to_vec(&value).ok()
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every thread has a folder of its own.
+    #[test]
+    fn an_input_means_the_same_in_every_folder() {
+        let load = || ["plan.json", "manifest.json", "parts/000002.json"].map(made);
+        let other = std::thread::spawn(load).join().expect("a folder");
+        let [plan, manifest, report] = load();
+        assert_eq!(other[..2], [plan, manifest]);
+        HERE.with(|here| {
+            for line in ["seal HERE/in.json", "spnode list HERE/in.json"] {
+                here.run(line, &other[0]).expect("a plan");
+            }
+            for line in &MANIFEST[..2] {
+                here.run(line, &other[1]).expect("a manifest");
+            }
+            let read =
+                |bytes| -> NodeReport { serde_json::from_slice(&here.corrected(bytes)).expect("a report") };
+            let [own, other] = [&report, &other[2]].map(|bytes| read(bytes));
+            assert_eq!((own.plan, own.residual, own.joined), (other.plan, other.residual, other.joined));
+        });
+    }
 }

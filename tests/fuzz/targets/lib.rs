@@ -83,9 +83,9 @@ const fn tools(name: &'static str, lines: &'static [&'static str], samples: Samp
 pub const TARGETS: [Target; 49] = [
     call("stream", streams::stream, Samples::Vectors),
     call("twin", streams::twin, Samples::Twins),
-    call("las", files::points, Samples::Files(&["las", "laz"])),
-    call("window", files::window, Samples::Files(&["las", "laz"])),
-    call("copy", files::copy, Samples::Files(&["las", "laz"])),
+    call("las", files::points, Samples::Made(Made::Las)),
+    call("window", files::window, Samples::Made(Made::Las)),
+    call("copy", files::copy, Samples::Made(Made::Las)),
     call("lax", files::lax, Samples::Made(Made::Lax)),
     call("text", files::points, Samples::Texts(samples::TEXTS)),
     call("gzip", files::gzip, Samples::Files(&["gz"])),

@@ -8,16 +8,25 @@ use spmesh_io::sink::{NPY_F64, npy_header};
 use spmesh_io::source::{Input, SourceOptions};
 
 use crate::commands::made;
-use crate::samples::{INDEXED_LAS, LINES_GPKG, POLYGONS, SYSTEMS, blobs, data};
+use crate::samples::{INDEXED_LAS, LINES_GPKG, POLYGONS, SYSTEMS, Samples, blobs, data};
+use las_file::LasFile;
 
-// The tests of sources use more of this module.
+// The tests of sources use more of these modules.
+#[allow(dead_code)]
+#[path = "../../sources/las_file.rs"]
+mod las_file;
 #[allow(dead_code)]
 #[path = "../../sources/lax_writer.rs"]
 mod lax_writer;
 
+/// Points of small files.
+const LAS_POINTS: [[i32; 3]; 3] = [[0, 0, 5], [100, 20, 7], [40, 300, 6]];
+
 /// Samples that are made.
 #[derive(Debug, Clone, Copy)]
 pub enum Made {
+    /// LAS and LAZ, among them a few points of each format, so that most changes are in the header.
+    Las,
     /// Points and meshes of Isenburg's binary formats.
     Binary,
     /// Arrays of numpy.
@@ -48,6 +57,10 @@ impl Made {
     /// The samples.
     pub fn load(self) -> Vec<Vec<u8>> {
         match self {
+            Made::Las => {
+                let small = |format| LasFile { format, ..LasFile::of(&LAS_POINTS) }.bytes();
+                (0..=10).map(small).chain(Samples::Files(&["las", "laz"]).load()).collect()
+            }
             Made::Binary => vec![
                 converted("points.spm", Format::Spb),
                 converted("mesh.spm", Format::Smb),

@@ -5,6 +5,8 @@ use spmesh_reference::sets::Random;
 
 /// Most bytes of an input.
 const INPUT_MAX: usize = 1 << 17;
+/// Bytes of the headers of most formats.
+const HEAD: usize = 400;
 /// Bytes of random points.
 const POINTS_MAX: i64 = 1200;
 
@@ -75,12 +77,21 @@ impl Inputs {
     }
 
     fn mutate(&self, bytes: &mut Vec<u8>, random: &mut Random) {
-        let at = below(random, bytes.len() + 1);
+        // Other changes make most texts nonsense.
+        if std::str::from_utf8(bytes).is_ok() && random.integer(0, 1) == 0 {
+            let at = below(random, bytes.len() + 1);
+            return replace_number(bytes, at, random);
+        }
+        // Half of the changes are near the start, where lengths and counts are.
+        let end = if random.integer(0, 1) == 0 { bytes.len().min(HEAD) } else { bytes.len() };
+        let at = below(random, end + 1);
         let rest = bytes.len() - at;
         let short = random.integer(0, 12) as usize;
-        match random.integer(0, 9) {
+        match random.integer(0, 10) {
             0 | 1 if rest > 0 => bytes[at] ^= 1 << random.integer(0, 7),
             2 if rest > 0 => bytes[at] = random.bits() as u8,
+            // A length that is one too few, or one too many.
+            10 if rest > 0 => bytes[at] = bytes[at].wrapping_add_signed(random.integer(0, 1) as i8 * 2 - 1),
             3 | 4 => overwrite(bytes, at, random),
             5 => drop(bytes.drain(at..at + short.min(rest))),
             6 => {
@@ -118,12 +129,19 @@ fn overwrite(bytes: &mut [u8], at: usize, random: &mut Random) {
     }
 }
 
-/// Replaces the first number of a text at or after `at`.
+/// Replaces the first number of a text at or after `at`: by one that readers often handle wrongly, or, if it is
+/// whole, by one of its neighbours, as an index that is one too many.
 fn replace_number(bytes: &mut Vec<u8>, at: usize, random: &mut Random) {
     let is_digit = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+');
     let Some(start) = bytes[at..].iter().position(is_digit).map(|from| at + from) else { return };
     let length = bytes[start..].iter().take_while(|byte| is_digit(byte)).count();
-    bytes.splice(start..start + length, NUMBERS[below(random, NUMBERS.len())].bytes());
+    let end = start + length;
+    let old = std::str::from_utf8(&bytes[start..end]).ok().and_then(|text| text.parse::<i64>().ok());
+    let new = match old {
+        Some(old) if random.integer(0, 1) == 0 => old.wrapping_add(2 * random.integer(0, 1) - 1).to_string(),
+        _ => NUMBERS[below(random, NUMBERS.len())].to_string(),
+    };
+    bytes.splice(start..end, new.into_bytes());
 }
 
 #[cfg(test)]

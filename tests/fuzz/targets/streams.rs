@@ -1,10 +1,11 @@
 //! Streams and their text twins.
 
 use spmesh_audit::{Audit, Inventory, Standard, configurations, diagram};
-use spmesh_io::sink::{EventSink, TwinSink};
+use spmesh_core::error::Result;
+use spmesh_io::sink::{EventSink, SpmSink, TwinSink};
 use spmesh_io::source::{EventSource, TwinSource};
 use spmesh_model::bounds::Point;
-use spmesh_stream::{Event, FinalizedCells, Header, Kind, LiveVertices, StreamReader, Totals};
+use spmesh_stream::{Event, FinalizedCells, Header, Kind, LiveVertices, MemoryRules, StreamReader, Totals};
 
 /// The first byte of a stream.
 const FIRST: u8 = 0x89;
@@ -31,46 +32,88 @@ pub fn sealed(bytes: &[u8]) -> Option<Vec<u8>> {
 
 fn read_stream(bytes: &[u8]) {
     let Ok(mut reader) = StreamReader::new(bytes, "fuzz") else { return };
-    let Some((header, events, rows)) = read(&mut reader) else { return };
-    examine(&header, &events);
-    // The text twin of a valid stream can be read.
-    let mut text = Vec::new();
-    let mut sink = TwinSink::new(&mut text, &header).expect("memory takes the header");
-    for (event, rows) in events.iter().zip(&rows) {
-        sink.event(event, rows).expect("memory takes the events");
-    }
+    let Ok(stream) = read(&mut reader) else { return };
+    examine(&stream.0, &stream.1);
+    expect_copies(&stream);
+}
+
+/// Panics unless the text twin and the binary form of a well-formed stream can be read, and say the same.
+fn expect_copies(stream: &Stream) {
+    let text = twin_of(stream);
     let mut twin = TwinSource::new(&text[..], "twin").expect("a twin that was just written");
-    loop {
-        match twin.next_event().expect("a twin that was just written") {
-            Some(Event::End(totals)) => break assert_eq!(Some(totals), end_of(&events)),
-            Some(_) => {}
-            None => panic!("the twin has no end"),
-        }
+    let again = read(&mut twin).expect("a twin that was just written");
+    assert_eq!(end_of(&again.1), end_of(&stream.1));
+    let mut binary = Vec::new();
+    write(stream, SpmSink::new(&mut binary, &stream.0));
+    let mut reader = StreamReader::new(&binary[..], "copy").expect("a stream that was just written");
+    let copy = read(&mut reader).expect("a stream that was just written");
+    for (name, other) in [("twin", again), ("copy", copy)] {
+        let other = twin_of(&other);
+        let differs = text.iter().zip(&other).position(|(a, b)| a != b);
+        let text = String::from_utf8_lossy(&text);
+        assert!(text.as_bytes() == other, "the twin of the {name} differs at {differs:?}: {text}");
+    }
+}
+
+/// The text twin of a stream.
+fn twin_of(stream: &Stream) -> Vec<u8> {
+    let mut text = Vec::new();
+    write(stream, TwinSink::new(&mut text, &stream.0));
+    text
+}
+
+fn write((_, events, rows): &Stream, sink: Result<impl EventSink>) {
+    let mut sink = sink.expect("memory takes the header");
+    for (event, rows) in events.iter().zip(rows) {
+        sink.event(event, rows).expect("memory takes the events");
     }
 }
 
 /// Reads a text twin and examines its events.
 pub fn twin(bytes: &[u8]) {
     let Ok(mut twin) = TwinSource::new(bytes, "fuzz") else { return };
-    if let Some((header, events, _)) = read(&mut twin) {
-        examine(&header, &events);
+    if let Ok(stream) = read(&mut twin) {
+        examine(&stream.0, &stream.1);
+        expect_copies(&stream);
     }
 }
 
-/// Header and events, and the attributes of the points of each event, if the whole input is well-formed.
-fn read(source: &mut impl EventSource) -> Option<(Header, Vec<Event>, Vec<Vec<u8>>)> {
+/// Header and events of a well-formed input, and the attributes of the points of each event.
+type Stream = (Header, Vec<Event>, Vec<Vec<u8>>);
+
+fn read(source: &mut impl EventSource) -> Result<Stream> {
     let (mut events, mut rows) = (Vec::new(), Vec::new());
-    loop {
-        match source.next_event() {
-            Ok(Some(event)) => {
-                events.push(event);
-                rows.push(source.rows().to_vec());
-            }
-            Ok(None) => break,
-            Err(_) => return None,
+    while let Some(event) = source.next_event()? {
+        events.push(event);
+        rows.push(source.rows().to_vec());
+    }
+    Ok((source.header().clone(), events, rows))
+}
+
+/// Panics unless the bytes are a stream whose claims pass their audit.
+pub fn prove(bytes: &[u8]) {
+    let mut reader = StreamReader::new(bytes, "output").expect("a stream that was just written");
+    let (header, events, rows) = read(&mut reader).expect("a stream that was just written");
+    let mut rules = MemoryRules::new(&header);
+    events.iter().try_for_each(|event| rules.check(event)).expect("a stream that keeps the rules");
+    match header.kind {
+        Kind::Cells4 | Kind::Simplices4 => {
+            let mut audit = diagram::StreamAudit::new(header.kind).expect("a kind with an audit");
+            events.iter().try_for_each(|event| audit.event(event)).expect("room for the cells");
+            audit.prove().expect("a diagram");
+        }
+        Kind::Configurations => {
+            let mut audit = configurations::StreamAudit::default();
+            events.iter().try_for_each(|event| audit.event(event)).expect("room for all configurations");
+            audit.prove().expect("configurations");
+        }
+        _ => {
+            let mut audit = Audit::new(&header, Standard::Canonical, None).expect("a kind with an audit");
+            let mut all = events.iter().zip(&rows);
+            all.try_for_each(|(event, rows)| audit.event_with_rows(event, rows))
+                .expect("points in their cells, or a Delaunay mesh");
         }
     }
-    Some((source.header().clone(), events, rows))
 }
 
 fn end_of(events: &[Event]) -> Option<Totals> {

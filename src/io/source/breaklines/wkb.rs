@@ -63,7 +63,15 @@ impl<'a> Bytes<'a> {
     }
 
     fn geometry(&mut self, lines: &mut Collector, position: &dyn Fn() -> String, depth: u32) -> Result<()> {
-        self.is_little = self.take(1)?[0] == 1;
+        self.is_little = match self.take(1)?[0] {
+            0 => false,
+            1 => true,
+            other => {
+                return Err(Error::malformed(format!(
+                    "the geometry has the byte order {other}, expected 0 (big-endian) or 1 (little-endian)"
+                )));
+            }
+        };
         let code = self.integer()?;
         let dims = match code / 1000 {
             0 => Dims { len: 2, z: None },
@@ -169,6 +177,14 @@ mod tests {
                 let _ = read(&bytes);
             }
         }
+    }
+
+    #[test]
+    fn byte_order_is_one_of_two() {
+        let mut bytes = line();
+        bytes[8 + 32] = 9;
+        let message = read(&bytes).unwrap_err().to_string();
+        assert!(message.contains("the byte order 9, expected 0 (big-endian)"), "{message}");
     }
 
     #[test]
