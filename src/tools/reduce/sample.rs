@@ -33,14 +33,16 @@ const SHARE_MAX: f64 = 0.85;
 /// points around the sample are missing: they could make more simplices active.
 const NEAR_SHARE_MAX: f64 = 0.02;
 
-/// Points of a denser sample, which tells surfaces from volumes.
-const DENSE_POINTS: usize = 8192;
+/// Points of two samples of points that may lie on a surface.
+const SPARSE_POINTS: usize = 1024;
+const DENSE_POINTS: usize = 4096;
 
-/// Fraction of the share that the first sample leaves. If the denser one leaves more, its points lie on a
-/// surface. In a volume the share falls with the cube root of the points, here to 0.6; on a gyroid to 0.9.
-const DENSE_SHARE: f64 = 0.8;
+/// Points lie on a surface if the dense sample leaves more than this fraction of the share that the sparse
+/// one leaves. In a volume the share falls with the cube root of the points, here to 0.63; on a gyroid to
+/// 0.87.
+const DENSE_SHARE: f64 = 0.77;
 
-/// Smallest fraction that the denser sample leaves of points on a surface that wait for the root.
+/// Smallest fraction that the dense sample leaves of points on a surface that wait for the root.
 const SURFACE_SHARE_MIN: f64 = 0.3;
 
 /// Triangulates samples of the points of nodes.
@@ -88,31 +90,25 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
                 return Ok(false);
             }
         }
-        self.draw(points, SAMPLE_POINTS);
+        let may_wait = self.may_wait(points);
+        self.draw(points, if may_wait { DENSE_POINTS } else { SAMPLE_POINTS });
         let share = self.share_left(region, self.points.len())?;
         if share <= SHARE_MAX {
-            return self.are_on_surface(points, region, share);
+            if !may_wait || share < SURFACE_SHARE_MIN {
+                return Ok(false);
+            }
+            self.draw(points, SPARSE_POINTS);
+            return Ok(share > DENSE_SHARE * self.share_left(region, self.points.len())?);
         }
         // Points drawn from two close rows have simplices far larger than those of neighbours in the rows.
         self.draw_near(points, SAMPLE_POINTS);
         Ok(self.share_left(region, self.points.len() / 2)? > NEAR_SHARE_MAX)
     }
 
-    /// Whether few points lie on a surface and may wait for the root. The first sample leaves `share`.
-    ///
-    /// # Errors
-    /// As the kernel's.
-    fn are_on_surface(&mut self, points: &Residual<D>, region: &Region<D>, share: f64) -> Result<bool> {
-        let may_wait = self.rules.holds_surfaces && points.len() < B::SURFACE_MAX;
-        // What fills its box is a volume, or so thick that it does not matter.
-        if !may_wait
-            || points.raw < B::SAMPLED_MIN
-            || fills_its_box(&points.at[..points.raw], FILLED_BY_VOLUMES)
-        {
-            return Ok(false);
-        }
-        self.draw(points, DENSE_POINTS);
-        Ok(self.share_left(region, self.points.len())? > SURFACE_SHARE_MIN.max(DENSE_SHARE * share))
+    /// Whether the points may lie on a surface, and may then wait for the root. What fills its box does not.
+    fn may_wait(&self, points: &Residual<D>) -> bool {
+        let are_few = points.len() < B::SURFACE_MAX && points.raw >= B::SAMPLED_MIN;
+        self.rules.holds_surfaces && are_few && !fills_its_box(&points.at[..points.raw], FILLED_BY_VOLUMES)
     }
 
     /// The fraction of the first points of the sample that the node would leave.
