@@ -181,3 +181,29 @@ fn a_shared_root_has_the_same_bytes() {
         assert!(one == shared, "{threads} threads");
     }
 }
+
+/// Two boxes with wavy sheets, each a node, in a cube that is far larger than they are.
+#[test]
+fn points_on_surfaces_wait_for_the_root_if_there_is_memory() {
+    let mut random = Random::new(8);
+    let mut points: Vec<Point> = vec![[0.0; 3], [3.9; 3]];
+    for column in [1.0, 2.0] {
+        points.extend((0..55_000).map(|i| {
+            let [x, y] = [random.unit(), random.unit()];
+            let wave = 0.4 * (7.0 * x).sin() * (9.0 * y).sin();
+            [column + x, 1.0 + y, 1.0 + (f64::from(i % 4) + 0.5 + wave) / 4.0]
+        }));
+    }
+    let input = stream_of(3, &points, Coordinates::F64, Tagging::Chunked(2), &mut random);
+    let run = |threads, megabytes: Option<u64>| {
+        let memory = megabytes.map(|megabytes| megabytes << 20);
+        tetrahedralize(&input, &Options { threads, memory, ..Options::default() }).unwrap()
+    };
+    let (whole, stats) = run(1, None);
+    assert_eq!(stats.root_points, points.len() as u64);
+    assert!(whole == run(3, None).0, "the bytes depend on threads");
+    let (parts, stats) = run(1, Some(80));
+    assert!(stats.root_points < points.len() as u64 * 9 / 10, "{} points waited", stats.root_points);
+    let tetrahedra = expected(&points);
+    assert!(read_mesh(&whole).0 == tetrahedra && read_mesh(&parts).0 == tetrahedra);
+}

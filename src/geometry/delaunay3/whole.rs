@@ -70,7 +70,11 @@ impl Whole {
     pub(super) fn new(vertices: Vec<Vertex>, mut tetrahedra: Vec<Tetrahedron>, first: [u32; 4]) -> Whole {
         tetrahedra.clear();
         let room = first_room(vertices.len());
-        tetrahedra.reserve_exact(room);
+        if tetrahedra.capacity() < room {
+            // To enlarge the array would copy, and so touch, all of its capacity.
+            drop(tetrahedra);
+            tetrahedra = Vec::with_capacity(room);
+        }
         let numbers = vec![0; vertices.len()];
         let mut whole = Whole { vertices, tetrahedra, free: Vec::new(), room, numbers };
         whole.change(|complex| complex.begin(first));

@@ -10,6 +10,9 @@ const RAW_BYTES: usize = 28;
 const PROGRAM_BYTES: usize = 12 << 20;
 const THREAD_BYTES: usize = 4 << 20;
 
+/// Most threads of a run that states no number.
+const USUAL_THREADS: usize = 8;
+
 /// Points in memory.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Load {
@@ -47,6 +50,20 @@ impl Budget {
         let raw = RAW_BYTES + row_len + row_len / 8;
         let bytes = [raw, B::WAITING_BYTES + row_len, B::KERNEL_BYTES + 2 * row_len];
         Budget { limit, threads: threads.max(1), bytes, largest: 0 }
+    }
+
+    /// Whether all `points` of the input fit into one node. The answer is for [`USUAL_THREADS`]: it decides
+    /// what is written, which must not depend on the number of threads.
+    pub(super) fn holds(&self, points: Option<u64>) -> bool {
+        match (self.limit, points) {
+            (None, _) => true,
+            (Some(_), None) => false,
+            (Some(_), Some(points)) => {
+                let raw = points.min(u64::from(u32::MAX)) as usize;
+                let mut budget = Budget { threads: USUAL_THREADS, ..*self };
+                budget.check(Load { raw, ..Load::default() }, raw).is_ok()
+            }
+        }
     }
 
     /// Checks that points that wait for their cell, those in nodes, and a node of `next` points fit.
@@ -107,5 +124,10 @@ mod tests {
         let mut tiny = Budget::new::<Plane, 2>(Some(20 << 20), 2, 0);
         assert!(refused(&mut tiny, load(9_000, 0, 0), 9_000).contains("take fewer"));
         assert!(refused(&mut budget, Load::default(), 0).contains("MiB"), "kernels keep their memory");
+        assert!(unlimited.holds(None) && !budget.holds(None));
+        let holds = |threads, points| Budget::new::<Plane, 2>(Some(1 << 30), threads, 0).holds(points);
+        assert!([1, 8, 64].map(|threads| holds(threads, Some(100_000))) == [true; 3]);
+        assert!([1, 8, 64].map(|threads| holds(threads, Some(9_000_000))) == [false; 3]);
+        assert!(!holds(1, Some(u64::MAX)));
     }
 }

@@ -55,6 +55,9 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// sides.
     const PASSES_FEW: bool;
 
+    /// Nodes of fewer points on a surface are passed up untriangulated, if there is memory for that.
+    const SURFACE_MAX: usize = 0;
+
     /// Gives the next node so many threads. Then neither the order of its simplices nor that of their corners
     /// depends on them.
     fn share(&mut self, threads: NonZeroUsize) {

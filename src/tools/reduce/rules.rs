@@ -16,6 +16,8 @@ pub(super) struct Rules<const D: usize> {
     pub(super) is_partial: bool,
     /// Whether to triangulate even nodes that would leave most of their points.
     pub(super) every_node: bool,
+    /// Whether points on a surface may wait for the root, because there is memory, and the root has threads.
+    pub(super) holds_surfaces: bool,
     /// The box of all points: facets of the hull on one of its sides are final.
     pub(super) sides: Sides<D>,
 }
@@ -25,7 +27,16 @@ impl<const D: usize> Rules<D> {
     pub(super) fn new(header: &Header, duplicates: Duplicates, is_partial: bool) -> Self {
         let code = PointCode::of(header);
         let (coordinates, weights) = (header.coordinates, header.weights());
-        Rules { coordinates, code, duplicates, weights, is_partial, every_node: false, sides: Sides::UNKNOWN }
+        Rules {
+            coordinates,
+            code,
+            duplicates,
+            weights,
+            is_partial,
+            every_node: false,
+            holds_surfaces: false,
+            sides: Sides::UNKNOWN,
+        }
     }
 
     /// The encoding of the coordinates.

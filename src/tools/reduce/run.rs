@@ -175,13 +175,16 @@ where
     if let (Some(bounds), None) = (header.bounds, part) {
         rules.sides = Sides::of(bounds);
     }
+    let budget = Budget::new::<B, D>(options.memory, options.threads, header.attributes.row_len());
+    // Neither with weights nor in a partial run has the root more than one thread.
+    rules.holds_surfaces = !leaves && rules.weights.is_none() && budget.holds(header.points);
     let (tree, bounds) = (header.tree, header.bounds);
     let run = Run {
         name: reader.name().to_string(),
         level: tree.map_or(0, |tree| u64::from(tree.depth())),
         rules,
         schedule: Schedule::new(Plan::new(tree), Boxes::new(tree, bounds, outer)),
-        budget: Budget::new::<B, D>(options.memory, options.threads, header.attributes.row_len()),
+        budget,
         threads: NonZeroUsize::new(options.threads).unwrap_or(NonZeroUsize::MIN),
     };
     let merging = Merging::new(options.duplicates, header.coordinates, rules.weights);

@@ -33,6 +33,18 @@ const SHARE_MAX: f64 = 0.85;
 /// points around the sample are missing: they could make more simplices active.
 const NEAR_SHARE_MAX: f64 = 0.02;
 
+/// Points of two samples of points that may lie on a surface.
+const SPARSE_POINTS: usize = 1024;
+const DENSE_POINTS: usize = 4096;
+
+/// Points lie on a surface if the dense sample leaves more than this fraction of the share that the sparse
+/// one leaves. In a volume the share falls with the cube root of the points, here to 0.63; on a gyroid to
+/// 0.87.
+const DENSE_SHARE: f64 = 0.77;
+
+/// Smallest fraction that the dense sample leaves of points on a surface that wait for the root.
+const SURFACE_SHARE_MIN: f64 = 0.3;
+
 /// Triangulates samples of the points of nodes.
 pub(super) struct Sample<B, const D: usize> {
     rules: Rules<D>,
@@ -48,6 +60,9 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
 
     /// Whether triangulating `points` would leave most of them, because other points may lie outside of
     /// `region`.
+    ///
+    /// Points of surfaces are left by one node after the other, about half of them each time. A node of few
+    /// such points passes them up, too, if there is memory for all at the root.
     ///
     /// The sample holds raw points only. If most points come from nodes below, those nodes were worth
     /// triangulating, and the answer is `false` without a sample. The answer depends on the points and their
@@ -71,17 +86,29 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         // In space, a thick surface fills its box, too.
         if D == 2 {
             self.draw(points, LOOK_POINTS);
-            if fills_its_box(&self.points.at) {
+            if fills_its_box(&self.points.at, FILLED_BY_AREAS) {
                 return Ok(false);
             }
         }
-        self.draw(points, SAMPLE_POINTS);
-        if self.share_left(region, self.points.len())? <= SHARE_MAX {
-            return Ok(false);
+        let may_wait = self.may_wait(points);
+        self.draw(points, if may_wait { DENSE_POINTS } else { SAMPLE_POINTS });
+        let share = self.share_left(region, self.points.len())?;
+        if share <= SHARE_MAX {
+            if !may_wait || share < SURFACE_SHARE_MIN {
+                return Ok(false);
+            }
+            self.draw(points, SPARSE_POINTS);
+            return Ok(share > DENSE_SHARE * self.share_left(region, self.points.len())?);
         }
         // Points drawn from two close rows have simplices far larger than those of neighbours in the rows.
         self.draw_near(points, SAMPLE_POINTS);
         Ok(self.share_left(region, self.points.len() / 2)? > NEAR_SHARE_MAX)
+    }
+
+    /// Whether the points may lie on a surface, and may then wait for the root. What fills its box does not.
+    fn may_wait(&self, points: &Residual<D>) -> bool {
+        let are_few = points.len() < B::SURFACE_MAX && points.raw >= B::SAMPLED_MIN;
+        self.rules.holds_surfaces && are_few && !fills_its_box(&points.at[..points.raw], FILLED_BY_VOLUMES)
     }
 
     /// The fraction of the first points of the sample that the node would leave.
@@ -158,11 +185,14 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
 /// Points of a sample per cell of the grid over its box.
 const POINTS_PER_CELL: usize = 4;
 
-/// Points that lie in more than one of so many cells are on no curve.
-const FILLED_ONE_OF: usize = 4;
+/// Points that lie in more than this fraction of the cells are on no curve in the plane, on no surface in
+/// space.
+const FILLED_BY_AREAS: f64 = 0.25;
+const FILLED_BY_VOLUMES: f64 = 0.375;
 
-/// Whether a sample is spread over its box, as on an area: then it need not be triangulated.
-fn fills_its_box<const D: usize>(sample: &[[f64; D]]) -> bool {
+/// Whether points lie in more than the fraction `most` of the cells of a grid over their box, as on an area:
+/// then no further sample is needed.
+fn fills_its_box<const D: usize>(sample: &[[f64; D]], most: f64) -> bool {
     let (mut min, mut max) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
     for point in sample {
         min = std::array::from_fn(|axis| min[axis].min(point[axis]));
@@ -180,7 +210,7 @@ fn fills_its_box<const D: usize>(sample: &[[f64; D]]) -> bool {
         is_filled[cell] = true;
     }
     let filled = is_filled.iter().filter(|&&filled| filled).count();
-    filled * FILLED_ONE_OF > is_filled.len()
+    filled as f64 > most * is_filled.len() as f64
 }
 
 #[cfg(test)]
@@ -196,9 +226,13 @@ mod tests {
     const SAMPLED_MIN_OF_SPACE: usize = <Space as Bulk<3>>::SAMPLED_MIN;
 
     fn leaves_most(points: &[Point], region: Region<3>, every_node: bool) -> bool {
+        passes(points, region, |rules| rules.every_node = every_node)
+    }
+
+    fn passes(points: &[Point], region: Region<3>, change: impl FnOnce(&mut Rules<3>)) -> bool {
         let header = Header::new(Kind::TetrahedralMesh, Coordinates::F64, 3, false);
         let mut rules = Rules::<3>::new(&header, Duplicates::First, false);
-        rules.every_node = every_node;
+        change(&mut rules);
         let mut raw = Residual::<3>::default();
         raw.extend_raw(points, &[]);
         Sample::<Space, 3>::new(rules).leaves_most(&raw, &region).unwrap()
@@ -224,6 +258,32 @@ mod tests {
             assert!(!leaves_most(points, Region::EVERYTHING, false), "where all is final, nothing is left");
         }
         assert!(leaves_most(&volume[1..], unit, false), "too few points");
+    }
+
+    #[test]
+    fn points_on_surfaces_wait_if_there_is_memory() {
+        let passes = |points: &[Point], region, holds_surfaces| {
+            passes(points, region, |rules| rules.holds_surfaces = holds_surfaces)
+        };
+        let unit = Region { min: [0.0; 3], max: [1.0; 3] };
+        let sheets = |[x, y, z]: Point| {
+            let wave = 0.4 * (7.0 * x).sin() * (9.0 * y).sin();
+            [x, y, ((4.0 * z).floor() + 0.5 + wave) / 4.0]
+        };
+        let surface = cube(SAMPLED_MIN_OF_SPACE, sheets);
+        assert!(passes(&surface, unit, true));
+        assert!(!passes(&surface, unit, false), "no memory");
+        let open = Region { min: [0.0, f64::NEG_INFINITY, f64::NEG_INFINITY], max: [f64::INFINITY; 3] };
+        assert!(!passes(&surface, open, true), "only points near one side are left");
+        // Most of the box is empty, but a denser sample leaves fewer points.
+        let clusters = cube(SAMPLED_MIN_OF_SPACE, |point| {
+            point.map(|x| ((4.0 * x).floor() + 0.5 + 0.6 * ((4.0 * x).fract() - 0.5)) / 4.0)
+        });
+        for volume in [&cube(SAMPLED_MIN_OF_SPACE, |point| point), &clusters] {
+            assert!(!passes(volume, unit, true));
+        }
+        let many = cube(<Space as Bulk<3>>::SURFACE_MAX, sheets);
+        assert!(passes(&many[1..], unit, true) && !passes(&many, unit, true), "too many to wait");
     }
 
     #[test]

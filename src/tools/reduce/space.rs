@@ -106,6 +106,7 @@ impl Bulk<3> for Space {
     const KERNEL_BYTES: usize = 640;
     const SAMPLED_MIN: usize = 50_000;
     const PASSES_FEW: bool = true;
+    const SURFACE_MAX: usize = 1 << 18;
 
     fn share(&mut self, threads: NonZeroUsize) {
         self.kernel.threads = threads;
