@@ -277,7 +277,7 @@ mod tests {
         assert!(!passes(&surface, open, true), "only points near one side are left");
         // Most of the box is empty, but a denser sample leaves fewer points.
         let clusters = cube(SAMPLED_MIN_OF_SPACE, |point| {
-            point.map(|x| ((4.0 * x).floor() + 0.5 + 0.6 * ((4.0 * x).fract() - 0.5)) / 4.0)
+            point.map(|x| ((4.0 * x).floor() + 0.5 + 0.4 * ((4.0 * x).fract() - 0.5)) / 4.0)
         });
         for volume in [&cube(SAMPLED_MIN_OF_SPACE, |point| point), &clusters] {
             assert!(!passes(volume, unit, true));
