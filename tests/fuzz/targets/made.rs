@@ -58,8 +58,10 @@ impl Made {
     pub fn load(self) -> Vec<Vec<u8>> {
         match self {
             Made::Las => {
-                let small = |format| LasFile { format, ..LasFile::of(&LAS_POINTS) }.bytes();
-                (0..=10).map(small).chain(Samples::Files(&["las", "laz"]).load()).collect()
+                let small = |format| LasFile { format, ..LasFile::of(&LAS_POINTS) };
+                let plain = (0..=10).map(|format| small(format).bytes());
+                let compressed = [0, 1, 2, 3, 6, 7, 8].map(|format| small(format).compressed(2));
+                plain.chain(compressed).chain(Samples::Files(&["las", "laz"]).load()).collect()
             }
             Made::Binary => vec![
                 converted("points.spm", Format::Spb),
