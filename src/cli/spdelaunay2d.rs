@@ -77,5 +77,6 @@ const TOOL: Tool<2> = Tool {
 /// cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::give_back_large_blocks();
+    system::share_heap();
     TOOL.run(&flags.shared, flags.duplicates.into(), false)
 }

@@ -286,9 +286,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if stats.points == 0 {
         notice(TOOL, &flags.common, "no points: the input has none, or the filters keep none");
     }
-    if stats.spilled_points > 0 {
-        let message =
-            format!("{} points waited in a temporary file, for lack of --memory", stats.spilled_points);
+    let lacking = stats.spilled_points - stats.cold_points;
+    if lacking > 0 {
+        let message = format!("{lacking} points waited in a temporary file, for lack of --memory");
         notice(TOOL, &flags.common, &message);
     }
     match flags.stats {

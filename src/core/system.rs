@@ -96,6 +96,18 @@ pub fn give_back_large_blocks() {
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
 pub fn give_back_large_blocks() {}
 
+/// Makes all threads share one heap. By default, glibc gives each a heap of its own, where what another thread
+/// frees leaves gaps. For programs that allocate rarely: threads wait for each other.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+pub fn share_heap() {
+    // SAFETY: the call takes integers and only changes where later blocks lie.
+    unsafe { libc::mallopt(libc::M_ARENA_MAX, 1) };
+}
+
+/// Does nothing: other systems have heaps of their own kind.
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+pub fn share_heap() {}
+
 /// If the address space of the process is limited (`ulimit -v`), makes threads share one heap. By default,
 /// glibc reserves 64 MiB of address space for the heap of each thread, used or not.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
@@ -104,7 +116,7 @@ pub fn save_address_space() {
     // SAFETY: the first call writes to the struct only, the second takes integers.
     unsafe {
         if libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) == 0 && limit.rlim_cur != libc::RLIM_INFINITY {
-            libc::mallopt(libc::M_ARENA_MAX, 1);
+            share_heap();
         }
     }
 }

@@ -14,6 +14,14 @@ pub(super) const CELL_COST: u64 = size_of::<Cell>() as u64;
 const PAGE_LEN_MAX: u64 = 16 << 10;
 const PAGE_POINTS_MIN: u64 = 4;
 
+/// Waiting points up to which no cell is cold, in bytes of pages.
+const WARM_LEN: u64 = 24 << 20;
+
+/// Points of the input after which cold cells are looked for, as a power of two; and how many times as many
+/// come between the last point of a cold cell and that look.
+const LOOK_BITS: u32 = 20;
+const COLD_LOOKS: u32 = 4;
+
 /// Shortest and longest piece in which the temporary file is written and read.
 const IO_LEN_MIN: u64 = 4 << 10;
 const IO_LEN_MAX: u64 = 1 << 20;
@@ -51,6 +59,11 @@ impl Cell {
 pub(super) struct CellBuffers {
     record_len: usize,
     cells: Vec<Cell>,
+    /// When each cell got its last points, counted in looks for cold cells. Empty if these stay in memory.
+    last_push: Vec<u32>,
+    last_look: u32,
+    warm_len: u64,
+    pushed: u64,
     pages: Pages,
     spill: Option<Spill>,
     folder: Option<PathBuf>,
@@ -58,11 +71,15 @@ pub(super) struct CellBuffers {
     waiting: u64,
     waiting_max: u64,
     spilled: u64,
+    cold: u64,
 }
 
 impl CellBuffers {
     /// Buffers of `cells` cells for `records` records in all, that take up to `bytes` of memory and spill to a
     /// file in `folder`.
+    ///
+    /// If it `spills_cold`, cells that have got no points for long go to the file while there is memory left,
+    /// too. In files of tiles these are the cells on the borders, which wait for the tile beyond.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Memory`] if the system refuses the memory.
@@ -72,9 +89,12 @@ impl CellBuffers {
         records: u64,
         bytes: u64,
         folder: Option<PathBuf>,
+        spills_cold: bool,
     ) -> Result<Self> {
         let io_len = (bytes / 16).clamp(IO_LEN_MIN, IO_LEN_MAX);
-        let for_pages = bytes.saturating_sub(cells as u64 * CELL_COST + 2 * io_len);
+        let last_push = vec![0; if spills_cold { cells } else { 0 }];
+        let for_cells = cells as u64 * CELL_COST + size_of_val(&last_push[..]) as u64;
+        let for_pages = bytes.saturating_sub(for_cells + 2 * io_len);
         let record = record_len as u64;
         // Every cell may have a partly filled page: with many cells, pages must be short.
         let points_max = PAGE_LEN_MAX / record;
@@ -82,6 +102,10 @@ impl CellBuffers {
         Ok(CellBuffers {
             record_len,
             cells: vec![Cell::EMPTY; cells],
+            last_push,
+            last_look: 0,
+            warm_len: WARM_LEN,
+            pushed: 0,
             // All points at once, with a partly filled page in every cell.
             pages: Pages::new((points * record) as usize, for_pages, records / points + cells as u64)?,
             spill: None,
@@ -90,6 +114,7 @@ impl CellBuffers {
             waiting: 0,
             waiting_max: 0,
             spilled: 0,
+            cold: 0,
         })
     }
 
@@ -99,7 +124,13 @@ impl CellBuffers {
     /// If the temporary file cannot be written.
     pub(super) fn push(&mut self, cell: usize, mut records: &[u8]) -> Result<()> {
         debug_assert!(records.len().is_multiple_of(self.record_len));
-        self.waiting += (records.len() / self.record_len) as u64;
+        let count = (records.len() / self.record_len) as u64;
+        self.waiting += count;
+        self.pushed += count;
+        if let Some(last_push) = self.last_push.get_mut(cell) {
+            *last_push = (self.pushed >> LOOK_BITS) as u32;
+            self.spill_cold()?;
+        }
         while !records.is_empty() {
             if self.cells[cell].pages == 0 || self.cells[cell].fill as usize == self.pages.page_len() {
                 self.add_page(cell)?;
@@ -140,6 +171,7 @@ impl CellBuffers {
         stats.buffered_points_max = self.waiting_max;
         stats.buffered_bytes_max = self.pages.bytes_max();
         stats.spilled_points = self.spilled;
+        stats.cold_points = self.cold;
         stats.spilled_bytes = self.spill.as_ref().map_or(0, Spill::len);
     }
 
@@ -167,6 +199,27 @@ impl CellBuffers {
         Ok(())
     }
 
+    /// From time to time, writes cells to disk that have got no points for long.
+    ///
+    /// # Errors
+    /// If the temporary file cannot be written.
+    fn spill_cold(&mut self) -> Result<()> {
+        let now = (self.pushed >> LOOK_BITS) as u32;
+        if now == self.last_look || self.pages.in_use() as u64 * self.pages.page_len() as u64 <= self.warm_len
+        {
+            return Ok(());
+        }
+        self.last_look = now;
+        let is_cold = |last_push: u32| now - last_push > COLD_LOOKS;
+        let cells = 0..self.cells.len();
+        let cold: Vec<usize> =
+            cells.filter(|&cell| self.cells[cell].pages > 0 && is_cold(self.last_push[cell])).collect();
+        let before = self.spilled;
+        self.spill(&cold)?;
+        self.cold += self.spilled - before;
+        Ok(())
+    }
+
     /// Writes the fullest cells to disk until at least half of the pages are free. This makes extents long,
     /// and writes each cell rarely.
     ///
@@ -174,14 +227,23 @@ impl CellBuffers {
     /// If the temporary file cannot be written.
     fn spill_fullest(&mut self) -> Result<()> {
         let pages_min = self.victim_pages_min();
+        let fullest = (0..self.cells.len()).filter(|&cell| self.cells[cell].pages >= pages_min);
+        let fullest: Vec<usize> = fullest.collect();
+        self.spill(&fullest)
+    }
+
+    /// Writes cells to disk, and makes sure that they can be read back.
+    ///
+    /// # Errors
+    /// If the temporary file cannot be written.
+    fn spill(&mut self, cells: &[usize]) -> Result<()> {
+        if cells.is_empty() {
+            return Ok(());
+        }
         if self.spill.is_none() {
             self.spill = Some(Spill::create(self.folder.as_deref(), self.io_len)?);
         }
-        for cell in 0..self.cells.len() {
-            if self.cells[cell].pages >= pages_min {
-                self.spill_cell(cell)?;
-            }
-        }
+        cells.iter().try_for_each(|&cell| self.spill_cell(cell))?;
         self.spill.as_mut().expect("created above").flush()
     }
 
@@ -259,7 +321,8 @@ mod tests {
     fn records_come_back_once_in_order_whatever_the_memory() {
         let cells = 50;
         for bytes in [16 << 10, 40 << 10, 4 << 20] {
-            let mut buffers = CellBuffers::new(cells, RECORD, 20_000, bytes, None).expect("enough memory");
+            let mut buffers =
+                CellBuffers::new(cells, RECORD, 20_000, bytes, None, false).expect("enough memory");
             let cell_of = |value: u32| (value.wrapping_mul(2_654_435_761) >> 20) as usize % cells;
             for round in 0..3 {
                 let values = round * 20_000..(round + 1) * 20_000;
@@ -273,6 +336,37 @@ mod tests {
             }
             assert!(buffers.pages.bytes_max() <= bytes);
             assert_eq!(buffers.spilled > 0, bytes < 1 << 20);
+        }
+    }
+
+    #[test]
+    fn cells_that_get_no_points_for_long_wait_on_disk() {
+        let look = 1 << LOOK_BITS;
+        for spills_cold in [false, true] {
+            let mut buffers =
+                CellBuffers::new(3, RECORD, 8 * look, 1 << 30, None, spills_cold).expect("enough memory");
+            buffers.warm_len = 0;
+            let mut pushed = [Vec::new(), Vec::new(), Vec::new()];
+            let mut push = |buffers: &mut CellBuffers, cell: usize, count: u64| {
+                for value in 0..count as u32 {
+                    buffers.push(cell, &record(value)).expect("pushes");
+                    pushed[cell].push(value);
+                }
+            };
+            push(&mut buffers, 0, 1000);
+            push(&mut buffers, 1, 1000);
+            for _ in 0..7 {
+                push(&mut buffers, 2, look);
+                push(&mut buffers, 1, 10);
+            }
+            push(&mut buffers, 0, 500);
+            assert_eq!(buffers.cells.iter().map(|cell| cell.pages > 0).collect::<Vec<_>>(), [true; 3]);
+            let expected = if spills_cold { 1000 } else { 0 };
+            assert_eq!((buffers.spilled, buffers.cold), (expected, expected));
+            for cell in [1, 0, 2] {
+                assert_eq!(drain(&mut buffers, cell), pushed[cell]);
+            }
+            assert_eq!((buffers.waiting, buffers.pages.in_use()), (0, 0));
         }
     }
 }

@@ -66,8 +66,9 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         let record_len = header.record_len();
         let bytes = options.budget.bytes() - plan.bytes();
         let records = header.points.unwrap_or(u64::MAX);
-        let mut buffers =
-            CellBuffers::new(plan.leaves(), record_len, records, bytes, options.temp_dir.clone())?;
+        // A temporary file has taken all points already, so it has room for some of them once more.
+        let (folder, spills_cold) = (options.temp_dir.clone(), self.is_spooled());
+        let mut buffers = CellBuffers::new(plan.leaves(), record_len, records, bytes, folder, spills_cold)?;
         let (locator, mut countdown) = plan.split();
         let mut write_leaves = |complete: &mut Vec<usize>, buffers: &mut CellBuffers| {
             complete.sort_unstable();

@@ -27,6 +27,8 @@ pub struct Stats {
     pub buffered_bytes_max: u64,
     /// Points that waited on disk.
     pub spilled_points: u64,
+    /// Those of them that did although there was memory, because their cell had got no points for long.
+    pub cold_points: u64,
     /// Bytes of the temporary file for waiting points.
     pub spilled_bytes: u64,
     /// Points kept for later passes.

@@ -81,6 +81,11 @@ impl<'a, P: Passes + ?Sized> Work<'a, P> {
         Ok(())
     }
 
+    /// Whether decoded points are kept.
+    pub(super) fn is_spooled(&self) -> bool {
+        matches!(self.kept, Kept::In(_))
+    }
+
     fn keep(&mut self, spool: Result<Spool>) {
         match spool {
             Ok(spool) => {

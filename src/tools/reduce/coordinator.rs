@@ -45,10 +45,6 @@ const PIECES_AHEAD: usize = 2;
 /// Buffers of each kind that wait to be used again.
 const POOL_LEN: usize = 16;
 
-/// Capacity up to which blocks are kept for reuse, in bytes: without a limit, all of them would grow to the
-/// size of the largest nodes.
-const KEPT_BLOCKS_MAX: usize = 4 << 20;
-
 /// Runs `run` with `workers` threads that triangulate. The calling thread triangulates the root when they
 /// have ended.
 ///
@@ -66,7 +62,7 @@ where
     R: Read + Send + 'static,
     W: Write + Send,
 {
-    let buffers = Buffers::new();
+    let buffers = Buffers::new(B::KEPT_BLOCKS_MAX);
     let raw = buffers.raw.clone();
     let next = move || match reader.next(|| raw.take()) {
         last @ (Ok(Piece::End(_)) | Err(_)) => ControlFlow::Break(last),
@@ -87,15 +83,18 @@ where
 struct Buffers<const D: usize> {
     raw: BufferPool<Residual<D>>,
     blocks: BufferPool<PatchBlocks>,
+    /// Capacity up to which blocks are kept, in bytes: without a limit, all of them would grow to the size of
+    /// the largest nodes.
+    blocks_max: usize,
 }
 
 impl<const D: usize> Buffers<D> {
-    fn new() -> Self {
-        Buffers { raw: BufferPool::new(POOL_LEN), blocks: BufferPool::new(POOL_LEN) }
+    fn new(blocks_max: usize) -> Self {
+        Buffers { raw: BufferPool::new(POOL_LEN), blocks: BufferPool::new(POOL_LEN), blocks_max }
     }
 
     fn give_back_blocks(&self, blocks: PatchBlocks) {
-        if blocks.capacity() <= KEPT_BLOCKS_MAX {
+        if blocks.capacity() <= self.blocks_max {
             self.blocks.give_back(blocks);
         }
     }

@@ -87,7 +87,7 @@ fn join<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     sequencer.write_residual(&[NODE], &residual)?;
     let merged = stats.merged;
     sequencer.add_to(&mut stats);
-    stats.predicates = *solver.counts();
+    stats.predicates = solver.counts();
     Ok((sequencer.end(stats.points, merged, 0)?, stats))
 }
 

@@ -97,7 +97,7 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
         sequencer.write_residual(&[MERGED], &residual)?;
     }
     sequencer.add_to(&mut stats);
-    stats.predicates = *solver.counts();
+    stats.predicates = solver.counts();
     let outputs = sequencer.end(stats.points, stats.merged, stats.merged)?;
     Ok((outputs.mesh, stats))
 }

@@ -86,6 +86,8 @@ pub(super) struct Solver<B, const D: usize> {
     outer_walls: Vec<Facet>,
     builder: PatchBuilder<D>,
     misfit: Option<Misfit>,
+    /// Decisions of the predicates before [`Solver::forget`].
+    earlier: PredicateCounts,
 }
 
 impl<B: Bulk<D>, const D: usize> Solver<B, D> {
@@ -102,7 +104,14 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             outer_walls: Vec::new(),
             builder: PatchBuilder::default(),
             misfit: None,
+            earlier: PredicateCounts::default(),
         }
+    }
+
+    /// Gives the memory of the last node back to the system.
+    pub(super) fn forget(&mut self) {
+        let earlier = self.counts();
+        *self = Solver { earlier, ..Solver::new(self.rules) };
     }
 
     /// Triangulates the points of node `number`, and finds the simplices that are final in `region`, outside
@@ -172,8 +181,10 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     }
 
     /// Decisions of the predicates so far.
-    pub(super) fn counts(&self) -> &PredicateCounts {
-        self.bulk.counts()
+    pub(super) fn counts(&self) -> PredicateCounts {
+        let mut counts = self.earlier;
+        counts.merge(self.bulk.counts());
+        counts
     }
 
     /// Finds the simplices in holes: a flood fill from the final sides of the walls that stops at walls.

@@ -29,6 +29,8 @@ impl Bulk<2> for Plane {
     const TRIANGULATION: &'static str = "triangulation";
     const WAITING_BYTES: usize = 56;
     const KERNEL_BYTES: usize = 190;
+    const KEPT_POINTS_MAX: usize = 1 << 16;
+    const KEPT_BLOCKS_MAX: usize = 1 << 20;
     const SAMPLED_MIN: usize = 4_000;
     const PASSES_FEW: bool = false;
 

@@ -104,6 +104,8 @@ impl Bulk<3> for Space {
     const TRIANGULATION: &'static str = "tetrahedralization";
     const WAITING_BYTES: usize = 130;
     const KERNEL_BYTES: usize = 640;
+    const KEPT_POINTS_MAX: usize = usize::MAX;
+    const KEPT_BLOCKS_MAX: usize = 4 << 20;
     const SAMPLED_MIN: usize = 50_000;
     const PASSES_FEW: bool = true;
     const SURFACE_MAX: usize = 1 << 18;

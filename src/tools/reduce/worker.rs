@@ -53,7 +53,13 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
         if !is_root && self.sample.leaves_most(&self.union, &region)? {
             return Ok(passed_up(std::mem::take(&mut self.union), blocks));
         }
-        self.solver.solve(number, &mut self.union, &region, blocks, flush)
+        let solved = self.solver.solve(number, &mut self.union, &region, blocks, flush);
+        // Leaves are about as large as each other, but nodes above them are not.
+        if self.union.len() > B::KEPT_POINTS_MAX {
+            self.solver.forget();
+            self.union = Residual::default();
+        }
+        solved
     }
 
     /// Gives the next node so many threads.
@@ -63,7 +69,7 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
 
     /// Decisions of the predicates so far.
     pub(super) fn counts(&self) -> PredicateCounts {
-        let mut counts = *self.solver.counts();
+        let mut counts = self.solver.counts();
         counts.merge(self.sample.counts());
         counts
     }
