@@ -63,6 +63,7 @@ pub(super) struct CellBuffers {
     last_push: Vec<u32>,
     last_look: u32,
     warm_len: u64,
+    look_bits: u32,
     pushed: u64,
     pages: Pages,
     spill: Option<Spill>,
@@ -105,6 +106,7 @@ impl CellBuffers {
             last_push,
             last_look: 0,
             warm_len: WARM_LEN,
+            look_bits: LOOK_BITS,
             pushed: 0,
             // All points at once, with a partly filled page in every cell.
             pages: Pages::new((points * record) as usize, for_pages, records / points + cells as u64)?,
@@ -128,7 +130,7 @@ impl CellBuffers {
         self.waiting += count;
         self.pushed += count;
         if let Some(last_push) = self.last_push.get_mut(cell) {
-            *last_push = (self.pushed >> LOOK_BITS) as u32;
+            *last_push = (self.pushed >> self.look_bits) as u32;
             self.spill_cold()?;
         }
         while !records.is_empty() {
@@ -204,7 +206,7 @@ impl CellBuffers {
     /// # Errors
     /// If the temporary file cannot be written.
     fn spill_cold(&mut self) -> Result<()> {
-        let now = (self.pushed >> LOOK_BITS) as u32;
+        let now = (self.pushed >> self.look_bits) as u32;
         if now == self.last_look || self.pages.in_use() as u64 * self.pages.page_len() as u64 <= self.warm_len
         {
             return Ok(());
@@ -341,11 +343,11 @@ mod tests {
 
     #[test]
     fn cells_that_get_no_points_for_long_wait_on_disk() {
-        let look = 1 << LOOK_BITS;
+        let look = 1 << 10;
         for spills_cold in [false, true] {
             let mut buffers =
                 CellBuffers::new(3, RECORD, 8 * look, 1 << 30, None, spills_cold).expect("enough memory");
-            buffers.warm_len = 0;
+            (buffers.warm_len, buffers.look_bits) = (0, 10);
             let mut pushed = [Vec::new(), Vec::new(), Vec::new()];
             let mut push = |buffers: &mut CellBuffers, cell: usize, count: u64| {
                 for value in 0..count as u32 {
@@ -353,15 +355,15 @@ mod tests {
                     pushed[cell].push(value);
                 }
             };
-            push(&mut buffers, 0, 1000);
-            push(&mut buffers, 1, 1000);
+            push(&mut buffers, 0, 100);
+            push(&mut buffers, 1, 100);
             for _ in 0..7 {
                 push(&mut buffers, 2, look);
                 push(&mut buffers, 1, 10);
             }
-            push(&mut buffers, 0, 500);
+            push(&mut buffers, 0, 50);
             assert_eq!(buffers.cells.iter().map(|cell| cell.pages > 0).collect::<Vec<_>>(), [true; 3]);
-            let expected = if spills_cold { 1000 } else { 0 };
+            let expected = if spills_cold { 100 } else { 0 };
             assert_eq!((buffers.spilled, buffers.cold), (expected, expected));
             for cell in [1, 0, 2] {
                 assert_eq!(drain(&mut buffers, cell), pushed[cell]);
