@@ -280,10 +280,14 @@ fn bad_requests_are_named() {
     assert_outcome("spinfo", &[&mesh], &[], 3, "no manifest");
     let raster = folder.path("raster.tif");
     let [bounds, points] = ["\"bounds\":", "\"points\":"].map(|name| manifest.find(name).unwrap());
-    for wrong in ["[[2,0,0],[1,1,1]]", "[[0,0,0],[0.123,1,1]]", "[[-1e308,0,0],[1e308,1,1]]"] {
+    for (wrong, (code, part)) in [
+        ("[[2,0,0],[1,1,1]]", (3, "bounding box")),
+        ("[[0,0,0],[0.123,1,1]]", (3, "bounding box")),
+        ("[[-1e308,0,0],[1e308,1,1]]", (2, "the window is wider than any number")),
+    ] {
         let changed = format!("{}\"bounds\":{wrong},{}", &manifest[..bounds], &manifest[points..]);
         fs::write(&mesh, changed).unwrap();
-        assert_outcome("spdem", &["--columns", "9", &mesh, "-o", &raster], &[], 3, "bounding box");
+        assert_outcome("spdem", &["--columns", "9", &mesh, "-o", &raster], &[], code, part);
     }
     fs::write(&mesh, &manifest).unwrap();
     let part = folder.path("parts/000001.spm");
