@@ -96,8 +96,8 @@ pub fn give_back_large_blocks() {
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
 pub fn give_back_large_blocks() {}
 
-/// Makes all threads share one heap. By default, glibc gives each a heap of its own, where what another thread
-/// frees leaves gaps. For programs that allocate rarely: threads wait for each other.
+/// Makes all threads share one heap. By default, glibc gives each a heap of its own, where what another
+/// thread frees leaves gaps. For programs that allocate rarely: threads wait for each other.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn share_heap() {
     // SAFETY: the call takes integers and only changes where later blocks lie.

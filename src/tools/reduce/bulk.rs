@@ -48,8 +48,8 @@ pub(super) trait Bulk<const D: usize>: Default {
     const WAITING_BYTES: usize;
     const KERNEL_BYTES: usize;
 
-    /// Points of a node above others, and bytes of the blocks of any node, above which their memory goes back to
-    /// the system: other nodes need far less.
+    /// Points of a node above others, and bytes of the blocks of any node, above which their memory goes back
+    /// to the system: other nodes need far less.
     const KEPT_POINTS_MAX: usize;
     const KEPT_BLOCKS_MAX: usize;
 
