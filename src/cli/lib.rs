@@ -45,7 +45,7 @@ pub(crate) use messages::say;
 pub use spmesh_core::allocator::Allocator;
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
-use spmesh_core::parallel::available_threads;
+use spmesh_core::parallel::{THREADS_DEFAULT_MAX, available_threads};
 use spmesh_core::system;
 use spmesh_core::temporary::remove_names_at_signals;
 use spmesh_io::detect::BYTE_ORDER_MARK;
@@ -156,9 +156,6 @@ pub fn parse_box(text: &str) -> Result<Bounds, String> {
         parse_numbers(text).map_err(|message| format!("{message}, or 6 with those of z"))?;
     Ok(Bounds { min: [x, y, f64::NEG_INFINITY], max: [max_x, max_y, f64::INFINITY] })
 }
-
-/// The greatest default number of threads. Each costs memory, so more must be requested.
-const THREADS_DEFAULT_MAX: usize = 8;
 
 /// The requested number of threads; by default one per core, at most [`THREADS_DEFAULT_MAX`].
 fn threads(asked: Option<u16>) -> NonZeroUsize {

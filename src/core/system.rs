@@ -113,11 +113,10 @@ pub fn share_heap() {}
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn save_address_space() {
     let mut limit = libc::rlimit { rlim_cur: libc::RLIM_INFINITY, rlim_max: libc::RLIM_INFINITY };
-    // SAFETY: the first call writes to the struct only, the second takes integers.
-    unsafe {
-        if libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) == 0 && limit.rlim_cur != libc::RLIM_INFINITY {
-            share_heap();
-        }
+    // SAFETY: the call writes to the struct only.
+    let code = unsafe { libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) };
+    if code == 0 && limit.rlim_cur != libc::RLIM_INFINITY {
+        share_heap();
     }
 }
 

@@ -56,8 +56,8 @@ fn what_expands_stays_in_bounds() {
     check(bombs::streamed());
 }
 
-/// Programs that hold atoms or lines refuse data that expands as records which differ do not, and take what is
-/// left.
+/// Programs that hold atoms or lines refuse data that expands as records which differ do not, and take what
+/// is left.
 #[test]
 fn what_is_held_is_plausible() {
     check(bombs::held());

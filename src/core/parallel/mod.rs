@@ -31,5 +31,5 @@ pub use ordered_pool::OrderedPool;
 pub use produce::produce;
 pub use read_ahead::read_ahead;
 pub use results::for_each_result;
-pub use threads::{available_threads, spawn_scoped};
+pub use threads::{THREADS_DEFAULT_MAX, available_threads, spawn_scoped};
 pub use ticker::Ticker;

@@ -14,6 +14,9 @@ pub fn available_threads() -> NonZeroUsize {
     thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
 }
 
+/// Most threads of a run that is not told how many to use. Each costs memory, so more must be requested.
+pub const THREADS_DEFAULT_MAX: usize = 8;
+
 /// Starts a named thread that ends within `scope`.
 ///
 /// # Errors

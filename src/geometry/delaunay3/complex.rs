@@ -10,9 +10,9 @@ use std::ops::Range;
 /// First of the words that hold the neighbouring facets.
 pub(super) const FIRST_NEIGHBOUR: usize = 4;
 
-/// Tetrahedra per vertex that memory is reserved for at first: uniform points have 6.8, those of a gyroid 9.3,
-/// infinite and deleted ones come in addition. Memory costs nothing until it is touched; enlarging it would
-/// cost a copy, and threads without room refuse points.
+/// Tetrahedra per vertex that memory is reserved for at first: uniform points have 6.8, those of a gyroid
+/// 9.3, infinite and deleted ones come in addition. Memory costs nothing until it is touched; enlarging it
+/// would cost a copy, and threads without room refuse points.
 pub(super) const TETRAHEDRA_PER_VERTEX: usize = 11;
 
 /// Flag of each vertex of a deleted tetrahedron: with it, a number is above those of all vertices.

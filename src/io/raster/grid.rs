@@ -73,7 +73,8 @@ impl Grid {
                 "the input spans no area, so the cells of a raster have no size: give --step",
             )),
             _ if !width.max(height).is_finite() => Err(Error::usage(
-                "the window is wider than any number, so its cells have no size: give --bounds of a part of it",
+                "the window is wider than any number, so its cells have no size: give --bounds of a part \
+                 of it",
             )),
             Cells::Columns(count) => exactly(width / f64::from(count), [Some(count), None]),
             Cells::Rows(count) => exactly(height / f64::from(count), [None, Some(count)]),

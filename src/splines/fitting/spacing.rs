@@ -21,7 +21,8 @@ pub struct Spacing {
 }
 
 /// How observations are spread. Their distance is the root of the area per observation. The area is that of
-/// the cells with observations, of a grid over the box with four of them per cell on average. So gaps do not count.
+/// the cells with observations, of a grid over the box with four of them per cell on average. So gaps do not
+/// count.
 ///
 /// Units: those of coordinates. Memory: at most 16 MB. Cost: two passes.
 ///

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::cold::ColdCells;
 use super::pages::{NO_PAGE, Pages};
 use super::spill::{NO_EXTENT, Spill};
 use super::stats::Stats;
@@ -13,14 +14,6 @@ pub(super) const CELL_COST: u64 = size_of::<Cell>() as u64;
 /// Longest page, in bytes, and fewest points in one.
 const PAGE_LEN_MAX: u64 = 16 << 10;
 const PAGE_POINTS_MIN: u64 = 4;
-
-/// Waiting points up to which no cell is cold, in bytes of pages.
-const WARM_LEN: u64 = 24 << 20;
-
-/// Points of the input after which cold cells are looked for, as a power of two; and how many times as many
-/// come between the last point of a cold cell and that look.
-const LOOK_BITS: u32 = 20;
-const COLD_LOOKS: u32 = 4;
 
 /// Shortest and longest piece in which the temporary file is written and read.
 const IO_LEN_MIN: u64 = 4 << 10;
@@ -59,12 +52,8 @@ impl Cell {
 pub(super) struct CellBuffers {
     record_len: usize,
     cells: Vec<Cell>,
-    /// When each cell got its last points, counted in looks for cold cells. Empty if these stay in memory.
-    last_push: Vec<u32>,
-    last_look: u32,
-    warm_len: u64,
-    look_bits: u32,
-    pushed: u64,
+    /// `None` if cold cells stay in memory.
+    cold_cells: Option<ColdCells>,
     pages: Pages,
     spill: Option<Spill>,
     folder: Option<PathBuf>,
@@ -93,8 +82,8 @@ impl CellBuffers {
         spills_cold: bool,
     ) -> Result<Self> {
         let io_len = (bytes / 16).clamp(IO_LEN_MIN, IO_LEN_MAX);
-        let last_push = vec![0; if spills_cold { cells } else { 0 }];
-        let for_cells = cells as u64 * CELL_COST + size_of_val(&last_push[..]) as u64;
+        let cold_cells = spills_cold.then(|| ColdCells::new(cells));
+        let for_cells = cells as u64 * CELL_COST + cold_cells.as_ref().map_or(0, ColdCells::bytes);
         let for_pages = bytes.saturating_sub(for_cells + 2 * io_len);
         let record = record_len as u64;
         // Every cell may have a partly filled page: with many cells, pages must be short.
@@ -103,11 +92,7 @@ impl CellBuffers {
         Ok(CellBuffers {
             record_len,
             cells: vec![Cell::EMPTY; cells],
-            last_push,
-            last_look: 0,
-            warm_len: WARM_LEN,
-            look_bits: LOOK_BITS,
-            pushed: 0,
+            cold_cells,
             // All points at once, with a partly filled page in every cell.
             pages: Pages::new((points * record) as usize, for_pages, records / points + cells as u64)?,
             spill: None,
@@ -128,11 +113,7 @@ impl CellBuffers {
         debug_assert!(records.len().is_multiple_of(self.record_len));
         let count = (records.len() / self.record_len) as u64;
         self.waiting += count;
-        self.pushed += count;
-        if let Some(last_push) = self.last_push.get_mut(cell) {
-            *last_push = (self.pushed >> self.look_bits) as u32;
-            self.spill_cold()?;
-        }
+        self.spill_cold(cell, count)?;
         while !records.is_empty() {
             if self.cells[cell].pages == 0 || self.cells[cell].fill as usize == self.pages.page_len() {
                 self.add_page(cell)?;
@@ -201,21 +182,19 @@ impl CellBuffers {
         Ok(())
     }
 
-    /// From time to time, writes cells to disk that have got no points for long.
+    /// Counts points that come to a cell. From time to time, writes cells to disk that have got none for
+    /// long.
     ///
     /// # Errors
     /// If the temporary file cannot be written.
-    fn spill_cold(&mut self) -> Result<()> {
-        let now = (self.pushed >> self.look_bits) as u32;
-        if now == self.last_look || self.pages.in_use() as u64 * self.pages.page_len() as u64 <= self.warm_len
-        {
+    fn spill_cold(&mut self, cell: usize, count: u64) -> Result<()> {
+        let Some(cold_cells) = &mut self.cold_cells else { return Ok(()) };
+        cold_cells.push(cell, count);
+        if !cold_cells.is_due(self.pages.in_use() as u64 * self.pages.page_len() as u64) {
             return Ok(());
         }
-        self.last_look = now;
-        let is_cold = |last_push: u32| now - last_push > COLD_LOOKS;
-        let cells = 0..self.cells.len();
-        let cold: Vec<usize> =
-            cells.filter(|&cell| self.cells[cell].pages > 0 && is_cold(self.last_push[cell])).collect();
+        let in_memory = (0..self.cells.len()).filter(|&cell| self.cells[cell].pages > 0);
+        let cold = cold_cells.look(in_memory);
         let before = self.spilled;
         self.spill(&cold)?;
         self.cold += self.spilled - before;
@@ -347,7 +326,7 @@ mod tests {
         for spills_cold in [false, true] {
             let mut buffers =
                 CellBuffers::new(3, RECORD, 8 * look, 1 << 30, None, spills_cold).expect("enough memory");
-            (buffers.warm_len, buffers.look_bits) = (0, 10);
+            buffers.cold_cells = spills_cold.then(|| ColdCells::of(3, 0, 10));
             let mut pushed = [Vec::new(), Vec::new(), Vec::new()];
             let mut push = |buffers: &mut CellBuffers, cell: usize, count: u64| {
                 for value in 0..count as u32 {

@@ -6,7 +6,7 @@
 //! finer grids (`count_pass`). The counts decide the leaves of the finalization tree (`plan`). Pass 3 writes
 //! the points, and tags a leaf when its counter reaches zero (`emit`). The points keep their order, or come
 //! in chunks; then they wait in pages of memory (`pages`) within the budget, and beyond it in a temporary
-//! file (`spill`).
+//! file (`spill`). Cells that get no points for long may wait there in any case (`cold`).
 //!
 //! If points are to be thinned, a pass before these finds which ones are kept (`thin`).
 //!
@@ -24,6 +24,7 @@ mod buffer;
 mod cell_counts;
 pub mod cell_grid;
 mod changed;
+mod cold;
 mod count_pass;
 mod counters;
 mod emit;

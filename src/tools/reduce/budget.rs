@@ -2,6 +2,7 @@
 
 use super::bulk::Bulk;
 use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::parallel::THREADS_DEFAULT_MAX;
 
 /// Bytes of a point from the stream: coordinates, and room to grow.
 const RAW_BYTES: usize = 28;
@@ -9,9 +10,6 @@ const RAW_BYTES: usize = 28;
 /// Bytes of a program that holds no points, and of each thread.
 const PROGRAM_BYTES: usize = 12 << 20;
 const THREAD_BYTES: usize = 4 << 20;
-
-/// Most threads of a run that states no number.
-const USUAL_THREADS: usize = 8;
 
 /// Points in memory.
 #[derive(Debug, Clone, Copy, Default)]
@@ -52,15 +50,15 @@ impl Budget {
         Budget { limit, threads: threads.max(1), bytes, largest: 0 }
     }
 
-    /// Whether all `points` of the input fit into one node. The answer is for [`USUAL_THREADS`]: it decides
-    /// what is written, which must not depend on the number of threads.
+    /// Whether all `points` of the input fit into one node. The answer is for [`THREADS_DEFAULT_MAX`]: it
+    /// decides what is written, which must not depend on the number of threads.
     pub(super) fn holds(&self, points: Option<u64>) -> bool {
         match (self.limit, points) {
             (None, _) => true,
             (Some(_), None) => false,
             (Some(_), Some(points)) => {
                 let raw = points.min(u64::from(u32::MAX)) as usize;
-                let mut budget = Budget { threads: USUAL_THREADS, ..*self };
+                let mut budget = Budget { threads: THREADS_DEFAULT_MAX, ..*self };
                 budget.check(Load { raw, ..Load::default() }, raw).is_ok()
             }
         }

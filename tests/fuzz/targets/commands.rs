@@ -1,9 +1,9 @@
 //! Programs as users call them, in this process, with the bytes of an input as one of their files.
 //!
 //! A target has several lines. `put FILE` writes the bytes to a file; `seal FILE` does so with corrected
-//! checksums, and with the names of the folder (see [`Here`]); `prove FILE` audits a file, if it is there, and
-//! removes it. Every other line is a command. A file name begins with `HERE/`, the folder of the thread, or
-//! `DATA/`, the samples of the tests.
+//! checksums, and with the names of the folder (see [`Here`]); `prove FILE` audits a file, if it is there,
+//! and removes it. Every other line is a command. A file name begins with `HERE/`, the folder of the thread,
+//! or `DATA/`, the samples of the tests.
 
 use std::fs::{self, File};
 use std::path::PathBuf;
@@ -165,6 +165,10 @@ struct Here {
     names: Vec<[String; 2]>,
 }
 
+/// From and to, among the names of a folder.
+const TO_INPUTS: [usize; 2] = [0, 1];
+const FROM_INPUTS: [usize; 2] = [1, 0];
+
 thread_local! {
     static HERE: Here = Here::new();
 }
@@ -239,14 +243,20 @@ impl Here {
 
     /// The bytes with checksums that fit them, if they are a stream, a plan or a report.
     fn corrected(&self, bytes: &[u8]) -> Vec<u8> {
-        let text = |bytes| {
-            let text = String::from_utf8(bytes).ok()?;
-            Some(self.names.iter().fold(text, |text, [own, general]| text.replace(general, own)).into_bytes())
-        };
         sealed(bytes).unwrap_or_else(|| {
-            let bytes = text(bytes.to_vec()).unwrap_or(bytes.to_vec());
+            let bytes = self.renamed(bytes.to_vec(), FROM_INPUTS);
             sealed_report(&bytes).or_else(|| self.sealed_plan(&bytes)).unwrap_or(bytes)
         })
+    }
+
+    /// The bytes with other names, if they are text.
+    fn renamed(&self, bytes: Vec<u8>, [from, to]: [usize; 2]) -> Vec<u8> {
+        match String::from_utf8(bytes) {
+            Ok(text) => {
+                self.names.iter().fold(text, |text, name| text.replace(&name[from], &name[to])).into()
+            }
+            Err(binary) => binary.into_bytes(),
+        }
     }
 
     /// The hash of a plan is that of its text without the hash.
@@ -265,12 +275,7 @@ impl Here {
 pub fn made(name: &str) -> Vec<u8> {
     HERE.with(|here| {
         let bytes = fs::read(here.path(name)).expect("a file of the folder");
-        match String::from_utf8(bytes) {
-            Ok(text) => {
-                here.names.iter().fold(text, |text, [own, general]| text.replace(own, general)).into()
-            }
-            Err(binary) => binary.into_bytes(),
-        }
+        here.renamed(bytes, TO_INPUTS)
     })
 }
 

@@ -129,8 +129,8 @@ fn overwrite(bytes: &mut [u8], at: usize, random: &mut Random) {
     }
 }
 
-/// Replaces the first number of a text at or after `at`: by one that readers often handle wrongly, or, if it is
-/// whole, by one of its neighbours, as an index that is one too many.
+/// Replaces the first number of a text at or after `at`: by one that readers often handle wrongly, or, if it
+/// is whole, by one of its neighbours, as an index that is one too many.
 fn replace_number(bytes: &mut Vec<u8>, at: usize, random: &mut Random) {
     let is_digit = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+');
     let Some(start) = bytes[at..].iter().position(is_digit).map(|from| at + from) else { return };

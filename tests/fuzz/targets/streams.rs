@@ -33,7 +33,7 @@ pub fn sealed(bytes: &[u8]) -> Option<Vec<u8>> {
 fn read_stream(bytes: &[u8]) {
     let Ok(mut reader) = StreamReader::new(bytes, "fuzz") else { return };
     let Ok(stream) = read(&mut reader) else { return };
-    examine(&stream.0, &stream.1);
+    examine(&stream);
     expect_copies(&stream);
 }
 
@@ -73,7 +73,7 @@ fn write((_, events, rows): &Stream, sink: Result<impl EventSink>) {
 pub fn twin(bytes: &[u8]) {
     let Ok(mut twin) = TwinSource::new(bytes, "fuzz") else { return };
     if let Ok(stream) = read(&mut twin) {
-        examine(&stream.0, &stream.1);
+        examine(&stream);
         expect_copies(&stream);
     }
 }
@@ -96,24 +96,8 @@ pub fn prove(bytes: &[u8]) {
     let (header, events, rows) = read(&mut reader).expect("a stream that was just written");
     let mut rules = MemoryRules::new(&header);
     events.iter().try_for_each(|event| rules.check(event)).expect("a stream that keeps the rules");
-    match header.kind {
-        Kind::Cells4 | Kind::Simplices4 => {
-            let mut audit = diagram::StreamAudit::new(header.kind).expect("a kind with an audit");
-            events.iter().try_for_each(|event| audit.event(event)).expect("room for the cells");
-            audit.prove().expect("a diagram");
-        }
-        Kind::Configurations => {
-            let mut audit = configurations::StreamAudit::default();
-            events.iter().try_for_each(|event| audit.event(event)).expect("room for all configurations");
-            audit.prove().expect("configurations");
-        }
-        _ => {
-            let mut audit = Audit::new(&header, Standard::Canonical, None).expect("a kind with an audit");
-            let mut all = events.iter().zip(&rows);
-            all.try_for_each(|(event, rows)| audit.event_with_rows(event, rows))
-                .expect("points in their cells, or a Delaunay mesh");
-        }
-    }
+    audit(&header, &events, &rows)
+        .expect("points in their cells, a diagram, configurations, or a Delaunay mesh");
 }
 
 fn end_of(events: &[Event]) -> Option<Totals> {
@@ -124,7 +108,7 @@ fn end_of(events: &[Event]) -> Option<Totals> {
 }
 
 /// Passes events to every consumer. A well-formed stream may make false claims, so errors are accepted.
-fn examine(header: &Header, events: &[Event]) {
+fn examine((header, events, rows): &Stream) {
     let mut inventory = Inventory::new(header);
     let _ = events.iter().try_for_each(|event| inventory.event(event));
     let mut live = LiveVertices::<Point>::new();
@@ -135,26 +119,34 @@ fn examine(header: &Header, events: &[Event]) {
         (Event::Cells(tags), Some(cells)) => tags.iter().try_for_each(|&tag| cells.finalize(tag)),
         _ => Ok(()),
     });
+    let _ = audit(header, events, rows);
+}
+
+/// Audits the claims of a well-formed stream.
+fn audit(header: &Header, events: &[Event], rows: &[Vec<u8>]) -> std::result::Result<(), String> {
     match header.kind {
         Kind::Cells4 | Kind::Simplices4 => {
             let mut audit = diagram::StreamAudit::new(header.kind).expect("a kind with an audit");
-            if events.iter().try_for_each(|event| audit.event(event)).is_ok() {
-                let _ = audit.prove();
-            }
+            events.iter().try_for_each(|event| audit.event(event)).map_err(said)?;
+            audit.prove().map(drop).map_err(said)
         }
         Kind::Configurations => {
             let mut audit = configurations::StreamAudit::default();
-            if events.iter().try_for_each(|event| audit.event(event)).is_ok() {
-                let _ = audit.prove();
-            }
+            events.iter().try_for_each(|event| audit.event(event)).map_err(said)?;
+            audit.prove().map(drop).map_err(said)
         }
         _ => {
-            if let Ok(mut audit) = Audit::new(header, Standard::Canonical, None) {
-                let _ = events.iter().try_for_each(|event| audit.event(event));
-                let _ = audit.report();
-            }
+            let mut audit = Audit::new(header, Standard::Canonical, None).map_err(said)?;
+            let mut all = events.iter().zip(rows);
+            let outcome = all.try_for_each(|(event, rows)| audit.event_with_rows(event, rows));
+            let _ = audit.report();
+            outcome.map_err(said)
         }
     }
+}
+
+fn said(error: impl std::fmt::Debug) -> String {
+    format!("{error:?}")
 }
 
 /// Corrects the checksums of the header and of all complete blocks; `None` if there is no header.
