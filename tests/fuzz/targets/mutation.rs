@@ -6,7 +6,7 @@ use spmesh_reference::sets::Random;
 /// Most bytes of an input.
 const INPUT_MAX: usize = 1 << 17;
 /// Bytes of the headers of most formats.
-const HEAD: usize = 400;
+const HEAD: usize = 256;
 /// Bytes of random points.
 const POINTS_MAX: i64 = 1200;
 
@@ -87,11 +87,13 @@ impl Inputs {
         let at = below(random, end + 1);
         let rest = bytes.len() - at;
         let short = random.integer(0, 12) as usize;
-        match random.integer(0, 10) {
+        match random.integer(0, 11) {
             0 | 1 if rest > 0 => bytes[at] ^= 1 << random.integer(0, 7),
             2 if rest > 0 => bytes[at] = random.bits() as u8,
             // A length that is one too few, or one too many.
-            10 if rest > 0 => bytes[at] = bytes[at].wrapping_add_signed(random.integer(0, 1) as i8 * 2 - 1),
+            10 | 11 if rest > 0 => {
+                bytes[at] = bytes[at].wrapping_add_signed(random.integer(0, 1) as i8 * 2 - 1)
+            }
             3 | 4 => overwrite(bytes, at, random),
             5 => drop(bytes.drain(at..at + short.min(rest))),
             6 => {
