@@ -18,6 +18,8 @@ pub(super) struct Rules<const D: usize> {
     pub(super) every_node: bool,
     /// Whether points on a surface may wait for the root, because there is memory, and the root has threads.
     pub(super) holds_surfaces: bool,
+    /// Points of the input, if that is known.
+    pub(super) points: Option<u64>,
     /// The box of all points: facets of the hull on one of its sides are final.
     pub(super) sides: Sides<D>,
 }
@@ -35,6 +37,7 @@ impl<const D: usize> Rules<D> {
             is_partial,
             every_node: false,
             holds_surfaces: false,
+            points: None,
             sides: Sides::UNKNOWN,
         }
     }

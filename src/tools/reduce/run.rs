@@ -178,6 +178,7 @@ where
     let budget = Budget::new::<B, D>(options.memory, options.threads, header.attributes.row_len());
     // Neither with weights nor in a partial run has the root more than one thread.
     rules.holds_surfaces = !leaves && rules.weights.is_none() && budget.holds(header.points);
+    rules.points = header.points;
     let (tree, bounds) = (header.tree, header.bounds);
     let run = Run {
         name: reader.name().to_string(),

@@ -62,7 +62,8 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
     /// `region`.
     ///
     /// Points of surfaces are left by one node after the other, about half of them each time. A node of few
-    /// such points passes them up, too, if there is memory for all at the root.
+    /// such points passes them up, too, if there is memory for all at the root, and so does a node of most
+    /// points.
     ///
     /// The sample holds raw points only. If most points come from nodes below, those nodes were worth
     /// triangulating, and the answer is `false` without a sample. The answer depends on the points and their
@@ -82,6 +83,9 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         }
         if points.len() < B::SAMPLED_MIN {
             return Ok(B::PASSES_FEW);
+        }
+        if self.holds_most(points) {
+            return Ok(true);
         }
         // In space, a thick surface fills its box, too.
         if D == 2 {
@@ -103,6 +107,13 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         // Points drawn from two close rows have simplices far larger than those of neighbours in the rows.
         self.draw_near(points, SAMPLE_POINTS);
         Ok(self.share_left(region, self.points.len() / 2)? > NEAR_SHARE_MAX)
+    }
+
+    /// Whether these are most points of the input, which no node has triangulated yet. The root triangulates
+    /// them with all threads.
+    fn holds_most(&self, points: &Residual<D>) -> bool {
+        let are_most = |all| 2 * points.raw as u64 > all;
+        B::SURFACE_MAX > 0 && self.rules.holds_surfaces && self.rules.points.is_some_and(are_most)
     }
 
     /// Whether the points may lie on a surface, and may then wait for the root. What fills its box does not.
@@ -284,6 +295,21 @@ mod tests {
         }
         let many = cube(<Space as Bulk<3>>::SURFACE_MAX, sheets);
         assert!(passes(&many[1..], unit, true) && !passes(&many, unit, true), "too many to wait");
+    }
+
+    #[test]
+    fn most_points_of_the_input_wait_if_there_is_memory() {
+        let unit = Region { min: [0.0; 3], max: [1.0; 3] };
+        let volume = cube(SAMPLED_MIN_OF_SPACE, |point| point);
+        let half = volume.len() as u64;
+        for (all, holds, expected) in
+            [(2 * half - 1, true, true), (2 * half, true, false), (half, false, false)]
+        {
+            let found = passes(&volume, unit, |rules| {
+                (rules.points, rules.holds_surfaces) = (Some(all), holds);
+            });
+            assert_eq!(found, expected, "{half} of {all}");
+        }
     }
 
     #[test]
