@@ -99,6 +99,22 @@ fn closed_streams_are_errors() {
     }
 }
 
+/// Outputs and inputs are compared even if no further file can be opened.
+#[test]
+#[cfg(target_os = "linux")]
+fn few_descriptors_are_the_only_error() {
+    let folder = Folder::new();
+    for run in runs(&folder) {
+        let words = run.words_with("-", &[]);
+        let mut shell = Command::new("sh");
+        shell.args(["-c", r#"ulimit -n 4; exec "$0" "$@""#]).arg(tool(run.tool).get_program()).args(&words);
+        shell.stdin(fs::File::open(&run.input).unwrap());
+        let (code, message) = outcome(&shell.output().expect("the shell runs"));
+        let is_reason = code == Some(1) && message.contains("Too many open files");
+        assert!(code == Some(0) || is_reason, "{} {words:?}: {code:?} {message}", run.tool);
+    }
+}
+
 /// A file must not get descriptor 2, or messages would be written into it.
 #[test]
 fn closed_stderr_changes_no_output() {

@@ -1,11 +1,12 @@
 //! Recognizes outputs that would replace inputs or each other, however their paths are written.
 
 use std::collections::{HashMap, HashSet};
-use std::fs::{self, File, Metadata};
+use std::fs;
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
-use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
+
+use rustix::fs::{FileType, fstat, stat};
 
 use crate::error::{Error, Result};
 use crate::output::{folder_of, target_of};
@@ -23,8 +24,11 @@ impl Place {
     /// The place of `path`, or of `standard` for "-". `None` for devices and pipes, which may be given
     /// several times, for folders, and for paths that cannot be created.
     fn of(path: &Path, standard: BorrowedFd<'_>) -> Option<Place> {
-        match metadata_at(path, standard) {
-            Ok(metadata) => metadata.is_file().then(|| Place::File(metadata.dev(), metadata.ino())),
+        match found_at(path, standard) {
+            Ok(found) => {
+                (found.kind == FileType::RegularFile).then_some(Place::File(found.device, found.inode))
+            }
+            Err(_) if is_standard(path) => None,
             Err(_) => {
                 let target = target_of(path);
                 let folder = fs::canonicalize(folder_of(&target)).ok()?;
@@ -126,16 +130,24 @@ fn name_of(path: &Path, standard: &str) -> String {
 
 /// The device and inode of a pipe.
 fn pipe_at(path: &Path, standard: BorrowedFd<'_>) -> Option<(u64, u64)> {
-    let found = metadata_at(path, standard).ok()?;
-    found.file_type().is_fifo().then(|| (found.dev(), found.ino()))
+    let found = found_at(path, standard).ok()?;
+    (found.kind == FileType::Fifo).then_some((found.device, found.inode))
 }
 
-/// What is at `path`, or is `standard` for "-".
-fn metadata_at(path: &Path, standard: BorrowedFd<'_>) -> io::Result<Metadata> {
-    if !is_standard(path) {
-        return fs::metadata(path);
-    }
-    File::from(standard.try_clone_to_owned()?).metadata()
+/// What is at a path.
+struct Found {
+    kind: FileType,
+    device: u64,
+    inode: u64,
+}
+
+/// What is at `path`, or is `standard` for "-". Opens no file: a process may have no further descriptor.
+fn found_at(path: &Path, standard: BorrowedFd<'_>) -> rustix::io::Result<Found> {
+    let status = if is_standard(path) { fstat(standard)? } else { stat(path)? };
+    // The types of these numbers depend on the system.
+    #[allow(clippy::unnecessary_cast)]
+    let (device, inode) = (status.st_dev as u64, status.st_ino as u64);
+    Ok(Found { kind: FileType::from_raw_mode(status.st_mode), device, inode })
 }
 
 #[cfg(test)]
