@@ -122,6 +122,11 @@ class Samples:
                 self.descriptors.append(descriptors)
                 self.meter.sampled(self.pid, (int(fields[11]) + int(fields[12])) / TICK)
 
+    def skip(self, part):
+        """Forgets the first samples."""
+        first = int(part * len(self.memory))
+        del self.memory[:first], self.descriptors[:first]
+
 
 class Sampler(threading.Thread):
     """Takes samples of all programs of a pipe until it is told to stop."""
