@@ -10,13 +10,13 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 
 use super::compression::Compression;
-use super::{Common, StatsFormat, notice, progress::Progress, threads};
+use super::{Common, StatsFormat, notice, parse_size, progress::Progress, threads};
 use crate::endings;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
-use spmesh_dd4::{Made, Options, Quantum, TimeScale};
+use spmesh_dd4::{Made, Options, Product, Quantum, TimeScale};
 use spmesh_geometry::diagram4::Route;
 
 pub use product::{EXAMPLES as PRODUCT_EXAMPLES, ProductFlags};
@@ -42,7 +42,8 @@ Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no
 or truncated input, 5 not enough memory for the points, 6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// The message after a failed allocation.
-const OUT_OF_MEMORY: &str = "dd4: not enough memory: take fewer points, as with --count or --where\n";
+const OUT_OF_MEMORY: &str =
+    "dd4: not enough memory: give --memory, or take fewer points, as with --count or --where\n";
 
 /// Exact Delaunay diagrams of points in four dimensions.
 ///
@@ -80,6 +81,15 @@ pub struct Flags {
     /// Threads that join simplices to cells [default: one per core, at most 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+
+    /// Memory for the diagram, whose cells then wait in temporary files (see --temp-dir). For cells alone, not
+    /// for what other flags make of them; the output is the same
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    memory: Option<u64>,
+
+    /// Folder for temporary files [default: TMPDIR, or /tmp]
+    #[arg(long, value_name = "FOLDER")]
+    temp_dir: Option<PathBuf>,
 
     #[command(flatten)]
     compression: Compression,
@@ -151,9 +161,14 @@ impl Flags {
         // Fail before the computation if the output cannot be created.
         let mut output = Output::create(&self.output, self.product.is_binary(&self.output)?)?;
         let product = self.product.product(&self.output)?;
+        if self.memory.is_some() {
+            self.check_memory(&product)?;
+            // Each stage frees what the one before took.
+            system::give_back_large_blocks();
+        }
         let compress = self.compression.of_output(product.is_stream())?;
         let progress = Progress::waiting(&self.common, "reading");
-        let points = self.source.read()?;
+        let points = self.source.read(self.temp_dir.clone(), self.memory.is_none())?;
         let read = started.elapsed();
         drop(progress);
         for warning in &points.warnings {
@@ -162,17 +177,30 @@ impl Flags {
             self.notice(&format!("{}: {warning}", points.name));
         }
         let progress = Progress::waiting(&self.common, "triangulating");
-        let Made { diagram, placement, mut report } = spmesh_dd4::make(points, &product, &options)?;
-        let write_started = Instant::now();
-        let notices = product.write(&diagram, &placement, compress, &mut output)?;
+        let make_started = Instant::now();
+        let (notices, mut report) = if let Some(memory) = self.memory {
+            let temp_dir = self.temp_dir.as_deref();
+            spmesh_dd4::write_streamed(points, &options, memory, temp_dir, compress, &mut output)?
+        } else {
+            let Made { diagram, placement, report } = spmesh_dd4::make(points, &product, &options)?;
+            (product.write(&diagram, &placement, compress, &mut output)?, report)
+        };
         report.output_bytes = output.bytes_written();
         output.commit()?;
-        report.write_time = write_started.elapsed();
+        report.write_time = make_started.elapsed().saturating_sub(report.diagram_time);
         drop(progress);
         notices.iter().for_each(|text| self.notice(text));
         report::merged(&report).into_iter().for_each(|text| self.notice(&text));
         report::print(self.stats, &report, read, started.elapsed());
         Ok(())
+    }
+
+    /// Refuses what needs the whole diagram in memory.
+    fn check_memory(&self, product: &Product) -> Result<()> {
+        if *product == Product::Cells && self.route == RouteFlag::Simplices {
+            return Ok(());
+        }
+        Err(Error::usage("--memory is for cells alone: all others are made of a diagram that is in memory"))
     }
 
     fn notice(&self, message: &str) {

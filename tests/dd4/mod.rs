@@ -2,6 +2,7 @@
 
 mod failures;
 mod interrupts;
+mod memory;
 mod oblique;
 mod products;
 mod routes;

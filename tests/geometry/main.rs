@@ -19,4 +19,5 @@ mod queries;
 mod sphere;
 mod surface;
 mod surfaces;
+mod sweep;
 mod vectors;

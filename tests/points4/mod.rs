@@ -20,7 +20,13 @@ use crate::programs::Folder;
 
 /// A request for all points.
 fn all(from: From4) -> Request {
-    Request { from, spacing: Spacing::Index, selection: Selection::default(), temp_dir: None }
+    Request {
+        from,
+        spacing: Spacing::Index,
+        selection: Selection::default(),
+        temp_dir: None,
+        in_memory: true,
+    }
 }
 
 /// A request for the points that fulfil a condition.

@@ -156,7 +156,7 @@ fn read_sites(path: &Path) -> Result<Vec<Point4>> {
     // Keep sites whose value is NaN: only the coordinates of a line count.
     let selection = Selection { keep_nan: true, ..Selection::default() };
     let from = From4::File(path.to_path_buf());
-    let request = Request { from, spacing: Spacing::Index, selection, temp_dir: None };
+    let request = Request { from, spacing: Spacing::Index, selection, temp_dir: None, in_memory: true };
     read_points4(&request).map(|sites| sites.points)
 }
 

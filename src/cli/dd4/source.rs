@@ -78,12 +78,12 @@ enum SpacingFlag {
 }
 
 impl SourceFlags {
-    /// Reads the selected points.
+    /// Reads the selected points, with spools in a folder, for a diagram that may have to be in memory.
     ///
     /// # Errors
     /// As [`read_points4`]; usage, if there is no input, or stdin is a terminal.
-    pub fn read(&self) -> Result<Selected4> {
-        read_points4(&self.request()?)
+    pub fn read(&self, temp_dir: Option<PathBuf>, in_memory: bool) -> Result<Selected4> {
+        read_points4(&Request { temp_dir, in_memory, ..self.request()? })
     }
 
     /// The input, if it is not a grid.
@@ -117,7 +117,7 @@ impl SourceFlags {
         };
         let condition = self.condition.clone();
         let selection = Selection { condition, keep_nan: self.keep_nan, share, seed: self.seed };
-        Ok(Request { from, spacing, selection, temp_dir: None })
+        Ok(Request { from, spacing, selection, temp_dir: None, in_memory: true })
     }
 }
 
@@ -181,7 +181,10 @@ mod tests {
 
     #[test]
     fn the_points_of_a_grid_are_made() {
-        let points = flags(&["--grid", "4x4x4x4", "--sample", "0.4", "--seed", "7"]).unwrap().read().unwrap();
+        let points = flags(&["--grid", "4x4x4x4", "--sample", "0.4", "--seed", "7"])
+            .unwrap()
+            .read(None, true)
+            .unwrap();
         assert_eq!(points.points.len(), 102);
         assert_eq!(points.name, "grid 4x4x4x4");
     }
@@ -205,6 +208,6 @@ mod tests {
             let error = flags(arguments).unwrap_err().to_string();
             assert!(error.contains(part), "{arguments:?}: {error}");
         }
-        assert!(flags(&[]).unwrap().read().unwrap_err().to_string().contains("no input"));
+        assert!(flags(&[]).unwrap().read(None, true).unwrap_err().to_string().contains("no input"));
     }
 }

@@ -19,8 +19,10 @@ mod merge;
 mod side;
 mod simplices;
 mod sites;
+mod sweep;
 
 use exact::Exactness;
+pub use merge::sort_distinct;
 pub use side::orient4d;
 use sites::Sites;
 use spmesh_core::error::{Error, Result};
@@ -29,6 +31,7 @@ use spmesh_model::cells4::{Cells4, Point4};
 use spmesh_model::diagram4::Diagram4;
 use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
+pub use sweep::{CellSink, Room};
 
 /// Times and counts of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -106,6 +109,32 @@ pub fn diagram_by(
     };
     stats.order += sorting;
     Ok((Diagram4 { points: sites.points, values, merged, cells }, stats))
+}
+
+/// As [`diagram`], in stages that fit some room, for more points than would fit memory at once: gives the
+/// cells to `sink`, and returns the diagram without them.
+///
+/// # Errors
+/// As [`diagram`], and those of the sink; memory, if the room is too small.
+pub fn sweep(
+    points: Vec<Point4>,
+    values: Option<Vec<f64>>,
+    room: Room,
+    threads: NonZeroUsize,
+    sink: &mut impl CellSink,
+) -> Result<(Diagram4, Stats)> {
+    check(&points)?;
+    let mut stats = Stats::default();
+    let started = Instant::now();
+    let (points, values, merged) = sites::distinct(points, values);
+    let sites = Sites::new(points);
+    stats.order = started.elapsed();
+    if sites.exactness == Exactness::Small {
+        sweep::cells::<i32>(&sites, room, threads, sink, &mut stats)?;
+    } else {
+        sweep::cells::<f64>(&sites, room, threads, sink, &mut stats)?;
+    }
+    Ok((Diagram4 { points: sites.points, values, merged, cells: Cells4::default() }, stats))
 }
 
 fn through_simplices<C: simplices::Coefficient>(

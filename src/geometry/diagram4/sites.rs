@@ -38,6 +38,12 @@ impl Sites {
         Sites { points, exactness, unit, centre }
     }
 
+    /// Some of the sites, scaled as all of them are.
+    pub(super) fn part(&self, numbers: &[u32]) -> Sites {
+        let points = numbers.iter().map(|&number| self.points[number as usize]).collect();
+        Sites { points, ..*self }
+    }
+
     /// A point near the origin: exact small integers, or rounded numbers between -1 and 1 that differ by at
     /// most 1.
     pub(super) fn near(&self, number: u32) -> Point4 {

@@ -1,6 +1,6 @@
 //! Counts of the elements of a diagram.
 
-use spmesh_model::cells4::Cells4;
+use spmesh_model::cells4::{Cell4, Cells4};
 
 /// Counts of the elements of a diagram.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -24,21 +24,23 @@ impl Counts {
     #[must_use]
     pub fn of(cells: &Cells4) -> Self {
         let mut counts = Counts::default();
-        let mut neighbours = 0;
-        for cell in cells.iter() {
-            let vertices = cell.vertices.len() as u64;
-            if cell.is_infinite {
-                counts.infinite += 1;
-            } else {
-                counts.finite += 1;
-                counts.not_simplices += u64::from(vertices > 5);
-                counts.vertices_max = counts.vertices_max.max(vertices);
-            }
-            counts.vertex_references += vertices;
-            neighbours += cell.neighbours.len() as u64;
-        }
+        let neighbours = cells.iter().map(|cell| counts.add(cell)).sum::<u64>();
         counts.facets = neighbours / 2;
         counts
+    }
+
+    /// Counts a cell, but not its facets; returns the number of these.
+    pub(super) fn add(&mut self, cell: Cell4) -> u64 {
+        let vertices = cell.vertices.len() as u64;
+        if cell.is_infinite {
+            self.infinite += 1;
+        } else {
+            self.finite += 1;
+            self.not_simplices += u64::from(vertices > 5);
+            self.vertices_max = self.vertices_max.max(vertices);
+        }
+        self.vertex_references += vertices;
+        cell.neighbours.len() as u64
     }
 
     /// Finite and infinite cells.

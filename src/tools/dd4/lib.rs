@@ -5,6 +5,9 @@ mod files;
 mod placement;
 mod product;
 mod quantum;
+mod shelves;
+mod streamed;
+mod words;
 mod write;
 
 pub use counts::Counts;
@@ -12,6 +15,7 @@ pub use files::{Form, write_slice, write_surface, write_values};
 pub use placement::{Placement, TimeScale};
 pub use product::Product;
 pub use quantum::Quantum;
+pub use streamed::write_streamed;
 pub use write::{write_diagram, write_simplices};
 
 use std::num::NonZeroUsize;
@@ -20,6 +24,7 @@ use std::time::{Duration, Instant};
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::diagram4::{Route, Stats, diagram_by};
 use spmesh_io::source::points4::Selected4;
+use spmesh_model::cells4::Point4;
 use spmesh_model::diagram4::Diagram4;
 
 /// Options of a run.
@@ -96,6 +101,17 @@ fn diagram_of(
     options: &Options,
     placement: &Placement,
 ) -> Result<(Diagram4, Stats)> {
+    let (points, values) = checked(points, product, options, placement)?;
+    diagram_by(options.route, options.threads, points, values)
+}
+
+/// Points in the coordinates of the diagram, and their values.
+fn checked(
+    points: Selected4,
+    product: &Product,
+    options: &Options,
+    placement: &Placement,
+) -> Result<(Vec<Point4>, Option<Vec<f64>>)> {
     let Selected4 { mut points, values, .. } = points;
     // Fail before the computation, rather than when writing.
     let infinite = values.iter().flatten().position(|value| value.is_infinite());
@@ -113,5 +129,5 @@ fn diagram_of(
     }
     product.check(&points, values.is_some())?;
     placement.scale(&mut points)?;
-    diagram_by(options.route, options.threads, points, values)
+    Ok((points, values))
 }

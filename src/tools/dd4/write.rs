@@ -4,6 +4,7 @@ use std::io::Write;
 
 use spmesh_core::error::Result;
 use spmesh_geometry::spacetime::Subdivision;
+use spmesh_model::cells4::Cell4;
 use spmesh_model::diagram4::Diagram4;
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 
@@ -12,12 +13,22 @@ use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 /// # Errors
 /// If writing fails.
 pub fn write_diagram(diagram: &Diagram4, compress: bool, output: impl Write) -> Result<()> {
-    let Diagram4 { points, values, merged, cells } = diagram;
+    write_cells(diagram, compress, output, |give| diagram.cells.iter().try_for_each(give))
+}
+
+/// The same with the cells that `each` gives to the function that writes them.
+pub(super) fn write_cells(
+    diagram: &Diagram4,
+    compress: bool,
+    output: impl Write,
+    each: impl FnOnce(&mut dyn FnMut(Cell4) -> Result<()>) -> Result<()>,
+) -> Result<()> {
+    let Diagram4 { points, values, merged, .. } = diagram;
     let count = points.len() as u64 + merged;
     let header = Header { compressed: compress, ..header(Kind::Cells4, values.is_some(), count) };
     let mut writer = StreamWriter::new(output, header)?;
     writer.points4(points, values.as_deref())?;
-    cells.iter().try_for_each(|cell| writer.cell4(cell))?;
+    each(&mut |cell| writer.cell4(cell))?;
     writer.end(count, *merged).map(drop)
 }
 

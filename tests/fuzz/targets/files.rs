@@ -130,6 +130,7 @@ pub fn raw(bytes: &[u8]) {
         spacing: Spacing::Index,
         selection: Selection::default(),
         temp_dir: None,
+        in_memory: true,
     }));
 }
 
@@ -216,7 +217,7 @@ pub fn volume(bytes: &[u8]) {
     let from = From4::File(file(bytes));
     for spacing in [Spacing::Index, Spacing::World] {
         let selection = Selection::default();
-        let request = Request { from: from.clone(), spacing, selection, temp_dir: None };
+        let request = Request { from: from.clone(), spacing, selection, temp_dir: None, in_memory: true };
         if let Ok(points) = read_points4(&request) {
             assert!(points.points.as_flattened().iter().all(|c| c.is_finite()));
             assert!(points.values.is_none_or(|values| values.len() == points.points.len()));

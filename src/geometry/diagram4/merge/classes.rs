@@ -77,6 +77,18 @@ impl<'a> Classes<'a> {
         Joined(self.parts.iter().map(section).collect())
     }
 
+    /// Whether all simplices of each class have a mark; empty without marks.
+    pub(super) fn marked(&self, marks: &[bool]) -> Vec<bool> {
+        if marks.is_empty() {
+            return Vec::new();
+        }
+        let of_class = |part: &'_ Part, class: usize| {
+            let members = &part.members[part.starts[class] as usize..part.starts[class + 1] as usize];
+            members.iter().all(|&member| marks[simplex_of(member)])
+        };
+        self.parts.iter().flat_map(|part| (0..part.len()).map(move |class| of_class(part, class))).collect()
+    }
+
     /// The vertices of each class; and, for each part, the lists of its classes' neighbours, unsorted.
     pub(super) fn lists(self, threads: NonZeroUsize) -> (Lists4, Vec<Lists4>) {
         let around = |part: &Part| Ok(self.around(part));

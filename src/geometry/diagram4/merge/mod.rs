@@ -12,6 +12,8 @@ use super::Stats;
 use super::simplices::{Coefficient, Complex};
 use borders::Borders;
 use classes::Classes;
+pub(super) use numbers::Joined;
+pub use ranks::sort_distinct;
 use spmesh_core::parallel::for_each;
 use spmesh_model::cells4::{Cells4, Lists4};
 use std::num::NonZeroUsize;
@@ -24,16 +26,7 @@ use std::num::NonZeroUsize;
 /// facets of simplices of one cell that are in one hyperplane (thesis 4.3.6).
 pub(super) fn cells<C: Coefficient>(complex: Complex<C>, threads: NonZeroUsize, stats: &mut Stats) -> Cells4 {
     let threads = if complex.simplices.len() < SHARED_MIN { NonZeroUsize::MIN } else { threads };
-    let borders = Borders::of(&complex, threads);
-    let Complex { simplices, order: sites, spheres, near, .. } = complex;
-    // Free the spheres, a third of the memory or more.
-    drop((spheres, near));
-    let classes = Classes::new(&simplices, &sites, borders, threads);
-    drop(sites);
-    (stats.simplices, stats.infinite_simplices) = classes.simplices();
-    let joined = classes.joined();
-    let (vertices, mut neighbours) = classes.lists(threads);
-    drop(simplices);
+    let Unordered { vertices, mut neighbours, joined, .. } = unordered(complex, &[], threads, stats);
     let mut order = order::canonical(&vertices, &joined.finite(), threads);
     let finite = order.len();
     order.extend(order::canonical(&vertices, &joined.infinite(), threads));
@@ -43,6 +36,38 @@ pub(super) fn cells<C: Coefficient>(complex: Complex<C>, threads: NonZeroUsize, 
     }
     for_each(threads, &mut neighbours, |lists| renumber(lists, &places));
     Cells4::from_lists(vertices, Lists4::joined(neighbours), &order, finite)
+}
+
+/// The cells of a diagram, in any order.
+pub(super) struct Unordered {
+    /// The vertices of each cell, as sites.
+    pub(super) vertices: Lists4,
+    /// The neighbours of each cell, unsorted, as the numbers that `joined` gives to cells.
+    pub(super) neighbours: Vec<Lists4>,
+    pub(super) joined: Joined,
+    /// Whether all simplices of a cell have a mark; empty without marks.
+    pub(super) marked: Vec<bool>,
+}
+
+/// Joins simplices, which may have marks.
+pub(super) fn unordered<C: Coefficient>(
+    complex: Complex<C>,
+    marks: &[bool],
+    threads: NonZeroUsize,
+    stats: &mut Stats,
+) -> Unordered {
+    let borders = Borders::of(&complex, threads);
+    let Complex { simplices, order: sites, spheres, near, .. } = complex;
+    // Free the spheres, a third of the memory or more.
+    drop((spheres, near));
+    let classes = Classes::new(&simplices, &sites, borders, threads);
+    drop(sites);
+    let (finite, infinite) = classes.simplices();
+    stats.simplices += finite;
+    stats.infinite_simplices += infinite;
+    let (joined, marked) = (classes.joined(), classes.marked(marks));
+    let (vertices, neighbours) = classes.lists(threads);
+    Unordered { vertices, neighbours, joined, marked }
 }
 
 /// Replaces classes by their places, and sorts each list.

@@ -27,11 +27,11 @@ pub(super) struct Section {
 }
 
 /// The classes of all parts.
-pub(super) struct Joined(pub(super) Vec<Section>);
+pub(in crate::diagram4) struct Joined(pub(super) Vec<Section>);
 
 impl Joined {
     /// The places of the finite classes of each part.
-    pub(super) fn finite(&self) -> Vec<Range<usize>> {
+    pub(in crate::diagram4) fn finite(&self) -> Vec<Range<usize>> {
         self.0.iter().map(|part| part.start..part.start + part.finite).collect()
     }
 
@@ -45,6 +45,13 @@ impl Joined {
     pub(super) fn number(&self, place: usize) -> u32 {
         let mut parts = self.0.iter().rev();
         parts.find(|part| part.start <= place).map_or(0, |part| part.numbers.of(place - part.start))
+    }
+
+    /// The place of the class of a number.
+    #[inline(always)]
+    pub(in crate::diagram4) fn place(&self, number: u32) -> u32 {
+        let parts = self.0.len();
+        (self.0[number as usize % parts].start + number as usize / parts) as u32
     }
 
     /// A number above those of all classes.

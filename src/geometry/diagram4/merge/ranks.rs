@@ -1,9 +1,9 @@
 //! Sorts short lists without branches: most cells have five to sixteen vertices, in an order that no
 //! processor predicts.
 
-/// Sorts distinct numbers below 2^31.
+/// Sorts distinct numbers below 2^31, the faster the fewer there are.
 #[inline(always)]
-pub(super) fn sort_distinct(numbers: &mut [u32]) {
+pub fn sort_distinct(numbers: &mut [u32]) {
     match numbers.len() {
         0..=8 => by_ranks::<8>(numbers),
         9..=16 => by_ranks::<16>(numbers),

@@ -39,7 +39,7 @@ pub(in crate::diagram4) fn facet(simplex: usize, side: usize) -> Facet {
 pub(super) const NO_NEIGHBOUR: Facet = 0;
 
 /// Maximum number of simplices: facets are numbered in 31 bits.
-const SIMPLICES_MAX: usize = 1 << 28;
+pub(in crate::diagram4) const SIMPLICES_MAX: usize = 1 << 28;
 
 /// A positively oriented simplex: det(b - a, c - a, d - a, e - a) > 0. The faraway point stands for any point
 /// beyond the facet of the hull.
@@ -74,17 +74,19 @@ pub(in crate::diagram4) struct Complex<'a, C> {
     pub(in crate::diagram4) simplices: Vec<Simplex>,
     pub(in crate::diagram4) spheres: Vec<Sphere<C>>,
     /// Values of greater magnitude have the correct sign.
-    rounding: f64,
+    pub(in crate::diagram4) rounding: f64,
+    /// Most simplices.
+    most: usize,
 }
 
 impl<'a, C: Coefficient> Complex<'a, C> {
-    pub(super) fn new(sites: &'a Sites, mut order: Vec<u32>) -> Complex<'a, C> {
+    pub(super) fn new(sites: &'a Sites, mut order: Vec<u32>, most: usize) -> Complex<'a, C> {
         let faraway = std::iter::once([f64::NAN; 4]);
         let near = faraway.chain(order.iter().map(|&number| sites.near(number))).collect();
         order.insert(INFINITE as usize, u32::MAX);
         let rounding = if sites.exactness.is_double() { 0.0 } else { ROUNDING };
         let (simplices, spheres) = (vec![Simplex::default()], vec![[C::DEAD; 6]]);
-        Complex { sites, order, near, simplices, spheres, rounding }
+        Complex { sites, order, near, simplices, spheres, rounding, most }
     }
 
     /// Takes places for new simplices: free ones first, then those behind all others, which are reserved but
@@ -101,10 +103,8 @@ impl<'a, C: Coefficient> Complex<'a, C> {
     ) -> Result<usize> {
         let (reused, before) = (free.len().min(wanted), self.simplices.len());
         let end = before + wanted - reused;
-        if end > SIMPLICES_MAX {
-            let message =
-                format!("more than {SIMPLICES_MAX} simplices, the most that a diagram can be made of");
-            return Err(Error::new(ErrorKind::Io, message));
+        if end > self.most {
+            return Err(too_many(self.most));
         }
         self.simplices.reserve(end - before);
         self.spheres.reserve(end - before);
@@ -252,6 +252,11 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         let sign = orientation(exactness, facet, point);
         if side == 0 { sign.reverse() } else { sign }
     }
+}
+
+#[cold]
+fn too_many(most: usize) -> Error {
+    Error::new(ErrorKind::Io, format!("more than {most} simplices, the most that a diagram can be made of"))
 }
 
 /// The spheres of simplices, each of four given vertices and, as the last, the one at `o`; for infinite

@@ -11,35 +11,44 @@ use spmesh_model::cells4::Point4;
 /// # Errors
 /// Usage, if no five points span space; the message gives the dimension of the points.
 pub(super) fn to_front(sites: &Sites, order: &mut [u32]) -> Result<()> {
-    let Some(&first) = order.first() else {
+    if order.is_empty() {
         return Err(Error::usage("no points, where a diagram in 4 dimensions needs at least 5"));
-    };
-    let origin = sites.points[first as usize];
-    let mut basis: Vec<Row> = Vec::new();
-    let mut found = vec![0];
-    for (place, &number) in order.iter().enumerate().skip(1) {
-        if let Some(row) = reduced(origin, sites.points[number as usize], &basis) {
-            basis.push(row);
-            found.push(place);
-            if basis.len() == 4 {
-                break;
-            }
-        }
     }
-    if basis.len() < 4 {
+    let found = spanning(order.iter().map(|&number| sites.points[number as usize]), 4);
+    if found.len() < 5 {
         return Err(Error::usage(format!(
             "{} only {} of 4 dimensions: there are no cells",
             match order.len() {
                 1 => "1 distinct point spans".to_owned(),
                 distinct => format!("the {distinct} distinct points span"),
             },
-            basis.len()
+            found.len() - 1
         )));
     }
     for (front, place) in found.into_iter().enumerate() {
         order[front..=place].rotate_right(1);
     }
     Ok(())
+}
+
+/// The places of the first points that span so many dimensions, or of fewer that span as much as all.
+pub(in crate::diagram4) fn spanning(
+    mut points: impl Iterator<Item = Point4>,
+    dimensions: usize,
+) -> Vec<usize> {
+    let Some(origin) = points.next() else { return Vec::new() };
+    let mut basis: Vec<Row> = Vec::new();
+    let mut found = vec![0];
+    for (place, point) in (1..).zip(points) {
+        if basis.len() == dimensions {
+            break;
+        }
+        if let Some(row) = reduced(origin, point, &basis) {
+            basis.push(row);
+            found.push(place);
+        }
+    }
+    found
 }
 
 /// A vector, and the axis that is eliminated from all later rows.

@@ -28,8 +28,10 @@ mod order;
 mod star;
 
 pub(super) use coefficient::Coefficient;
-pub(super) use complex::{Complex, FACETS, Facet, Simplex, facet, facet_of, simplex_of, without};
-
+pub(super) use complex::{
+    Complex, FACETS, Facet, SIMPLICES_MAX, Simplex, Sphere, facet, facet_of, simplex_of, without,
+};
+pub(super) use first::spanning;
 pub(super) use order::insertions;
 
 use super::Stats;
@@ -47,12 +49,30 @@ use std::time::Instant;
 pub(super) fn triangulate<'a, C: Coefficient>(sites: &'a Sites, stats: &mut Stats) -> Result<Complex<'a, C>> {
     let started = Instant::now();
     let order = insertions(sites)?;
-    let mut insertion = Insertion::new(Complex::new(sites, order));
-    stats.order = started.elapsed();
+    stats.order += started.elapsed();
+    insert(Complex::new(sites, order, SIMPLICES_MAX), stats)
+}
+
+/// The same for some of the sites, given by increasing numbers, if there are at most so many simplices.
+pub(super) fn triangulate_part<'a, C: Coefficient>(
+    sites: &'a Sites,
+    numbers: &[u32],
+    most: usize,
+    stats: &mut Stats,
+) -> Result<Complex<'a, C>> {
     let started = Instant::now();
-    insertion.run()?;
-    stats.insertion = started.elapsed();
-    stats.created = insertion.created;
-    stats.in_sphere_tests = insertion.tests;
-    Ok(insertion.complex)
+    let mut order = insertions(&sites.part(numbers))?;
+    order.iter_mut().for_each(|number| *number = numbers[*number as usize]);
+    stats.order += started.elapsed();
+    insert(Complex::new(sites, order, most.min(SIMPLICES_MAX)), stats)
+}
+
+fn insert<'a, C: Coefficient>(complex: Complex<'a, C>, stats: &mut Stats) -> Result<Complex<'a, C>> {
+    let started = Instant::now();
+    let mut insertion = Insertion::new(complex);
+    let result = insertion.run();
+    stats.insertion += started.elapsed();
+    stats.created += insertion.created;
+    stats.in_sphere_tests += insertion.tests;
+    result.map(|()| insertion.complex)
 }

@@ -18,11 +18,12 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// The budget for an input. Lines and streams may repeat points, and diagrams hold each only once, so
-    /// that the memory for their diagram is not known before it is made.
-    pub(super) fn of(supply: &Supply) -> Budget {
+    /// The budget for an input, whose diagram must fit memory if it is to be there as a whole. Lines and
+    /// streams may repeat points, and diagrams hold each only once, so that the memory for their diagram is
+    /// not known before it is made.
+    pub(super) fn of(supply: &Supply, in_memory: bool) -> Budget {
         let are_distinct = matches!(supply, Supply::Grid(_) | Supply::Volume(_));
-        Budget::within(memory_limit().filter(|_| are_distinct))
+        Budget::within(memory_limit().filter(|_| are_distinct && in_memory))
     }
 
     fn within(memory: Option<u64>) -> Budget {

@@ -28,6 +28,7 @@ pub use orientation::Orientation;
 pub use raw::{RawLayout, parse_sizes};
 pub use sample::Share;
 
+use self::budget::Budget;
 use self::lattice::Lattice;
 use self::scan::Supply;
 use super::origin::{Admitted, Origin, name_of};
@@ -65,6 +66,8 @@ pub struct Request {
     pub selection: Selection,
     /// Folder of spools; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
+    /// Whether the whole diagram of the points will be in memory.
+    pub in_memory: bool,
 }
 
 /// A source of points.
@@ -150,7 +153,10 @@ fn read(mut supply: Supply, request: &Request, name: String, warnings: Vec<Strin
         Spacing::World => supply.place_in_world().map_err(|e| e.of_input(&name))?,
         Spacing::Index => None,
     };
-    let selected = select::select(&supply, &request.selection, orientation.as_ref());
+    let selected = {
+        let budget = Budget::of(&supply, request.in_memory);
+        select::select(&supply, &request.selection, orientation.as_ref(), budget)
+    };
     let mut points = selected.map_err(|e| e.of_input(&name))?;
     if request.spacing == Spacing::World && supply.is_rounded() {
         points.warnings.push(ROUNDED.to_string());

@@ -22,9 +22,10 @@ pub(super) fn select(
     supply: &Supply,
     selection: &Selection,
     orientation: Option<&Orientation>,
+    budget: Budget,
 ) -> Result<Selected4> {
     check(supply, selection)?;
-    let selector = Selector { selection, orientation, budget: Budget::of(supply) };
+    let selector = Selector { selection, orientation, budget };
     if let Some(points) = count_before(supply, selection)? {
         selector.budget.check(points)?;
     }
