@@ -1,4 +1,4 @@
-"""Pipes of scripts/soak that live as long as the run, or as long as a good part of it."""
+"""Pipes of scripts/soak that run for the whole time; the library runs for a twentieth of it."""
 
 import random
 import subprocess
@@ -15,7 +15,7 @@ class Endless(threading.Thread):
     """A pipe that is fed or emptied slowly; its programs are sampled."""
 
     outputs = set()
-    # Part of the samples before memory is compared.
+    # Share of the samples to skip before memory is compared.
     skipped = 0
 
     def __init__(self, soak, folder, seconds):
@@ -60,8 +60,8 @@ class Endless(threading.Thread):
 class Strip(Endless):
     """A stream of points without end, which this script writes: text, binary, triangles, audit.
 
-    Flat triangles at the sides of the strip have large circles. How many of them are not final grows as the root
-    of its length, by two fifths in the second half."""
+    Flat triangles at the sides of the strip have large circles, so that they are not final for long. Their number
+    grows as the square root of the length: by two fifths in the second half."""
 
     name, skipped = "endless strip", 0.5
 

@@ -166,13 +166,18 @@ def other_whole(case, change):
     return run
 
 
+def disturb(room, name):
+    """Notes that the fault changes an input. For another plan, a program makes other parts."""
+    room.disturbed |= {name, "parts"} if name == "plan.json" else {name}
+
+
 @fault("replaced", reads_files)
 def replaced(case):
     """Another file takes the name of the input while the program reads."""
     name = choose(case, can_be_part=False)
 
     def change(room):
-        room.disturbed.add(name)
+        disturb(room, name)
         inputs.replace(case.world.folder / "other" / "in" / name, room.inputs / name)
 
     while_read(case, change, f"{name} is replaced", other_whole(case, change))
@@ -186,7 +191,7 @@ def overwritten(case):
     pause = case.numbers.choice([0, 0.002])
 
     def change(room):
-        room.disturbed.add(name)
+        disturb(room, name)
         with open(room.inputs / name, "wb", buffering=0) as file:
             for start in range(0, len(data), len(data) // 4 + 1):
                 file.write(data[start : start + len(data) // 4 + 1])

@@ -82,8 +82,8 @@ pub struct Flags {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Memory for the diagram, whose cells then wait in temporary files (see --temp-dir). For cells alone, not
-    /// for what other flags make of them; the output is the same
+    /// Compute in stages, in about this much memory, as in 1400M: slower, but the output is the same. Cells
+    /// wait in temporary files (see --temp-dir). Not for slices, values, simplices, and --route direct
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory: Option<u64>,
 

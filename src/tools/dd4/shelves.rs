@@ -10,7 +10,7 @@ use spmesh_core::error::Result;
 use spmesh_geometry::diagram4::{CellSink, sort_distinct};
 use spmesh_model::cells4::Cell4;
 
-/// Most shelves, each of which may be a file.
+/// Maximum number of shelves; each may be a file.
 const SHELVES_MAX: usize = 192;
 
 /// Marks an infinite cell in the word that counts its vertices, and in its place.
@@ -23,7 +23,7 @@ const INFINITE: u32 = 1 << 31;
 pub(super) struct Shelves {
     folder: Option<PathBuf>,
     files: Vec<WordFile>,
-    /// First vertices of the cells of a shelf.
+    /// How many first vertices belong to a shelf.
     width: u32,
     cells: usize,
 }
@@ -39,9 +39,9 @@ pub(super) struct Sorted {
 }
 
 impl Shelves {
-    /// Empty shelves for the cells of so many points, in a folder or in that of the system. The cells of one
-    /// shelf have the first vertex in common with those of `width` points, or of more if there are too many
-    /// shelves otherwise.
+    /// Empty shelves for the cells of so many points, in a folder or in that of the system. Shelf i gets the
+    /// cells whose first vertex is one of `width` vertices from i * `width` on. There are more to a shelf if
+    /// there would be too many shelves.
     pub(super) fn new(points: usize, width: usize, folder: Option<&Path>) -> Shelves {
         let width = width.max(points.div_ceil(SHELVES_MAX)).max(1);
         let files = (0..points.div_ceil(width)).map(|_| WordFile::new(folder)).collect();

@@ -20,17 +20,18 @@ const POINT_BYTES: u64 = 64;
 /// Bytes of a process without points, and of buffers.
 const PROCESS_BYTES: u64 = 16 << 20;
 
-/// Shelves of cells for the points of a stage. To sort a shelf takes about as much memory as the simplices of
-/// as many points, and there are the places of all cells.
+/// Shelves per stage: to sort a shelf takes as much memory as the simplices of its points, and the places of
+/// all cells take memory, too, so a shelf has half the points of a stage.
 const SHELVES: usize = 2;
 
-/// Simplices of a random point. A stage of other points is cut again if they have more.
+/// Simplices per random point, for the size of the first stage. A stage with too many is begun again with half
+/// of its points.
 const POINT_SIMPLICES: usize = 32;
 
 /// Fewer simplices are not worth a stage.
 const SIMPLICES_MIN: u64 = 1 << 10;
 
-/// Computes the diagram of points in stages that need no more than `memory` bytes, and writes its cells as
+/// Computes the diagram of points in stages of about `memory` bytes, by estimate, and writes its cells as
 /// [`super::write_diagram`] does. Cells wait in temporary files in a folder, or in that of the system.
 /// Returns notices for the user.
 ///

@@ -1,11 +1,12 @@
 //! Tells which cells are cold: those that have got no points for long.
 
-/// Waiting points up to which no cell is cold, in bytes of pages.
+/// No cell is cold while waiting points take at most this many bytes of pages.
 const WARM_LEN: u64 = 24 << 20;
 
-/// Points of the input between two looks for cold cells, as a power of two; and how many looks come between
-/// the last point of a cold cell and the one that finds it, at least.
+/// A look for cold cells comes after so many points of the input, as a power of two.
 const LOOK_BITS: u32 = 20;
+
+/// A cell is cold if it got no point for more than so many looks.
 const COLD_LOOKS: u32 = 4;
 
 /// When each cell got its last points. Times are counted in looks.

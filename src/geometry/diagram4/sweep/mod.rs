@@ -32,7 +32,7 @@ pub struct Room {
     pub simplices: usize,
 }
 
-/// Takes the cells of a sweep, which come in any order, finite ones first.
+/// Takes the cells of a sweep, in any order.
 pub trait CellSink {
     /// Takes a cell, with the numbers of those of its neighbours that are known already. Cells are numbered
     /// from 0, in the order in which they come.
@@ -41,15 +41,16 @@ pub trait CellSink {
     /// Ends the sweep.
     fn cell(&mut self, number: u32, cell: Cell4) -> Result<()>;
 
-    /// Takes another neighbour of a finite cell that came before, which has `first` as its first vertex.
+    /// Takes another neighbour of the finite cell `number`, which came before; `first` is the first vertex of
+    /// that cell.
     ///
     /// # Errors
     /// Ends the sweep.
     fn neighbour(&mut self, number: u32, first: u32, neighbour: u32) -> Result<()>;
 }
 
-/// A stage takes at least one new point for so many that are left over: fewer would repeat the work of the
-/// stage before too often.
+/// A stage asks for at least one new point per so many that are left over. Smaller slabs would repeat too much
+/// work.
 const LEFT_PER_NEW: usize = 3;
 
 /// Part of the room that a stage is to fill: one that turns out to be too large is begun again.

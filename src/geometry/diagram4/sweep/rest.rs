@@ -7,7 +7,7 @@ use spmesh_model::cells4::Point4;
 /// A sum of few products in f64 is off by less than this times the sum of their magnitudes.
 const SUM_ERROR: f64 = 1e-12;
 
-/// Bounds on values in rounded coordinates hold for points; the corners of a box are rounded once more.
+/// The bound on rounding holds for points. Those of a box are rounded once more, so it is multiplied by this.
 const MARGIN: f64 = 8.0;
 
 /// The box of the points that come later, in the coordinates of spheres; `None` if there are none.
@@ -26,8 +26,8 @@ impl Rest {
         }))
     }
 
-    /// Whether each simplex is finite, and no point of the rest is inside or on its sphere. Without a rest,
-    /// all simplices are.
+    /// For each simplex: whether it is finite, and the box of the rest is certainly outside of its sphere.
+    /// Without a rest, `true` for all, infinite ones included.
     pub(super) fn closed<C: Coefficient>(&self, complex: &Complex<C>) -> Vec<bool> {
         let Some(bounds) = &self.0 else { return vec![true; complex.simplices.len()] };
         let is_closed = |sphere: &Sphere<C>| is_outside(&sphere.map(C::value), bounds, complex.rounding);

@@ -9,7 +9,7 @@ pub(super) struct Slabs {
     /// The points that are not taken yet follow after `taken` others.
     order: Vec<u32>,
     taken: usize,
-    /// The numbers of points of which the greatest coordinate differs from the next: where slabs may end.
+    /// Counts of points after which the coordinate changes: slabs may end there.
     ends: Vec<u32>,
 }
 

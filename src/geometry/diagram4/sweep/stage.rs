@@ -116,13 +116,11 @@ impl<'a> Stage<'a> {
         }
         while let Some(cell) = stack.pop() {
             let walls = met_by(met, cell);
-            let is_infinite = self.is_infinite[cell as usize];
             for &other in self.neighbours.get(cell as usize) {
-                // Whether infinite cells side by side are spurious depends on the finite ones behind them.
-                if numbers[other as usize] == OPEN
-                    && !(is_infinite && self.is_infinite[other as usize])
-                    && !walls.iter().any(|met| met.other == other)
-                {
+                if numbers[other as usize] == OPEN && !walls.iter().any(|met| met.other == other) {
+                    if self.is_infinite[other as usize] {
+                        return Err(broken("an infinite cell is in the place of closed ones"));
+                    }
                     numbers[other as usize] = SPURIOUS;
                     stack.push(other);
                 }

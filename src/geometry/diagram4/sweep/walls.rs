@@ -69,7 +69,7 @@ impl<'a> WallIndex<'a> {
         index
     }
 
-    /// Whether so many vertices of a cell are vertices of walls that one of its facets may be a wall.
+    /// Whether a cell has as many vertices of walls as it needs if one of its facets is a wall.
     #[inline(always)]
     pub(super) fn may_have(&self, vertices: &[u32]) -> bool {
         let mark = |vertex: u32| self.marks[vertex as usize / 64] >> (vertex % 64) & 1;
@@ -83,8 +83,8 @@ impl<'a> WallIndex<'a> {
     }
 }
 
-/// On which side of a facet a finite cell is that has it: an orientation that depends on the vertices of the
-/// facet alone.
+/// The side of its facet on which a finite cell is. Which side is positive depends on the vertices of the facet
+/// alone.
 pub(super) fn side(sites: &Sites, facet: &[u32], cell: &[u32]) -> Sign {
     let point = |vertex: u32| sites.points[vertex as usize];
     let apex = cell.iter().find(|vertex| facet.binary_search(vertex).is_err());
