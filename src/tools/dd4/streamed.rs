@@ -50,7 +50,7 @@ pub fn write_streamed(
     let started = Instant::now();
     let count = points.points.len();
     let mut report = Report { points: count as u64, ..Report::default() };
-    let room = room(count as u64, memory)?;
+    let room = room(count as u64, memory).map_err(|e| e.of_input(&name))?;
     let swept = checked(points, &Product::Cells, options, &placement).and_then(|(points, values)| {
         let mut shelves = Shelves::new(count, room.points / SHELVES, temp_dir);
         let (diagram, stats) = sweep(points, values, room, options.threads, &mut shelves)?;

@@ -114,7 +114,7 @@ pub(super) fn cells<C: Coefficient>(
 fn too_small(simplices: usize, points: usize) -> Error {
     let message = format!(
         "not enough memory: {points} points that must be in memory at once have more than {simplices} \
-         simplices: give more --memory"
+         simplices: give more --memory, or none"
     );
     Error::new(ErrorKind::Memory, message)
 }

@@ -117,7 +117,8 @@ impl<'a> Stage<'a> {
         while let Some(cell) = stack.pop() {
             let walls = met_by(met, cell);
             for &other in self.neighbours.get(cell as usize) {
-                if numbers[other as usize] == OPEN && !walls.iter().any(|met| met.other == other) {
+                let is_wall = || walls.binary_search_by_key(&other, |met| met.other).is_ok();
+                if numbers[other as usize] == OPEN && !is_wall() {
                     if self.is_infinite[other as usize] {
                         return Err(broken("an infinite cell is in the place of closed ones"));
                     }
