@@ -58,9 +58,14 @@ fn runs(folder: &Folder) -> Vec<Run> {
 
 /// Runs a command of the shell, in which `"$0" "$@"` is the tool with its arguments.
 fn shell(command: &str, name: &str, arguments: &[&str]) -> Output {
+    shell_with(Stdio::null(), command, name, arguments)
+}
+
+/// The same with a standard input.
+fn shell_with(stdin: impl Into<Stdio>, command: &str, name: &str, arguments: &[&str]) -> Output {
     let mut shell = Command::new("sh");
     shell.args(["-c", command]).arg(tool(name).get_program()).args(arguments);
-    shell.stdin(Stdio::null()).output().expect("the shell runs")
+    shell.stdin(stdin).output().expect("the shell runs")
 }
 
 impl Run {
@@ -105,11 +110,9 @@ fn closed_streams_are_errors() {
 fn few_descriptors_are_the_only_error() {
     let folder = Folder::new();
     for run in runs(&folder) {
-        let words = run.words_with("-", &[]);
-        let mut shell = Command::new("sh");
-        shell.args(["-c", r#"ulimit -n 4; exec "$0" "$@""#]).arg(tool(run.tool).get_program()).args(&words);
-        shell.stdin(fs::File::open(&run.input).unwrap());
-        let (code, message) = outcome(&shell.output().expect("the shell runs"));
+        let (words, input) = (run.words_with("-", &[]), fs::File::open(&run.input).unwrap());
+        let output = shell_with(input, r#"ulimit -n 4; exec "$0" "$@""#, run.tool, &words);
+        let (code, message) = outcome(&output);
         let is_reason = code == Some(1) && message.contains("Too many open files");
         assert!(code == Some(0) || is_reason, "{} {words:?}: {code:?} {message}", run.tool);
     }

@@ -21,8 +21,8 @@ enum Place {
 }
 
 impl Place {
-    /// The place of `path`, or of `standard` for "-". `None` for devices, which may be given several times, for
-    /// pipes (see [`pipe_at`]), for folders, and for paths that cannot be created.
+    /// The place of `path`, or of `standard` for "-". `None` for devices, which may be given several times,
+    /// for pipes (see [`pipe_at`]), for folders, and for paths that cannot be created.
     fn of(path: &Path, standard: BorrowedFd<'_>) -> Option<Place> {
         match found_at(path, standard) {
             Ok(found) => {
@@ -87,8 +87,8 @@ pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&
     Ok(())
 }
 
-/// Refuses a named pipe that is given as two inputs: its data can be read once, and the second time the program
-/// would wait for a writer that never comes. Programs say themselves what "-" may stand for.
+/// Refuses a named pipe that is given as two inputs: its data can be read once, and the second time the
+/// program would wait for a writer that never comes. Programs say themselves what "-" may stand for.
 fn check_pipes(inputs: &[&Path]) -> Result<()> {
     let mut pipes = HashSet::new();
     for &path in inputs {

@@ -90,12 +90,8 @@ pub fn diagram_by(
     points: Vec<Point4>,
     values: Option<Vec<f64>>,
 ) -> Result<(Diagram4, Stats)> {
-    check(&points)?;
     let mut stats = Stats::default();
-    let started = Instant::now();
-    let (points, values, merged) = sites::distinct(points, values);
-    let sites = Sites::new(points);
-    let sorting = started.elapsed();
+    let (sites, values, merged) = sites_of(points, values, &mut stats)?;
     let cells = match route {
         Route::Simplices => {
             if sites.exactness == Exactness::Small {
@@ -107,7 +103,6 @@ pub fn diagram_by(
         #[cfg(feature = "experiments")]
         Route::Direct => direct::cells(&sites, &mut stats)?,
     };
-    stats.order += sorting;
     Ok((Diagram4 { points: sites.points, values, merged, cells }, stats))
 }
 
@@ -123,18 +118,28 @@ pub fn sweep(
     threads: NonZeroUsize,
     sink: &mut impl CellSink,
 ) -> Result<(Diagram4, Stats)> {
-    check(&points)?;
     let mut stats = Stats::default();
-    let started = Instant::now();
-    let (points, values, merged) = sites::distinct(points, values);
-    let sites = Sites::new(points);
-    stats.order = started.elapsed();
+    let (sites, values, merged) = sites_of(points, values, &mut stats)?;
     if sites.exactness == Exactness::Small {
         sweep::cells::<i32>(&sites, room, threads, sink, &mut stats)?;
     } else {
         sweep::cells::<f64>(&sites, room, threads, sink, &mut stats)?;
     }
     Ok((Diagram4 { points: sites.points, values, merged, cells: Cells4::default() }, stats))
+}
+
+/// The distinct points, their values, and how many points were merged.
+fn sites_of(
+    points: Vec<Point4>,
+    values: Option<Vec<f64>>,
+    stats: &mut Stats,
+) -> Result<(Sites, Option<Vec<f64>>, u64)> {
+    check(&points)?;
+    let started = Instant::now();
+    let (points, values, merged) = sites::distinct(points, values);
+    let sites = Sites::new(points);
+    stats.order += started.elapsed();
+    Ok((sites, values, merged))
 }
 
 fn through_simplices<C: simplices::Coefficient>(

@@ -24,8 +24,8 @@ const PROCESS_BYTES: u64 = 16 << 20;
 /// all cells take memory, too, so a shelf has half the points of a stage.
 const SHELVES: usize = 2;
 
-/// Simplices per random point, for the size of the first stage. A stage with too many is begun again with half
-/// of its points.
+/// Simplices per random point, for the size of the first stage. A stage with too many is begun again with
+/// half of its points.
 const POINT_SIMPLICES: usize = 32;
 
 /// Fewer simplices are not worth a stage.

@@ -41,7 +41,7 @@ const INT128_MAX: f64 = 670.0;
 pub(super) fn cells(sites: &Sites, stats: &mut Stats) -> Result<Cells4> {
     let started = Instant::now();
     let order = insertions(sites)?;
-    stats.order = started.elapsed();
+    stats.order += started.elapsed();
     let started = Instant::now();
     let cells =
         if sites.exactness != Exactness::Big && Extent::of(&sites.points).max_difference() <= INT128_MAX {

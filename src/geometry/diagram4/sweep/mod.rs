@@ -49,8 +49,8 @@ pub trait CellSink {
     fn neighbour(&mut self, number: u32, first: u32, neighbour: u32) -> Result<()>;
 }
 
-/// A stage asks for at least one new point per so many that are left over. Smaller slabs would repeat too much
-/// work.
+/// A stage asks for at least one new point per so many that are left over. Smaller slabs would repeat too
+/// much work.
 const LEFT_PER_NEW: usize = 3;
 
 /// Part of the room that a stage is to fill: one that turns out to be too large is begun again.

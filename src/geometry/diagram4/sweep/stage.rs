@@ -63,8 +63,7 @@ impl<'a> Stage<'a> {
     pub(super) fn close(self, state: &mut State, sink: &mut impl CellSink) -> Result<()> {
         let met = self.met(&state.walls)?;
         let numbers = self.numbers(&met, state.closed)?;
-        let walls = self.give(&met, &numbers, state, sink)?;
-        state.walls = walls;
+        state.walls = self.give(&met, &numbers, state, sink)?;
         state.left = self.left(&numbers);
         state.closed += numbers.iter().filter(|&&number| number < SPURIOUS).count() as u32;
         Ok(())

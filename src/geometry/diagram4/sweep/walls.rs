@@ -83,8 +83,8 @@ impl<'a> WallIndex<'a> {
     }
 }
 
-/// The side of its facet on which a finite cell is. Which side is positive depends on the vertices of the facet
-/// alone.
+/// The side of its facet on which a finite cell is. Which side is positive depends on the vertices of the
+/// facet alone.
 pub(super) fn side(sites: &Sites, facet: &[u32], cell: &[u32]) -> Sign {
     let point = |vertex: u32| sites.points[vertex as usize];
     let apex = cell.iter().find(|vertex| facet.binary_search(vertex).is_err());

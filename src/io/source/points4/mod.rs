@@ -153,10 +153,8 @@ fn read(mut supply: Supply, request: &Request, name: String, warnings: Vec<Strin
         Spacing::World => supply.place_in_world().map_err(|e| e.of_input(&name))?,
         Spacing::Index => None,
     };
-    let selected = {
-        let budget = Budget::of(&supply, request.in_memory);
-        select::select(&supply, &request.selection, orientation.as_ref(), budget)
-    };
+    let budget = Budget::of(&supply, request.in_memory);
+    let selected = select::select(&supply, &request.selection, orientation.as_ref(), budget);
     let mut points = selected.map_err(|e| e.of_input(&name))?;
     if request.spacing == Spacing::World && supply.is_rounded() {
         points.warnings.push(ROUNDED.to_string());
