@@ -123,7 +123,7 @@ JOBS = [
     # Space and time.
     Job("diagram", "dd4 in/points4.txt", "-o out/diagram.spm", ""),
     Job("isosurface", "dd4 in/volumes.nrrd --slice 1.5 --isosurface 420", "-o out/half.ply", ""),
-    Job("stages", "dd4 in/series.nii.gz --count 1000 --memory 19M", "-o out/stages.spm", ""),
+    Job("stages", "dd4 in/series.nii.gz --count 4000 --time-scale 0.01 --memory 17.5M", "-o out/stages.spm", ""),
     Job("series", "dd4 in/series.nii.gz --count 300 | spinfo --audit", None, ""),
     # Splines.
     Job("spline", "splinefit fit --max-knots 60 in/tile.laz", "-o out/tile.spline.spm", ""),

@@ -186,6 +186,12 @@ impl Lists4 {
         self.len() == 0
     }
 
+    /// Bytes that the lists take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of::<u32>() * (self.words.len() + self.starts.len())
+    }
+
     /// The list of this number.
     #[inline(always)]
     #[must_use]

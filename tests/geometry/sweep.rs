@@ -15,6 +15,10 @@ const SEED: u64 = 20_261_126;
 struct Collected(Vec<(bool, Vec<u32>, Vec<u32>)>);
 
 impl CellSink for Collected {
+    fn clear(&mut self) {
+        self.0.clear();
+    }
+
     fn cell(&mut self, number: u32, cell: Cell4) -> Result<()> {
         assert_eq!(number as usize, self.0.len());
         self.0.push((cell.is_infinite, cell.vertices.to_vec(), cell.neighbours.to_vec()));
@@ -53,7 +57,7 @@ fn assert_same(points: &[Point4], stages: &[usize], threads: usize, what: &str) 
     let threads = NonZeroUsize::new(threads).unwrap();
     let expected = diagram(points.to_vec(), None);
     for &stages in stages {
-        let room = Room { points: points.len().div_ceil(stages), simplices: usize::MAX };
+        let room = Room { points: points.len().div_ceil(stages), bytes: usize::MAX };
         let mut collected = Collected::default();
         let found = sweep(points.to_vec(), None, room, threads, &mut collected);
         match (&expected, found) {
@@ -154,19 +158,21 @@ fn sets_of_bad_position() {
     }
 }
 
-/// The room for simplices makes stages smaller; too little is an error.
+/// Too little room makes stages smaller, and is an error in the end.
 #[test]
-fn simplices_are_bounded() {
+fn room_is_kept() {
     let mut random = Random::new(SEED + 4);
     let points = floats(&random_points(&mut random, 3000, 1 << 20));
     let (expected, _) = diagram(points.clone(), None).unwrap();
-    let sweep_within = |simplices: usize| {
+    let sweep_within = |bytes: usize| {
         let mut collected = Collected::default();
-        let room = Room { points: usize::MAX, simplices };
+        let room = Room { points: usize::MAX, bytes };
         let swept = sweep(points.clone(), None, room, NonZeroUsize::MIN, &mut collected);
         swept.map(|_| collected.canonical())
     };
-    assert!(sweep_within(90_000).unwrap() == expected.cells);
-    let error = sweep_within(1000).unwrap_err();
+    for megabytes in [12, 9, 7] {
+        assert!(sweep_within(megabytes << 20).unwrap() == expected.cells);
+    }
+    let error = sweep_within(100_000).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Memory, "{error}");
 }

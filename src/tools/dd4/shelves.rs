@@ -66,6 +66,12 @@ impl Shelves {
 }
 
 impl CellSink for Shelves {
+    fn clear(&mut self) {
+        let folder = self.folder.as_deref();
+        self.files.iter_mut().for_each(|file| *file = WordFile::new(folder));
+        self.cells = 0;
+    }
+
     #[inline]
     fn cell(&mut self, number: u32, cell: Cell4) -> Result<()> {
         let Cell4 { is_infinite, vertices, neighbours } = cell;

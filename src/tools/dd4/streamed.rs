@@ -11,25 +11,22 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_geometry::diagram4::{Room, sweep};
 use spmesh_io::source::points4::Selected4;
 
-/// Bytes of a simplex of a stage, with what cells and walls take.
-const SIMPLEX_BYTES: u64 = 112;
-
 /// Bytes of a point, from the first to the last stage.
-const POINT_BYTES: u64 = 64;
+const POINT_BYTES: u64 = 96;
 
 /// Bytes of a process without points, and of buffers.
-const PROCESS_BYTES: u64 = 16 << 20;
+const PROCESS_BYTES: u64 = 8 << 20;
 
 /// Shelves per stage: to sort a shelf takes as much memory as the simplices of its points, and the places of
 /// all cells take memory, too, so a shelf has half the points of a stage.
 const SHELVES: usize = 2;
 
-/// Simplices per random point, for the size of the first stage. A stage with too many is begun again with
-/// half of its points.
-const POINT_SIMPLICES: usize = 32;
+/// Bytes per random point of a stage, which has about 32 simplices, for the size of the first stage. One that
+/// takes too much is begun again with half of its points.
+const STAGE_POINT_BYTES: usize = 32 * 112;
 
-/// Fewer simplices are not worth a stage.
-const SIMPLICES_MIN: u64 = 1 << 10;
+/// Fewer bytes are not worth a stage.
+const STAGE_BYTES_MIN: u64 = 1 << 17;
 
 /// Computes the diagram of points in stages of about `memory` bytes, by estimate, and writes its cells as
 /// [`super::write_diagram`] does. Cells wait in temporary files in a folder, or in that of the system.
@@ -76,12 +73,12 @@ pub fn write_streamed(
 /// The room of a stage for so many points in all.
 fn room(points: u64, memory: u64) -> Result<Room> {
     let fixed = PROCESS_BYTES + points * POINT_BYTES;
-    let simplices = memory.saturating_sub(fixed) / SIMPLEX_BYTES;
-    if simplices < SIMPLICES_MIN {
-        let least = (fixed + SIMPLICES_MIN * SIMPLEX_BYTES).div_ceil(1 << 20);
+    let bytes = memory.saturating_sub(fixed);
+    if bytes < STAGE_BYTES_MIN {
+        let least = (fixed + STAGE_BYTES_MIN).div_ceil(1 << 20);
         let message = format!("{points} points need more memory than that: give --memory {least}M or more");
         return Err(Error::new(ErrorKind::Memory, message));
     }
-    let simplices = usize::try_from(simplices).unwrap_or(usize::MAX);
-    Ok(Room { points: simplices / POINT_SIMPLICES, simplices })
+    let bytes = usize::try_from(bytes).unwrap_or(usize::MAX);
+    Ok(Room { points: bytes / STAGE_POINT_BYTES, bytes })
 }

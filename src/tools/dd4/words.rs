@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use spmesh_core::error::Result;
 use spmesh_core::temporary::TemporaryFile;
 
-/// Words that wait to be written, or are read at a time.
-const BUFFER_LEN: usize = 1 << 14;
+/// Words that wait to be written, or are read at a time. There may be two hundred files.
+const BUFFER_LEN: usize = 1 << 12;
 
 /// What is done, in messages.
 const WRITING: &str = "writing cells";

@@ -66,6 +66,19 @@ impl<'a> Classes<'a> {
         (finite, all - finite)
     }
 
+    /// Bytes of the simplices, the classes, and the lists that [`Classes::lists`] makes, at most. Borders of
+    /// classes are counted as if no two of them were with the same neighbour.
+    pub(super) fn bytes(&self) -> usize {
+        let neighbours = FACETS * size_of::<u32>();
+        let simplex = size_of::<Simplex>() + size_of::<AtomicU32>() + size_of::<Facet>() + neighbours;
+        let of_part = |part: &Part| {
+            // A class has a start, and its list of neighbours has a start and a length.
+            let class = 3 * size_of::<u32>();
+            simplex * part.members.len() + class * part.starts.len() + part.vertices.bytes()
+        };
+        self.parts.iter().map(of_part).sum()
+    }
+
     /// The parts of the joined lists.
     pub(super) fn joined(&self) -> Joined {
         let mut end = 0;

@@ -26,7 +26,8 @@ use std::num::NonZeroUsize;
 /// facets of simplices of one cell that are in one hyperplane (thesis 4.3.6).
 pub(super) fn cells<C: Coefficient>(complex: Complex<C>, threads: NonZeroUsize, stats: &mut Stats) -> Cells4 {
     let threads = if complex.simplices.len() < SHARED_MIN { NonZeroUsize::MIN } else { threads };
-    let Unordered { vertices, mut neighbours, joined, .. } = unordered(complex, &[], threads, stats);
+    let unordered = unordered(complex, &[], usize::MAX, threads, stats);
+    let Unordered { vertices, mut neighbours, joined, .. } = unordered.expect("no limit");
     let mut order = order::canonical(&vertices, &joined.finite(), threads);
     let finite = order.len();
     order.extend(order::canonical(&vertices, &joined.infinite(), threads));
@@ -47,27 +48,34 @@ pub(super) struct Unordered {
     pub(super) joined: Joined,
     /// Whether all simplices of a cell have a mark; empty without marks.
     pub(super) marked: Vec<bool>,
+    /// Most bytes that it took to join them, by estimate.
+    pub(super) bytes: usize,
 }
 
-/// Joins simplices, which may have marks.
+/// Joins simplices, which may have marks. `None` if that takes more than `bytes`.
 pub(super) fn unordered<C: Coefficient>(
     complex: Complex<C>,
     marks: &[bool],
+    bytes: usize,
     threads: NonZeroUsize,
     stats: &mut Stats,
-) -> Unordered {
+) -> Option<Unordered> {
     let borders = Borders::of(&complex, threads);
     let Complex { simplices, order: sites, spheres, near, .. } = complex;
     // Free the spheres, a third of the memory or more.
     drop((spheres, near));
     let classes = Classes::new(&simplices, &sites, borders, threads);
     drop(sites);
+    let taken = classes.bytes();
+    if taken > bytes {
+        return None;
+    }
     let (finite, infinite) = classes.simplices();
     stats.simplices += finite;
     stats.infinite_simplices += infinite;
     let (joined, marked) = (classes.joined(), classes.marked(marks));
     let (vertices, neighbours) = classes.lists(threads);
-    Unordered { vertices, neighbours, joined, marked }
+    Some(Unordered { vertices, neighbours, joined, marked, bytes: taken })
 }
 
 /// Replaces classes by their places, and sorts each list.

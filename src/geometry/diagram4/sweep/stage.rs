@@ -44,7 +44,7 @@ struct Met {
 impl<'a> Stage<'a> {
     /// The cells of a triangulation; in the last stage, all are closed.
     pub(super) fn new(sites: &'a Sites, unordered: Unordered, is_last: bool) -> Stage<'a> {
-        let Unordered { vertices, mut neighbours, joined, marked } = unordered;
+        let Unordered { vertices, mut neighbours, joined, marked, .. } = unordered;
         for lists in &mut neighbours {
             for class in 0..lists.len() {
                 lists.get_mut(class).iter_mut().for_each(|other| *other = joined.place(*other));
