@@ -43,6 +43,34 @@ impl Measured {
     }
 }
 
+/// How many times slower than an idle AMD EPYC this machine is now, at least 1: by the processor time of a
+/// task that is always the same. Other programs on the same core double it.
+pub fn slowness() -> f64 {
+    /// Units: seconds.
+    const IDLE: f64 = 0.06;
+    let started = thread_time();
+    let mut state = 1u64;
+    let numbers = (0..1 << 21).map(|_| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        state
+    });
+    let mut numbers: Vec<u64> = numbers.collect();
+    numbers.sort_unstable();
+    assert!(std::hint::black_box(&numbers).is_sorted());
+    ((thread_time() - started) / IDLE).max(1.0)
+}
+
+/// Processor time of this thread. Units: seconds.
+fn thread_time() -> f64 {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the pointer is valid for the call.
+    let result = unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &raw mut time) };
+    assert_eq!(result, 0, "threads have clocks");
+    time.tv_sec as f64 + time.tv_nsec as f64 / 1e9
+}
+
 /// A command for a program of the project: all are beside each other.
 pub fn tool(name: &str) -> Command {
     let folder = std::path::Path::new(env!("CARGO_BIN_EXE_spinfo")).parent().expect("a folder");
