@@ -17,9 +17,10 @@ const POINT_BYTES: u64 = 96;
 /// Bytes of a process without points, and of buffers.
 const PROCESS_BYTES: u64 = 8 << 20;
 
-/// Shelves per stage: to sort a shelf takes as much memory as the simplices of its points, and the places of
-/// all cells take memory, too, so a shelf has half the points of a stage.
-const SHELVES: usize = 2;
+/// Shelves per stage, of equally many points. To sort a shelf takes as much memory as its cells, and the
+/// places of all cells take memory, too. A cell is on the shelf of its first vertex, and if points are thin
+/// along the first axis, most cells have a first vertex among the first few points.
+const SHELVES: usize = 8;
 
 /// Bytes per random point of a stage, which has about 32 simplices, for the size of the first stage. One that
 /// takes too much is begun again with half of its points.
