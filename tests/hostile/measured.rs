@@ -4,6 +4,8 @@ use std::io::Read;
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Command, ExitStatus, Stdio};
 
+use spmesh_reference::sets::Random;
+
 /// What a program has taken.
 #[derive(Debug)]
 pub struct Measured {
@@ -47,16 +49,10 @@ impl Measured {
 /// task that is always the same. Other programs on the same core double it.
 pub fn slowness() -> f64 {
     /// Units: seconds.
-    const IDLE: f64 = 0.06;
+    const IDLE: f64 = 0.08;
     let started = thread_time();
-    let mut state = 1u64;
-    let numbers = (0..1 << 21).map(|_| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        state
-    });
-    let mut numbers: Vec<u64> = numbers.collect();
+    let mut random = Random::new(1);
+    let mut numbers: Vec<u64> = (0..1 << 21).map(|_| random.bits()).collect();
     numbers.sort_unstable();
     assert!(std::hint::black_box(&numbers).is_sorted());
     ((thread_time() - started) / IDLE).max(1.0)

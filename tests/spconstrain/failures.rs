@@ -5,6 +5,8 @@ use crate::programs::{
     Folder, assert_damage_leaves_no_file, assert_outcome, mesh_of_cloud, outcome, run, sample,
 };
 use rustix::fs::Mode;
+use spmesh_model::bounds::Bounds;
+use spmesh_stream::{Coordinates, Header, Kind, write_triangles};
 
 #[test]
 fn wrong_uses_are_said() {
@@ -51,6 +53,27 @@ fn damaged_meshes_leave_no_file() {
     let lines = folder.path("lines.txt");
     let mesh = mesh_of_cloud(300);
     assert_damage_leaves_no_file("spconstrain", &["--lines", &lines], ["new.spm", "old.spm"], &mesh);
+}
+
+#[test]
+fn triangles_that_are_not_counterclockwise_are_refused() {
+    let folder = Folder::new();
+    let lines = folder.write("lines.txt", "line 1 1 0 3 2 0\n");
+    let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
+    let points = [[0.0, 0.0, 1.0], [4.0, 0.0, 2.0], [4.0, 4.0, 3.0], [0.0, 4.0, 4.0], [2.0, 2.0, 5.0]];
+    let bounds = Bounds::of_points(&points);
+    for (triangles, message) in [
+        (
+            [[0, 1, 2], [0, 3, 2]],
+            "corners [0.0, 0.0], [0.0, 4.0], [4.0, 4.0] (stored coordinates) is clockwise",
+        ),
+        ([[0, 1, 2], [0, 2, 4]], "corners [0.0, 0.0], [4.0, 4.0], [2.0, 2.0] (stored coordinates) is flat"),
+    ] {
+        let header = Header { bounds, ..Header::new(Kind::TriangleMesh, grid, 2, true) };
+        let (mut mesh, at) = (Vec::new(), |vertex: u32| points[vertex as usize]);
+        write_triangles(header, &triangles, points.len(), 0, at, &mut mesh).expect("a mesh");
+        assert_outcome("spconstrain", &["--lines", &lines], &mesh, 3, message);
+    }
 }
 
 #[test]

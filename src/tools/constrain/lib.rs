@@ -27,6 +27,7 @@ use held::{Held, Holding};
 use leaving::Rings;
 use near::Lines;
 use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, is_counterclockwise};
 use spmesh_lines::Areas;
 use spmesh_model::bounds::Point;
 use spmesh_model::network::Network;
@@ -88,8 +89,8 @@ pub struct Stats {
 /// Memory: the network and its cells, about 60 bytes for a segment; live vertices; and triangles that wait.
 ///
 /// # Errors
-/// Usage, if the input is no triangle mesh or is constrained already; malformed, if it breaks a rule or
-/// segments cross; I/O.
+/// Usage, if the input is no triangle mesh or is constrained already; malformed, if it breaks a rule, if a
+/// triangle is not counterclockwise, or if segments cross; I/O.
 pub fn constrain<R: Read, W: Write>(
     reader: &mut StreamReader<R>,
     network: &Network,
@@ -138,6 +139,16 @@ fn check(header: &Header) -> Result<()> {
         return Err(Error::usage(message));
     }
     Ok(())
+}
+
+/// Checks that a triangle is strictly counterclockwise: in-circle tests presume it.
+fn check_orientation(corners: [Point2; 3], predicates: &mut FiniteFloatPredicates) -> Result<()> {
+    if is_counterclockwise(corners, predicates)? {
+        return Ok(());
+    }
+    let [a, b, c] = corners;
+    let message = format!("the triangle with corners {a:?}, {b:?}, {c:?} (stored coordinates) is flat");
+    Err(Error::malformed(message))
 }
 
 /// The header of the output. Elevations of lines may be outside of the box of the mesh.
@@ -225,6 +236,7 @@ impl<W: Write> Filter<'_, W> {
                 let [x, y, _] = locals[local as usize].1;
                 [x, y]
             });
+            check_orientation(places, self.lines.predicates())?;
             let mut on = [None; 3];
             if let Some(meeting) = self.lines.meeting(places) {
                 if meeting.changes() {

@@ -68,7 +68,7 @@ impl Shelves {
 impl CellSink for Shelves {
     fn clear(&mut self) {
         let folder = self.folder.as_deref();
-        self.files.iter_mut().for_each(|file| *file = WordFile::new(folder));
+        self.files.fill_with(|| WordFile::new(folder));
         self.cells = 0;
     }
 
