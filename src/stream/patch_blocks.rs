@@ -98,6 +98,12 @@ impl PatchBlocks {
         self.patches.len()
     }
 
+    /// Bytes of all patches.
+    #[must_use]
+    pub fn byte_len(&self) -> usize {
+        self.used + self.finalized.len() + self.rows.len()
+    }
+
     /// Adds a patch: new vertices, references to imported ones, simplices in local indices. Without attributes,
     /// `rows` is empty; otherwise it gives the row of each new vertex.
     ///

@@ -35,7 +35,7 @@ pub struct CornerParts<'c> {
     pub vertices: &'c [Vertex],
     /// The corners of each tetrahedron: indices of vertices, positively oriented, the greatest last and of
     /// the others the least first.
-    pub tetrahedra: &'c [[u32; 4]],
+    pub tetrahedra: &'c mut [[u32; 4]],
     /// Unused memory of arbitrary content: four words or more for each of the tetrahedra.
     pub spare: &'c mut [u32],
 }

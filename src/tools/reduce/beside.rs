@@ -14,8 +14,11 @@ use spmesh_core::parallel::{self, BufferPool};
 /// Most buffers of blocks that wait to be written.
 const BLOCKS_AHEAD: usize = 2;
 
+/// Bytes of patches that are handed over together: to wake a thread for each would cost more than to write it.
+const TOGETHER: usize = 1 << 19;
+
 /// Calls `make` with a function that takes patches. Another thread writes them to `sequencer`, in their
-/// order.
+/// order. `make` keeps the last few.
 ///
 /// # Errors
 /// Those of writing, or else those of `make`. I/O, if the writing thread cannot be started or panics.
@@ -36,6 +39,9 @@ pub(super) fn write_beside<T, W: Write + Send>(
         };
         let writer = parallel::spawn_scoped(scope, "writer", write)?;
         let made = make(&mut |blocks| {
+            if blocks.byte_len() < TOGETHER {
+                return Ok(());
+            }
             let filled = mem::replace(blocks, pool.take());
             // The writer stops receiving only when it has failed; `join` gives its error.
             full.send(filled).map_err(|_| thread_gone())

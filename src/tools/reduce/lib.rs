@@ -49,6 +49,7 @@ mod run_state;
 mod sample;
 mod schedule;
 mod sequencer;
+mod shape;
 mod shared;
 mod sides;
 mod space;

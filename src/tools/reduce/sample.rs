@@ -11,6 +11,7 @@
 use super::bulk::Bulk;
 use super::residual::Residual;
 use super::rules::Rules;
+use super::shape::{are_on_surface, fill_their_box};
 use spmesh_core::error::Result;
 use spmesh_core::random::Random;
 use spmesh_geometry::predicates::PredicateCounts;
@@ -33,16 +34,9 @@ const SHARE_MAX: f64 = 0.85;
 /// points around the sample are missing: they could make more simplices active.
 const NEAR_SHARE_MAX: f64 = 0.02;
 
-/// Points of two samples of points that may lie on a surface.
-const SPARSE_POINTS: usize = 1024;
-const DENSE_POINTS: usize = 4096;
-
-/// Points lie on a surface if the dense sample leaves more than this fraction of the share that the sparse
-/// one leaves. In a volume the share falls with the cube root of the points, here to 0.63; on a gyroid to
-/// 0.87.
-const DENSE_SHARE: f64 = 0.77;
-
-/// Smallest fraction that the dense sample leaves of points on a surface that wait for the root.
+/// Points of a sample of points on a surface, and the smallest fraction that it leaves if they wait for the
+/// root.
+const SURFACE_POINTS: usize = 4096;
 const SURFACE_SHARE_MIN: f64 = 0.3;
 
 /// Triangulates samples of the points of nodes.
@@ -90,19 +84,18 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         // In space, a thick surface fills its box, too.
         if D == 2 {
             self.draw(points, LOOK_POINTS);
-            if fills_its_box(&self.points.at, FILLED_BY_AREAS) {
+            if fill_their_box(&self.points.at) {
                 return Ok(false);
             }
         }
         let may_wait = self.may_wait(points);
-        self.draw(points, if may_wait { DENSE_POINTS } else { SAMPLE_POINTS });
+        if may_wait && has_sides_along_all_axes(region) {
+            return Ok(true);
+        }
+        self.draw(points, if may_wait { SURFACE_POINTS } else { SAMPLE_POINTS });
         let share = self.share_left(region, self.points.len())?;
         if share <= SHARE_MAX {
-            if !may_wait || share < SURFACE_SHARE_MIN {
-                return Ok(false);
-            }
-            self.draw(points, SPARSE_POINTS);
-            return Ok(share > DENSE_SHARE * self.share_left(region, self.points.len())?);
+            return Ok(may_wait && share >= SURFACE_SHARE_MIN);
         }
         // Points drawn from two close rows have simplices far larger than those of neighbours in the rows.
         self.draw_near(points, SAMPLE_POINTS);
@@ -116,10 +109,10 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         B::SURFACE_MAX > 0 && self.rules.holds_surfaces && self.rules.points.is_some_and(are_most)
     }
 
-    /// Whether the points may lie on a surface, and may then wait for the root. What fills its box does not.
+    /// Whether the points lie on a surface, and may wait for the root.
     fn may_wait(&self, points: &Residual<D>) -> bool {
         let are_few = points.len() < B::SURFACE_MAX && points.raw >= B::SAMPLED_MIN;
-        self.rules.holds_surfaces && are_few && !fills_its_box(&points.at[..points.raw], FILLED_BY_VOLUMES)
+        self.rules.holds_surfaces && are_few && are_on_surface(&points.at[..points.raw])
     }
 
     /// The fraction of the first points of the sample that the node would leave.
@@ -193,35 +186,9 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
     }
 }
 
-/// Points of a sample per cell of the grid over its box.
-const POINTS_PER_CELL: usize = 4;
-
-/// Points that lie in more than this fraction of the cells are on no curve in the plane, on no surface in
-/// space.
-const FILLED_BY_AREAS: f64 = 0.25;
-const FILLED_BY_VOLUMES: f64 = 0.375;
-
-/// Whether points lie in more than the fraction `most` of the cells of a grid over their box, as on an area:
-/// then no further sample is needed.
-fn fills_its_box<const D: usize>(sample: &[[f64; D]], most: f64) -> bool {
-    let (mut min, mut max) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
-    for point in sample {
-        min = std::array::from_fn(|axis| min[axis].min(point[axis]));
-        max = std::array::from_fn(|axis| max[axis].max(point[axis]));
-    }
-    let per_axis = ((sample.len() / POINTS_PER_CELL) as f64).powf(1.0 / D as f64).floor();
-    let scale: [f64; D] = std::array::from_fn(|axis| per_axis / (max[axis] - min[axis]));
-    let mut is_filled = vec![false; (per_axis as usize).pow(D as u32)];
-    for point in sample {
-        // Casts saturate, so that a flat box, whose scale is infinite, is fine, too.
-        let cell = (0..D).fold(0, |cell, axis| {
-            let at = ((point[axis] - min[axis]) * scale[axis]).min(per_axis - 1.0);
-            cell * per_axis as usize + at as usize
-        });
-        is_filled[cell] = true;
-    }
-    let filled = is_filled.iter().filter(|&&filled| filled).count();
-    filled as f64 > most * is_filled.len() as f64
+/// Whether other points may lie outside of the region along every axis.
+fn has_sides_along_all_axes<const D: usize>(region: &Region<D>) -> bool {
+    (0..D).all(|axis| region.min[axis].is_finite() || region.max[axis].is_finite())
 }
 
 #[cfg(test)]
@@ -286,7 +253,7 @@ mod tests {
         assert!(!passes(&surface, unit, false), "no memory");
         let open = Region { min: [0.0, f64::NEG_INFINITY, f64::NEG_INFINITY], max: [f64::INFINITY; 3] };
         assert!(!passes(&surface, open, true), "only points near one side are left");
-        // Most of the box is empty, but a denser sample leaves fewer points.
+        // Most of the box is empty, but points share cells as in a volume.
         let clusters = cube(SAMPLED_MIN_OF_SPACE, |point| {
             point.map(|x| ((4.0 * x).floor() + 0.5 + 0.4 * ((4.0 * x).fract() - 0.5)) / 4.0)
         });

@@ -23,11 +23,14 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     ) -> Result<()> {
         let (builder, code) = (&mut self.builder, self.rules.code);
         let CornerParts { vertices, tetrahedra, .. } = simplices.parts();
-        let corners = |simplex: &[u32; 4]| simplex.map(|v| vertices[v as usize].index);
-        tetrahedra.iter().for_each(|simplex| builder.plan(&corners(simplex)));
+        // Points take the place of vertices, for the second pass, too.
+        for simplex in &mut *tetrahedra {
+            *simplex = simplex.map(|v| vertices[v as usize].index);
+            builder.plan(simplex);
+        }
         builder.isolated(self.bulk.hidden().iter().copied(), points, code, blocks, Some(flush))?;
         for simplex in tetrahedra {
-            if builder.add(&corners(simplex)) {
+            if builder.add(simplex) {
                 builder.close(points, code, blocks)?;
                 flush(blocks)?;
             }
