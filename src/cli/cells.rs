@@ -8,6 +8,7 @@ use super::parse_numbers;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_io::raster::{Cells, Grid, NoData, RasterFormat, RasterOptions, Window};
+use spmesh_stream::Crs;
 
 /// Flags for the grid of a raster.
 #[derive(Debug, Clone, Args)]
@@ -20,7 +21,7 @@ pub(super) struct CellFlags {
     #[arg(long, value_name = "X,Y", value_parser = parse_numbers::<2>, allow_hyphen_values = true, requires = "step")]
     align: Option<[f64; 2]>,
 
-    /// Take the grid of this GeoTIFF
+    /// Take the grid of this GeoTIFF, which must be in the system of the data
     #[arg(long, value_name = "FILE", conflicts_with_all = ["step", "columns", "rows", "bounds"])]
     like: Option<PathBuf>,
 
@@ -43,11 +44,11 @@ impl CellFlags {
         self.like.as_ref()
     }
 
-    /// The grid that the flags ask for. `window` returns the extent of the data; it is called only if no flag
+    /// The grid that the flags ask for, for data in `crs`. `window` returns the extent of the data; it is called only if no flag
     /// states the extent.
-    pub(super) fn grid(&self, window: impl FnOnce() -> Result<Window>) -> Result<Grid> {
+    pub(super) fn grid(&self, crs: &Crs, window: impl FnOnce() -> Result<Window>) -> Result<Grid> {
         match (&self.like, self.window()?) {
-            (Some(like), _) => Grid::of_file(like),
+            (Some(like), _) => Grid::of_file_for(like, crs),
             (None, Some(given)) => Grid::of(given, self.cells()),
             (None, None) => Grid::of(window()?, self.cells()),
         }

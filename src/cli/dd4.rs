@@ -41,9 +41,11 @@ that they are.
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed \
 or truncated input, 5 not enough memory for the points, 6 input of another version of spmesh, 141 output closed by its reader.";
 
-/// The message after a failed allocation.
-const OUT_OF_MEMORY: &str =
-    "dd4: not enough memory: give --memory, or take fewer points, as with --count or --where\n";
+/// The message after a failed allocation, without and with `--memory`.
+const OUT_OF_MEMORY: [&str; 2] = [
+    "dd4: not enough memory: give --memory, or take fewer points, as with --count or --where\n",
+    "dd4: not enough memory: give less --memory, or take fewer points, as with --count or --where\n",
+];
 
 /// Exact Delaunay diagrams of points in four dimensions.
 ///
@@ -148,7 +150,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
-        system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+        let out_of_memory = OUT_OF_MEMORY[usize::from(self.memory.is_some())];
+        system::exit_at_abort(out_of_memory, ErrorKind::Memory.exit_code());
         let (quantum, time_scale) = (self.quantum, self.time_scale);
         let (route, threads) = (self.route.route()?, threads(self.threads));
         let options = Options { quantum, time_scale, route, threads };

@@ -163,7 +163,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut output = flags.sheets.create(&flags.output, format, &flags.cells, files())?;
     let input = Input::open(&paths, &flags.source_options()?)?;
     input.notices().iter().for_each(|text| flags.notice(text));
-    let grid = flags.cells.grid(|| window(&input))?;
+    let grid = flags.cells.grid(&input.description().crs, || window(&input))?;
     let bottom = flags.surface_options(format)?;
     let settings = flags.settings(&grid)?;
 

@@ -229,7 +229,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         flags.sheets.create(&flags.output, options.raster.format, &flags.cells, flags.inputs())?;
     let mut reader = open_stream(&flags.input)?;
     dem::check(reader.header(), &options.quantity).map_err(|e| e.of_input(reader.name()))?;
-    let grid = flags.cells.grid(|| dem::window(reader.header()).map_err(|e| e.of_input(reader.name())))?;
+    let window = || dem::window(reader.header()).map_err(|e| e.of_input(reader.name()));
+    let grid = flags.cells.grid(options.crs.as_ref().unwrap_or(&reader.header().crs), window)?;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
     let done = |vertices| progress.set(vertices);
     let stats = dem::rasterize(&mut reader, output.destination(), &grid, &options, done)?;

@@ -44,7 +44,7 @@ integers with the scale of z. Points outside of the mesh of the ground have no h
 integer stands for that. With --replace-z they get the height above the nearest place of the mesh.
 
 COPC files are written as LAZ: their index does not fit the new records. The ground may be larger than memory: its \
-triangles wait in a temporary file (36 bytes each), and each file is read and written once, in batches. Each output \
+triangles wait in a temporary file (13 bytes each, 19 if coordinates are no integers), and each file is read and written once, in batches. Each output \
 gets its name when it is complete. After a failure, the outputs of earlier files are complete, and there are no others.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \

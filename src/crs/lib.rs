@@ -40,6 +40,12 @@ impl System {
     }
 }
 
+impl From<&GeoKeys> for System {
+    fn from(keys: &GeoKeys) -> System {
+        from_keys::system(keys)
+    }
+}
+
 /// A short name of `crs`: its EPSG codes ("EPSG:26910", "EPSG:2991+5703") where it states them, else the names
 /// it gives itself.
 #[must_use]

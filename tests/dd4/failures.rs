@@ -113,6 +113,7 @@ fn too_little_memory_has_its_exit_code() {
     // The first diagram needs more than its least estimate, the second one cannot be begun.
     for (grid, part) in [
         ("21x21x21x21", "dd4: not enough memory: give --memory, or take fewer points"),
+        ("21x21x21x21 --memory 2G", "dd4: not enough memory: give less --memory, or take fewer points"),
         (
             "30x30x30x30",
             "grid 30x30x30x30: not enough memory: the diagram of 810000 points takes at least 541 MiB",

@@ -125,4 +125,14 @@ fn grids_fit_those_of_other_files() {
     // Through a pipe, tiles are written in rows; the cells do not change.
     let piped = run("spdem", &["--like", &path], &mesh).stdout;
     assert!(is_same(&tiff_values(&piped, &grid), &tiff_values(&bytes, &grid)));
+    // Nothing is compared if one system is not known, and heights may differ.
+    let (utm, _) = raster("utm.tif", &["--like", &path, "--crs", "EPSG:32631+3855"]);
+    let path = folder.path("utm.tif");
+    let (unknown, _) = raster("c.tif", &["--like", &path]);
+    let (higher, _) = raster("d.tif", &["--like", &path, "--crs", "EPSG:32631+5773"]);
+    assert_eq!([utm, unknown, higher], [grid; 3]);
+    let next = run("spdem", &["--like", &path, "--crs", "EPSG:32632"], &mesh);
+    let (code, message) = outcome(&next);
+    let part = "its cells are in EPSG:32631, the data in EPSG:32632";
+    assert!(code == Some(2) && message.contains(part), "{code:?}: {message}");
 }

@@ -50,6 +50,21 @@ fn two_atoms_by_closed_forms() {
     assert_near(alone.number(0, "area"), 2.0 * 2.0 * PI * 1.7 * (1.7 + 0.75), 1e-6);
 }
 
+/// Radii of heavy atoms include their hydrogens by default. An atom may be one by its name alone.
+#[test]
+fn hydrogens_that_count_twice_are_noticed() {
+    let carbon = Record::carbon(1, [0.0; 3]);
+    let hydrogen = |name, element| Record { name, element, ..Record::carbon(2, [1.1, 0.0, 0.0]) };
+    for (name, element, expected) in
+        [("HA", "H", true), ("HA", "", true), ("1HB", "", true), ("CB", "", false)]
+    {
+        let text = pdb(&[carbon.clone(), hydrogen(name, element)]);
+        let (code, message) = outcome(&run("tess3", &["--sasa", "-"], text.as_bytes()));
+        assert_eq!(code, Some(0), "{message}");
+        assert_eq!(message.contains("1 hydrogen counts twice"), expected, "{name} {element}: {message}");
+    }
+}
+
 /// A probe rolls around the axis of two atoms.
 #[test]
 fn the_molecular_surface_of_two_atoms() {

@@ -36,7 +36,7 @@ pub(super) fn run(job: &Job, options: &Options, started: Instant) -> Result<()> 
     let mut reader = open_stream(job.input)?;
     points::check(reader.header(), options).map_err(|e| e.of_input(reader.name()))?;
     let window = || points::window(reader.header()).map_err(|e| e.of_input(reader.name()));
-    let grid = job.cells.grid(window)?;
+    let grid = job.cells.grid(options.crs.as_ref().unwrap_or(&reader.header().crs), window)?;
     let mut progress = Progress::new(job.common, "counting", reader.header().points);
     let done = |points| progress.set(points);
     let stats = points::rasterize(&mut reader, output.destination(), &grid, options, done)?;

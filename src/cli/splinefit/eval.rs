@@ -158,7 +158,7 @@ impl Flags {
         let attribute = self.kind.into();
         let mut output = self.output(form, attribute)?;
         let spline = self.spline()?;
-        let grid = self.cells.grid(|| spline.window())?;
+        let grid = self.cells.grid(spline.crs(), || spline.window())?;
         let mut progress = Progress::counting("rows", common, "evaluating", Some(grid.rows.into()));
         let done = |row| progress.set(row);
         let threads = self.threads.get();

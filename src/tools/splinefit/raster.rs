@@ -13,6 +13,7 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Reference, Samples, Window};
 use spmesh_io::sink::{NPY_F64, npy_header};
 use spmesh_splines::bases::{Raster, Scratch};
+use spmesh_stream::Crs;
 
 /// Rows that a thread evaluates at a time: enough to outweigh the start of a sweep, which looks at all
 /// elements.
@@ -25,6 +26,12 @@ impl Spline {
     /// A domain without an area.
     pub fn window(&self) -> Result<Window> {
         self.layout.domain_window()
+    }
+
+    /// The coordinate reference system of its domain.
+    #[must_use]
+    pub fn crs(&self) -> &Crs {
+        &self.layout.frame.crs
     }
 }
 

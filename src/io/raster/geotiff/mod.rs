@@ -59,8 +59,8 @@ const SAMPLE_FORMAT: u16 = 339;
 pub(super) const PIXEL_SCALE: u16 = 33550;
 pub(super) const TIEPOINT: u16 = 33922;
 pub(super) const KEY_DIRECTORY: u16 = 34735;
-const KEY_DOUBLES: u16 = 34736;
-const KEY_TEXTS: u16 = 34737;
+pub(super) const KEY_DOUBLES: u16 = 34736;
+pub(super) const KEY_TEXTS: u16 = 34737;
 const GDAL_NO_DATA: u16 = 42113;
 
 /// Takes tiles in any order.

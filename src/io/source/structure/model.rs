@@ -27,6 +27,21 @@ pub struct Structure {
     pub warnings: Vec<String>,
 }
 
+impl Structure {
+    /// Whether an atom is a hydrogen or deuterium: by the element or, if it is not stated, by the name without
+    /// leading digits. An atom with the name of its residue is an ion.
+    #[must_use]
+    pub fn is_hydrogen(&self, atom: &Atom) -> bool {
+        match self.names.text(atom.element) {
+            "" => {
+                let name = self.names.text(atom.name).trim_start_matches(|c: char| c.is_ascii_digit());
+                name.starts_with(['H', 'h']) && atom.name != self.residues[atom.residue as usize].name
+            }
+            element => matches!(element, "H" | "h" | "D" | "d"),
+        }
+    }
+}
+
 /// One model: in ensembles another copy of the same molecule, in other files anything.
 #[derive(Debug, Clone, Default)]
 pub struct Model {

@@ -230,27 +230,13 @@ impl<'s> Filter<'s> {
         let Some(atom) = self.model.atoms.get(index) else { return true };
         let is_kind = || match self.atoms {
             Atoms::All => true,
-            Atoms::Heavy => !self.is_hydrogen(atom),
+            Atoms::Heavy => !self.structure.is_hydrogen(atom),
             Atoms::CAlpha => self.is_alpha_carbon(atom),
         };
         (self.hetatm || !atom.is_hetatm)
             && self.residues.get(atom.residue as usize).is_none_or(|&wanted| wanted)
             && self.locations.get(index).is_none_or(|&wanted| wanted)
             && is_kind()
-    }
-
-    /// Decides by the element or, if it is not stated, by the name without leading digits. An atom with the
-    /// name of its residue is an ion.
-    fn is_hydrogen(&self, atom: &Atom) -> bool {
-        let names = &self.structure.names;
-        match names.text(atom.element) {
-            "" => {
-                let name = names.text(atom.name).trim_start_matches(|c: char| c.is_ascii_digit());
-                name.starts_with(['H', 'h'])
-                    && atom.name != self.structure.residues[atom.residue as usize].name
-            }
-            element => matches!(element, "H" | "h" | "D" | "d"),
-        }
     }
 
     /// Decides by name and element. A calcium ion has the name of its residue.

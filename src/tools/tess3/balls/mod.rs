@@ -108,7 +108,7 @@ impl Molecule<'_> {
             return Err(Error::usage(message));
         };
         let mut radius = |(atom, steps): (AtomView<'_>, u32)| {
-            let is_hydrogen = matches!(atom.element(), "H" | "D");
+            let is_hydrogen = atom.structure.is_hydrogen(atom.atom);
             report.hydrogens += u64::from(is_hydrogen && options.has_united_radii);
             self.length(steps + options.probe)
         };
