@@ -1,8 +1,8 @@
 //! Delaunay configurations of any degree, and their generalisation.
 
 #[global_allocator]
-static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
 
 fn main() -> std::process::ExitCode {
-    spmesh_cli::main(spmesh_cli::configgen::run)
+    spmesh_shell::main(spmesh_cli_splines::configgen::run)
 }

@@ -1,8 +1,8 @@
 //! Breaklines in triangle meshes.
 
 #[global_allocator]
-static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
 
 fn main() -> std::process::ExitCode {
-    spmesh_cli::main(spmesh_cli::spconstrain::run)
+    spmesh_shell::main(spmesh_cli_terrain::spconstrain::run)
 }

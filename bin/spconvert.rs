@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 #[global_allocator]
-static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
 
 fn main() -> ExitCode {
-    spmesh_cli::main(spmesh_cli::spconvert::run)
+    spmesh_shell::main(spmesh_cli_convert::spconvert::run)
 }

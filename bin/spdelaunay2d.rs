@@ -1,8 +1,8 @@
 //! Streaming Delaunay triangulation in the plane.
 
 #[global_allocator]
-static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
 
 fn main() -> std::process::ExitCode {
-    spmesh_cli::main(spmesh_cli::spdelaunay2d::run)
+    spmesh_shell::main(spmesh_cli_pipeline::spdelaunay2d::run)
 }

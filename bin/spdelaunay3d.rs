@@ -1,8 +1,8 @@
 //! Streaming Delaunay tetrahedralization in space.
 
 #[global_allocator]
-static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
 
 fn main() -> std::process::ExitCode {
-    spmesh_cli::main(spmesh_cli::spdelaunay3d::run)
+    spmesh_shell::main(spmesh_cli_pipeline::spdelaunay3d::run)
 }

@@ -1,8 +1,8 @@
 //! Says what a stream holds, and proves that it keeps its promises.
 
 #[global_allocator]
-static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
 
 fn main() -> std::process::ExitCode {
-    spmesh_cli::main(spmesh_cli::spinfo::run)
+    spmesh_shell::main(spmesh_cli_pipeline::spinfo::run)
 }

@@ -1,8 +1,8 @@
 //! One node of a mesh that many jobs make.
 
 #[global_allocator]
-static ALLOCATOR: spmesh_cli::Allocator = spmesh_cli::Allocator;
+static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
 
 fn main() -> std::process::ExitCode {
-    spmesh_cli::main(spmesh_cli::spnode::run)
+    spmesh_shell::main(spmesh_cli_pipeline::spnode::run)
 }

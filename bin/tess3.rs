@@ -2,8 +2,8 @@
 
 /// Counts what each file of a sweep takes.
 #[global_allocator]
-static HEAP: spmesh_cli::tess3::CountingHeap = spmesh_cli::tess3::CountingHeap;
+static HEAP: spmesh_cli_molecules::tess3::CountingHeap = spmesh_cli_molecules::tess3::CountingHeap;
 
 fn main() -> std::process::ExitCode {
-    spmesh_cli::main(spmesh_cli::tess3::run)
+    spmesh_shell::main(spmesh_cli_molecules::tess3::run)
 }

@@ -13,6 +13,8 @@ EXAMPLES = PROGRAMS / "examples"
 
 def build(*what):
     """Builds programs and examples, given as flags of cargo such as --bins or --example=NAME."""
-    command = ["cargo", "build", "--release", "--locked", "--quiet", *what]
+    # Without them, cargo takes the package of the programs alone.
+    packages = ["--package=spmesh", "--package=spmesh-experiments"]
+    command = ["cargo", "build", "--release", "--locked", "--quiet", *packages, *what]
     # A relative CARGO_TARGET_DIR is relative to the caller's folder, not to the root.
     subprocess.run(command, cwd=ROOT, env={**os.environ, "CARGO_TARGET_DIR": str(TARGET)}, check=True)

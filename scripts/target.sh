@@ -8,11 +8,11 @@ programs=$target/release
 # Prints the comment at the head of the script and ends it, if the argument asks for help.
 show_help() { case $1 in -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac; }
 
-# Builds programs and examples, given as flags of cargo such as --bins or --example NAME.
+# Builds what flags of cargo name, such as --bins; examples are in the package spmesh-experiments.
 build() { cargo build --release --locked --quiet --manifest-path "$root/Cargo.toml" "$@"; }
 
 # Builds an example and runs it in place of this script.
 run_example() {
-    build --example "$1"
+    build --package spmesh-experiments --example "$1"
     exec "$programs/examples/$1" "${@:2}"
 }

@@ -85,9 +85,10 @@
 //!
 //! | feature | adds |
 //! |---|---|
-//! | `programs` (default) | the command lines of the programs |
-//! | `splines` (default) | `splinefit` |
-//! | `view` (default) | `spview` |
+//! | `programs` (default) | all programs |
+//! | `pipeline`, `terrain`, `view`, `convert`, `molecules`, `spacetime`, `splines` | the programs of one subject |
+//! | `geopackage` (default) | lines of GeoPackages |
+//! | `parquet` (default) | tables of `tess3` as Parquet |
 //! | `experiments` | flags that measure the kernels |
 
 pub use spmesh_core as core;
@@ -95,6 +96,3 @@ pub use spmesh_geometry as geometry;
 pub use spmesh_model as model;
 pub use spmesh_reduce as reduce;
 pub use spmesh_stream as stream;
-
-#[cfg(feature = "programs")]
-pub use spmesh_cli as cli;

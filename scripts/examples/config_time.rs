@@ -4,14 +4,10 @@
 //! the kernel and the configurations in turn, three times, and prints the least times, in seconds and in
 //! microseconds per knot, and their ratio.
 
-#[path = "../benchmark/rust/src/lib.rs"]
-#[allow(dead_code, missing_docs)]
-mod files;
-
 use std::path::PathBuf;
 
-use files::{Paths, timed};
 use spmesh_core::random::Random;
+use spmesh_experiments::files::{Paths, timed};
 use spmesh_geometry::configurations::{self, Knots, Rule};
 use spmesh_geometry::delaunay2::{Kernel, Triangles};
 

@@ -4,15 +4,11 @@
 //! memory. With `--audit` it also proves the diagram. With `--direct`, in a build with `--features
 //! experiments`, it takes the other route. POINTS has quadruples of little-endian f64.
 
-#[path = "../benchmark/rust/src/lib.rs"]
-#[allow(dead_code, missing_docs)]
-mod files;
-
 use std::error::Error;
 use std::fs::File;
 use std::num::NonZeroUsize;
 
-use files::{read_tuples, timed};
+use spmesh_experiments::files::{read_tuples, timed};
 use spmesh_geometry::diagram4::{Route, Stats, diagram_by};
 use spmesh_model::cells4::Cells4;
 use spmesh_model::diagram4::Diagram4;

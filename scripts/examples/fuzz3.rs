@@ -2,7 +2,7 @@
 //! arithmetic. Shrinks a failing set and writes it to a file.
 //!
 //! ```text
-//! cargo run --release --example fuzz3 -- --seconds 3600 --seed 1 --threads 1
+//! cargo run --release --package spmesh-experiments --example fuzz3 -- --seconds 3600 --seed 1 --threads 1
 //! ```
 //!
 //! `--set I` tries set `I` of a seed alone. `--large` tries a few large sets with large cavities.
@@ -10,15 +10,13 @@
 #[path = "../../tests/geometry/kernel3/promises.rs"]
 mod promises;
 
-mod fuzzing;
-
 use std::borrow::Cow;
 use std::num::NonZeroUsize;
 use std::process::exit;
 use std::time::Instant;
 
 use clap::Parser;
-use fuzzing::{Fuzzing, Trial};
+use spmesh_experiments::fuzzing::{Fuzzing, Trial};
 use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
 use spmesh_geometry::order::{Curve, Sequence};
 use spmesh_reference::clouds::{self, Family};

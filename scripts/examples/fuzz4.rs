@@ -3,16 +3,14 @@
 //! audit that shares no code with the engine must pass.
 //!
 //! ```text
-//! cargo run --release --features experiments --example fuzz4 -- --seconds 600 --seed 1
+//! cargo run --release --package spmesh-experiments --features experiments --example fuzz4 -- --seconds 600 --seed 1
 //! ```
 //!
 //! `--set I` tries set `I` of a seed alone. Shrinks a failing set and writes it to a file.
 
-mod fuzzing;
-
 use clap::Parser;
-use fuzzing::{Fuzzing, Trial};
 use spmesh_audit::diagram::check;
+use spmesh_experiments::fuzzing::{Fuzzing, Trial};
 use spmesh_geometry::diagram4::{Route, diagram_by};
 use spmesh_model::cells4::Point4;
 use spmesh_model::diagram4::Diagram4;

@@ -36,7 +36,8 @@ pub struct Fuzzing {
 /// A folder named after the program, in Cargo's target folder.
 fn default_folder() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
-    PathBuf::from(target).join(env!("CARGO_BIN_NAME"))
+    let program = std::env::current_exe().unwrap_or_default();
+    PathBuf::from(target).join(program.file_name().unwrap_or_else(|| "fuzzing".as_ref()))
 }
 
 /// The engine under test. A thread uses one for all its sets, to prove that no state of a set leaks into the

@@ -9,15 +9,11 @@
 //! `kernel3_time POINTS ROUNDS`, for tuning, runs several rounds with the same buffers. POINTS has triples of
 //! little-endian f64; `scripts/bench` keeps its files of points in its folder.
 
-#[path = "../benchmark/rust/src/lib.rs"]
-#[allow(dead_code, missing_docs)]
-mod files;
-
 use std::borrow::Cow;
 use std::error::Error;
 use std::fs::File;
 
-use files::{read_tuples, timed};
+use spmesh_experiments::files::{read_tuples, timed};
 use spmesh_geometry::delaunay3::{Kernel, Stats, Tetrahedralization};
 use spmesh_geometry::order::Sequence;
 

@@ -5,11 +5,7 @@
 //! size of leaves, and reports the counters of the predicates. `scripts/bench` keeps its files of points in
 //! its folder.
 
-#[path = "../benchmark/rust/src/lib.rs"]
-#[allow(dead_code, missing_docs)]
-mod files;
-
-use files::{Paths, timed};
+use spmesh_experiments::files::{Paths, timed};
 use spmesh_geometry::delaunay2::{Kernel, Triangles};
 
 const LEAF_POINTS: usize = 20_000;

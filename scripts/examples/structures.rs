@@ -1,7 +1,7 @@
 //! Prints the atoms of structures as lines of text, or the time that reading them takes, for
 //! `scripts/check-structures`.
 //!
-//!     cargo run --release --example structures -- [--time | --assembly NAME] FILE...
+//!     cargo run --release --package spmesh-experiments --example structures -- [--time | --assembly NAME] FILE...
 
 use std::io::Write;
 use std::path::Path;

@@ -1,15 +1,14 @@
 //! The header and variable length records of a LAS file, each length checked against the file before use.
 
-use std::io::BufReader;
 use std::ops::Range;
 use std::sync::Arc;
 
-use las::raw;
 use laz::LazVlr;
 
 use super::crs;
 use super::index::Part;
 use super::las_fields;
+use super::las_raw::{HEADER_LEN_MIN, RawHeader};
 use super::laz_salvage;
 use super::laz_table;
 use super::origin::FileView;
@@ -30,9 +29,6 @@ const EXTRA_BYTES: (&[u8], u16) = (b"LASF_Spec", 4);
 const COPC: (&[u8], u16) = (b"copc", 1);
 pub(super) const LAX: (&[u8], u16) = (b"LAStools", 30);
 const GLOBAL_ENCODING_WKT: u16 = 1 << 4;
-
-/// Length of the shortest header, that of LAS 1.0 to 1.2.
-const HEADER_LEN_MIN: u16 = 227;
 
 /// What reading the points needs.
 #[derive(Debug, Clone)]
@@ -93,16 +89,10 @@ impl LasHeader {
     /// # Errors
     /// If the header is damaged, of another version, or states more points than the file can hold.
     pub(crate) fn read(file: &FileView, is_salvaged: bool, notices: &mut Vec<String>) -> Result<LasHeader> {
-        let mut input = BufReader::new(file.range(0, file.len()));
-        let raw = raw::Header::read_from(&mut input).map_err(|e| malformed("header at byte 0", &e))?;
-        let version = (raw.version.major, raw.version.minor);
-        if version.0 != 1 || version.1 > 4 {
-            let (major, minor) = version;
-            return Err(Error::malformed(format!("LAS {major}.{minor}, expected 1.0 to 1.4")));
-        }
-        let format = raw.point_data_record_format & 0x3f;
-        let is_compressed = raw.point_data_record_format & 0xc0 != 0;
-        let record_len = usize::from(raw.point_data_record_length);
+        let raw = RawHeader::read(file)?;
+        let format = raw.format & 0x3f;
+        let is_compressed = raw.format & 0xc0 != 0;
+        let record_len = usize::from(raw.record_len);
         let least = *RECORD_LENS
             .get(usize::from(format))
             .ok_or_else(|| Error::malformed(format!("point format {format}, expected 0 to 10")))?;
@@ -111,10 +101,10 @@ impl LasHeader {
                 "point records of {record_len} bytes, format {format} needs {least}"
             )));
         }
-        if raw.header_size < HEADER_LEN_MIN || raw.offset_to_point_data < u32::from(raw.header_size) {
+        if usize::from(raw.header_len) < HEADER_LEN_MIN || raw.points_start < u32::from(raw.header_len) {
             return Err(Error::malformed(format!(
                 "header of {} bytes with points from byte {} on: they overlap",
-                raw.header_size, raw.offset_to_point_data
+                raw.header_len, raw.points_start
             )));
         }
         let records = Records::read(file, &raw, notices)?;
@@ -123,7 +113,7 @@ impl LasHeader {
             format,
             record_len,
             points: count(&raw, format, notices),
-            points_start: u64::from(raw.offset_to_point_data),
+            points_start: u64::from(raw.points_start),
             points_end: points_end(&raw, file.len()),
             file_len: file.len(),
             laz: records.laz(is_compressed)?,
@@ -221,30 +211,21 @@ impl LasHeader {
 }
 
 /// Byte at which point data ends at the latest.
-fn points_end(raw: &raw::Header, file_len: u64) -> u64 {
-    let evlrs = raw.evlr.filter(|evlr| evlr.number_of_evlrs > 0).map(|evlr| evlr.start_of_first_evlr);
-    let others = [evlrs, raw.start_of_waveform_data_packet_record];
-    let after = others.into_iter().flatten().filter(|&start| start > raw.offset_to_point_data.into());
+fn points_end(raw: &RawHeader, file_len: u64) -> u64 {
+    let evlrs = if raw.extended > 0 { raw.extended_start } else { 0 };
+    let others = [evlrs, raw.waveforms_start];
+    let after = others.into_iter().filter(|&start| start > raw.points_start.into());
     after.fold(file_len, u64::min)
-}
-
-fn malformed(position: &str, error: &las::Error) -> Error {
-    match error {
-        las::Error::Io(cause) if cause.kind() == std::io::ErrorKind::UnexpectedEof => {
-            Error::malformed("truncated: the file ends inside").at(position)
-        }
-        other => Error::malformed(other.to_string()).at(position),
-    }
 }
 
 /// The number of points. Writers of LAS 1.4 also fill a 32-bit field for older readers. If both are filled
 /// and differ, the older field counts for the formats that older readers know, as the standard requires.
-fn count(raw: &raw::Header, format: u8, notices: &mut Vec<String>) -> u64 {
-    let legacy = u64::from(raw.number_of_point_records);
-    let Some(large) = raw.large_file.map(|large| large.number_of_point_records).filter(|&n| n != 0) else {
+fn count(raw: &RawHeader, format: u8, notices: &mut Vec<String>) -> u64 {
+    let (legacy, large) = (u64::from(raw.legacy_points), raw.points);
+    if large == 0 || legacy == large {
         return legacy;
-    };
-    if legacy == 0 || legacy == large {
+    }
+    if legacy == 0 {
         return large;
     }
     let chosen = if format < 6 { legacy } else { large };
@@ -252,10 +233,10 @@ fn count(raw: &raw::Header, format: u8, notices: &mut Vec<String>) -> u64 {
     chosen
 }
 
-fn coordinates(raw: &raw::Header) -> Result<Coordinates> {
-    let scale = [raw.x_scale_factor, raw.y_scale_factor, raw.z_scale_factor];
+fn coordinates(raw: &RawHeader) -> Result<Coordinates> {
+    let scale = raw.scale;
     // Some writers leave a negative zero behind: adding 0.0 makes it positive.
-    let offset = [raw.x_offset, raw.y_offset, raw.z_offset].map(|offset| offset + 0.0);
+    let offset = raw.offset.map(|offset| offset + 0.0);
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
         if !(scale[axis] > 0.0 && scale[axis].is_finite()) {
             return Err(Error::malformed(format!(
@@ -275,9 +256,9 @@ fn coordinates(raw: &raw::Header) -> Result<Coordinates> {
     Ok(Coordinates::I32 { scale, offset })
 }
 
-fn stored_bounds(raw: &raw::Header, coordinates: &Coordinates) -> Option<Bounds> {
-    let min: Point = coordinates.to_stored([raw.min_x, raw.min_y, raw.min_z]);
-    let max: Point = coordinates.to_stored([raw.max_x, raw.max_y, raw.max_z]);
+fn stored_bounds(raw: &RawHeader, coordinates: &Coordinates) -> Option<Bounds> {
+    let min: Point = coordinates.to_stored(raw.min);
+    let max: Point = coordinates.to_stored(raw.max);
     let fits = |corner: Point| corner.iter().all(|&value| coordinates.can_store(value));
     let ordered = (0..3).all(|axis| min[axis] <= max[axis]);
     (fits(min) && fits(max) && ordered).then_some(Bounds { min, max })
@@ -294,27 +275,26 @@ struct Records {
 }
 
 impl Records {
-    fn read(file: &FileView, raw: &raw::Header, notices: &mut Vec<String>) -> Result<Records> {
+    fn read(file: &FileView, raw: &RawHeader, notices: &mut Vec<String>) -> Result<Records> {
         let mut records = Records::default();
-        let points_start = u64::from(raw.offset_to_point_data).min(file.len());
-        let mut at = u64::from(raw.header_size);
-        for index in 0..raw.number_of_variable_length_records {
+        let points_start = u64::from(raw.points_start).min(file.len());
+        let mut at = u64::from(raw.header_len);
+        for index in 0..raw.records {
             let Some(next) = records.read_one(file, at, points_start, false, notices)? else {
                 notices.push(format!(
                     "the header states {} variable length records, only {index} fit before the points",
-                    raw.number_of_variable_length_records
+                    raw.records
                 ));
                 break;
             };
             at = next;
         }
-        let Some(extended) = raw.evlr.filter(|evlr| evlr.number_of_evlrs > 0) else { return Ok(records) };
-        let mut at = extended.start_of_first_evlr;
-        for index in 0..extended.number_of_evlrs {
+        let mut at = raw.extended_start;
+        for index in 0..raw.extended {
             let Some(next) = records.read_one(file, at, file.len(), true, notices)? else {
                 notices.push(format!(
                     "the header states {} extended variable length records, only {index} fit into the file",
-                    extended.number_of_evlrs
+                    raw.extended
                 ));
                 break;
             };

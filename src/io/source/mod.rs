@@ -21,6 +21,7 @@ mod input;
 mod input_reader;
 mod las_fields;
 pub(crate) mod las_header;
+mod las_raw;
 pub(crate) mod laz;
 mod laz_chunks;
 mod laz_codec;

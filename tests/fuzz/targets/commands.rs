@@ -11,10 +11,13 @@ use std::time::{Duration, UNIX_EPOCH};
 
 use clap::Parser;
 use serde_json::Value;
-use spmesh_cli::{
-    configgen, dd4, spcanopy, spconstrain, spconvert, spdelaunay2d, spdelaunay3d, spdem, spfinalize,
-    spheight, splinefit, spnode, spview, tess3,
-};
+use spmesh_cli_convert::spconvert;
+use spmesh_cli_molecules::tess3;
+use spmesh_cli_pipeline::{spdelaunay2d, spdelaunay3d, spfinalize, spnode};
+use spmesh_cli_spacetime::dd4;
+use spmesh_cli_splines::{configgen, splinefit};
+use spmesh_cli_terrain::{spcanopy, spconstrain, spdem, spheight};
+use spmesh_cli_view::spview;
 use spmesh_io::source::{SourceOptions, Survey};
 use spmesh_plan::{NodeReport, Plan, Planning, hash_of_file, plan_of};
 use tempfile::TempDir;

@@ -11,7 +11,9 @@ const BUFFER_BYTES: usize = 1 << 20;
 
 /// The files for a run of a peer.
 pub struct Paths {
+    /// The input.
     pub points: PathBuf,
+    /// The output.
     pub triangles: PathBuf,
 }
 
@@ -65,8 +67,11 @@ pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 
 /// The needed fields of a LAS header.
 pub struct LasHeader {
+    /// The whole header.
     pub bytes: Vec<u8>,
+    /// Bytes of a point record.
     pub record_len: usize,
+    /// Number of points.
     pub points: usize,
 }
 

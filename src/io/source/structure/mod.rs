@@ -38,7 +38,7 @@ pub use assemblies::Assemblies;
 pub use classes::Class;
 pub use model::{Atom, AtomView, Model, Residue, Structure};
 pub use names::{Name, Names};
-pub use radii::{Radii, RadiusFinder};
+pub use radii::{LoadedRadii, Radii, RadiusFinder};
 pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
 
 use self::builder::StructureBuilder;

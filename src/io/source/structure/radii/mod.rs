@@ -12,6 +12,7 @@ mod guess;
 mod residues;
 
 use std::collections::HashMap;
+use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -24,7 +25,8 @@ use self::residues::{Group, PROTOR, UNITED, UNITED_ELEMENTS};
 use super::model::{AtomView, Structure};
 use super::selection::Selected;
 use crate::source::origin::open_file;
-use spmesh_core::error::Result;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::RADII_LEN_MAX;
 
 /// Number of steps of a radius in 1 Å.
 const STEPS: f64 = 1000.0;
@@ -52,6 +54,15 @@ enum Fallback {
     Elements,
     /// Those of another table.
     Table(Box<Radii>),
+}
+
+/// Radii, and the file that they are from.
+#[derive(Debug, Clone)]
+pub struct LoadedRadii {
+    /// The radii.
+    pub radii: Radii,
+    /// The content of the file; `None` for a table.
+    pub file: Option<Vec<u8>>,
 }
 
 impl Radii {
@@ -123,6 +134,29 @@ impl Radii {
     /// As [`Radii::read`].
     pub fn read_from(input: impl Read, name: &str) -> Result<Radii> {
         file::read(input).map_err(|e| e.of_input(name))
+    }
+
+    /// The table of this name, or the radii in the file of this name, which is read once.
+    ///
+    /// # Errors
+    /// Usage, if it is neither; those of [`Radii::read`].
+    pub fn load(name: &str) -> Result<LoadedRadii> {
+        if let Some(radii) = Radii::named(name) {
+            return Ok(LoadedRadii { radii, file: None });
+        }
+        let input = File::open(name).map_err(|e| {
+            let tables = Radii::NAMES.join(", ");
+            Error::usage(format!("--radii {name}: {e}; expected a file of radii, or one of {tables}"))
+        })?;
+        let mut content = Vec::new();
+        let reading = |e| Error::io("reading", e).of_input(name);
+        input.take(RADII_LEN_MAX + 1).read_to_end(&mut content).map_err(reading)?;
+        if content.len() as u64 > RADII_LEN_MAX {
+            let message = format!("more than {} MB: this is no file of radii", RADII_LEN_MAX >> 20);
+            return Err(Error::malformed(message).of_input(name));
+        }
+        let radii = Radii::read_from(&content[..], name)?;
+        Ok(LoadedRadii { radii, file: Some(content) })
     }
 
     /// Finds the radii of the atoms of `structure`.

@@ -1,0 +1,3 @@
+//! Command line of `spconvert`.
+
+pub mod spconvert;

@@ -1,0 +1,3 @@
+//! Command line of `tess3`.
+
+pub mod tess3;

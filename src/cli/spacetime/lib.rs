@@ -1,0 +1,3 @@
+//! Command line of `dd4`.
+
+pub mod dd4;

@@ -1,0 +1,4 @@
+//! Command lines of `configgen` and `splinefit`.
+
+pub mod configgen;
+pub mod splinefit;

@@ -1,0 +1,3 @@
+//! Command line of `spview`.
+
+pub mod spview;

@@ -1,0 +1,25 @@
+//! The flag for a coordinate reference system.
+
+use clap::Args;
+
+use spmesh_core::error::Result;
+use spmesh_stream::Crs;
+
+/// The coordinate reference system that a user states.
+#[derive(Debug, Clone, Args)]
+pub struct CrsFlag {
+    /// The coordinate reference system, whatever the input states: EPSG:CODE, EPSG:CODE+CODE with one for
+    /// heights, well-known text, or a file of it (.prj). Coordinates stay as they are
+    #[arg(long, value_name = "CRS")]
+    crs: Option<String>,
+}
+
+impl CrsFlag {
+    /// The system, if the flag is given.
+    ///
+    /// # Errors
+    /// As [`spmesh_crs::requested`].
+    pub fn system(&self) -> Result<Option<Crs>> {
+        self.crs.as_deref().map(spmesh_crs::requested).transpose()
+    }
+}
