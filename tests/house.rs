@@ -32,7 +32,7 @@ const PACKAGES: [(&str, &str); 7] = [
     ("epsg-utils", "crs"),
     ("faer", "splines"),
     ("parquet", "io"),
-    ("resvg", "view"),
+    ("tiny-skia", "view"),
     ("zstd", "stream"),
 ];
 
