@@ -1,6 +1,6 @@
 //! Pixels that any number of triangles and points are painted on. Colours are chosen when all have come.
 
-use resvg::tiny_skia::{ColorU8, Pixmap};
+use tiny_skia::{ColorU8, Pixmap};
 
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;

@@ -8,8 +8,10 @@
 //! A `layer` keeps `triangles` or `points` as long as they are few, to be drawn one by one, and paints more
 //! of them on the pixels of a `canvas`. `depth_sort` orders triangles that are seen obliquely. `front` holds
 //! the live vertices, `cells` the cells of a finalization. `configurations` draws knots and centroid
-//! triangulations. A [`Picture`] is SVG; it can be rendered as PNG, and `page` wraps it in an HTML page that
-//! pans and zooms.
+//! triangulations. A [`Picture`] is SVG; `page` wraps it in an HTML page that pans and zooms.
+//!
+//! `render` turns the SVG of pictures, and of nothing else, into pixels: `element` refuses what it does not know,
+//! `pen` is what elements inherit, `outlines` are the shapes, `glyphs` text in the `font`, and `clip` clips.
 //!
 //! `solid` draws surfaces of files in space from any side.
 //!
@@ -19,19 +21,26 @@
 
 mod canvas;
 mod cells;
+mod clip;
 mod configurations;
 mod copies;
 mod depth_sort;
 mod drawing;
+mod element;
 mod extent;
+mod font;
 pub mod frame;
 mod front;
+mod glyphs;
 mod layer;
 mod options;
+mod outlines;
 mod page;
+mod pen;
 mod picture;
 mod points;
 mod projection;
+mod render;
 mod request;
 mod scene;
 mod sheet;

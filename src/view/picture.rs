@@ -1,18 +1,12 @@
 //! A complete picture: SVG, rendered as PNG or wrapped in a page.
 
 use std::io::Write;
-use std::sync::Arc;
 
-use resvg::tiny_skia::{Color, Pixmap, Transform};
-use resvg::usvg::{self, fontdb};
-
-use super::canvas::too_large;
+use super::element::failed;
 use super::frame::Frame;
 use super::page::{self, Page};
-use spmesh_core::error::{Error, Result};
-
-/// The Latin letters of DejaVu Sans. An embedded font makes pictures look the same everywhere.
-const FONT: &[u8] = include_bytes!("DejaVuSans-latin.ttf");
+use super::render::render;
+use spmesh_core::error::Result;
 
 /// A picture.
 #[derive(Debug)]
@@ -39,15 +33,6 @@ impl Picture {
     /// # Errors
     /// If the picture is too large.
     pub fn png(&self) -> Result<Vec<u8>> {
-        let mut fonts = fontdb::Database::new();
-        fonts.load_font_data(FONT.to_vec());
-        let options = usvg::Options { fontdb: Arc::new(fonts), ..usvg::Options::default() };
-        let failed = |what: String| Error::usage(format!("the picture cannot be rendered: {what}"));
-        let tree = usvg::Tree::from_str(&self.svg, &options).map_err(|error| failed(error.to_string()))?;
-        let size = tree.size().to_int_size();
-        let mut pixmap = Pixmap::new(size.width(), size.height()).ok_or_else(too_large)?;
-        pixmap.fill(Color::WHITE);
-        resvg::render(&tree, Transform::identity(), &mut pixmap.as_mut());
-        pixmap.encode_png().map_err(|error| failed(error.to_string()))
+        render(&self.svg)?.encode_png().map_err(failed)
     }
 }

@@ -2,6 +2,7 @@
 
 mod configurations;
 mod failures;
+mod kinds;
 mod moments;
 mod outline;
 mod pixels;

@@ -1,8 +1,8 @@
 //! Pixels against expected colours computed from their world coordinates.
 
-use resvg::tiny_skia::Pixmap;
 use spmesh_stream::Coordinates;
 use spmesh_view::{Fill, Form, Moments, Options, Picture};
+use tiny_skia::Pixmap;
 
 use super::svg::{lightness, named, parse};
 use super::{mesh_of, picture, pictures};
