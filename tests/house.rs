@@ -32,8 +32,13 @@ const SHARED_COMMAND_LINE: (&str, &str) = ("cli-terrain", "cli-pipeline");
 const OF_COMMAND_LINES: [&str; 2] = ["clap", "anyhow"];
 
 /// Packages that only one crate may use, so that a library user does not pay for them.
-const PACKAGES: [(&str, &str); 5] =
-    [("epsg-utils", "crs"), ("faer", "splines"), ("parquet", "io"), ("tiny-skia", "view"), ("zstd", "stream")];
+const PACKAGES: [(&str, &str); 5] = [
+    ("epsg-utils", "crs"),
+    ("faer", "splines"),
+    ("parquet", "io"),
+    ("tiny-skia", "view"),
+    ("zstd", "stream"),
+];
 
 /// Most lines of a source file.
 const LINES_MAX: usize = 450;

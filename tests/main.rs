@@ -46,3 +46,4 @@ mod torture;
 mod vectors;
 mod view;
 mod water;
+mod weight;

@@ -6,6 +6,8 @@ use std::process::Command;
 
 use serde_json::Value;
 
+use crate::weight::foreign;
+
 /// Packages of this machine's dependency tree, and of the workspace, as `cargo metadata` lists them.
 fn packages() -> Vec<Value> {
     let version = Command::new("rustc").arg("-vV").output().expect("rustc runs");
@@ -37,6 +39,16 @@ fn no_dependency_needs_a_newer_compiler() {
         let Some(needed) = package["rust_version"].as_str() else { continue };
         assert!(minor(needed) <= promised, "{} needs Rust {needed}", package["id"]);
     }
+}
+
+/// Otherwise a build of further programs, as in `scripts/quickstart`, compiles the dependencies of the first ones
+/// again, and all that uses them.
+#[test]
+fn further_programs_take_the_same_features_of_dependencies() {
+    let of = |features| foreign(&["--no-default-features", "--features", features]);
+    let (first, more) = (of("pipeline"), of("pipeline,terrain,view"));
+    let differing: Vec<&String> = first.difference(&more).collect();
+    assert!(!first.is_empty() && differing.is_empty(), "{differing:?}: see crc32fast in src/io/Cargo.toml");
 }
 
 #[test]

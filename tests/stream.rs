@@ -18,7 +18,8 @@ use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, Strea
 use random::random_stream;
 
 use crate::allocation::largest_during;
-use crate::vectors::{is_refused, kind_of_damage, load, run_python, verify, verify_rows};
+use crate::programs::kind_of_damage;
+use crate::vectors::{is_refused, load, run_python, verify, verify_rows};
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
 struct Random(u64);

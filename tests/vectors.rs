@@ -75,12 +75,6 @@ pub fn is_refused(error: &Error) -> bool {
     matches!(error.kind(), ErrorKind::Malformed | ErrorKind::Unsupported)
 }
 
-/// The kind of error about a changed byte of a stream. The version is checked before the checksum, as other
-/// versions may have another one.
-pub fn kind_of_damage(at: usize) -> ErrorKind {
-    if matches!(at, 8 | 9) { ErrorKind::Unsupported } else { ErrorKind::Malformed }
-}
-
 /// Runs a script of this repository with `input` on stdin. Without Python, prints a note to stderr and
 /// returns `None`.
 pub fn run_python(script: &str, arguments: &[&str], input: &[u8]) -> Option<Output> {

@@ -3,8 +3,7 @@
 use std::fs;
 
 use super::{lines, output, scattered};
-use crate::programs::{Folder, assert_silent_without_reader, cloud, outcome, run};
-use crate::vectors::kind_of_damage;
+use crate::programs::{Folder, assert_silent_without_reader, cloud, kind_of_damage, outcome, run};
 
 const SQUARE: &[u8] = b"0 0\n1 0\n1 1\n0 1\n";
 

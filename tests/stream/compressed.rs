@@ -9,7 +9,8 @@ use super::{
     write_rows,
 };
 use crate::allocation::largest_during;
-use crate::vectors::{is_refused, kind_of_damage, run_python, verify, verify_rows};
+use crate::programs::kind_of_damage;
+use crate::vectors::{is_refused, run_python, verify, verify_rows};
 
 const GRID: Coordinates = Coordinates::I32 { scale: [0.01; 3], offset: [0.0; 3] };
 

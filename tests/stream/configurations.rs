@@ -9,7 +9,8 @@ use spmesh_stream::{ConfigurationSet, Content, configurations_header, write_conf
 
 use super::Random;
 use crate::convert::{assert_cut_vectors_are_refused, assert_refused, converted, text_of};
-use crate::vectors::{kind_of_damage, load, run_python, verify};
+use crate::programs::kind_of_damage;
+use crate::vectors::{load, run_python, verify};
 
 /// Knots on a small grid, so that some are collinear, cocircular or coincide.
 pub fn random_knots(random: &mut Random, count: usize) -> Knots {

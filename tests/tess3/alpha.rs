@@ -1,7 +1,7 @@
 //! The alpha complex by its definition: tries all spheres through a simplex that could be the smallest empty
 //! one.
 
-use super::meshes::Mesh;
+use super::mesh::Mesh;
 use super::molecules::{Record, Rows, cloud, pdb};
 use crate::programs::{outcome, run};
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::meshes::Mesh;
+use super::mesh::Mesh;
 use super::molecules::{Rows, cloud, pdb};
 use crate::programs::{outcome, run};
 

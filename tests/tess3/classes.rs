@@ -1,6 +1,6 @@
 //! Classes of residues, by entities, sequences, ends of chains, and names.
 
-use super::meshes::Mesh;
+use super::mesh::Mesh;
 use super::molecules::{Record, cloud, pdb};
 use crate::programs::{outcome, run};
 

@@ -4,11 +4,10 @@ mod alpha;
 mod assemblies;
 mod balls;
 mod classes;
-#[cfg(feature = "experiments")]
-mod experiments;
 mod failures;
 mod filtration;
 mod formats;
+mod mesh;
 mod meshes;
 mod molecules;
 mod pictures;

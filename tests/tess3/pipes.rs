@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::meshes::Mesh;
+use super::mesh::Mesh;
 use super::molecules::{Rows, cloud, models, pdb};
 use crate::programs::{Folder, outcome, run};
 

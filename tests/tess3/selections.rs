@@ -1,6 +1,6 @@
 //! Which atoms are triangulated, by default and on request.
 
-use super::meshes::Mesh;
+use super::mesh::Mesh;
 use super::molecules::{Record, cloud, pdb};
 use crate::programs::{outcome, run};
 

@@ -6,7 +6,7 @@ use std::time::{Duration, SystemTime};
 
 use sha2::{Digest, Sha256};
 
-use super::meshes::Mesh;
+use super::mesh::Mesh;
 use super::molecules::{Rows, cloud, models, pdb};
 use crate::programs::{Folder, outcome, run, start};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::meshes::Mesh;
+use super::mesh::Mesh;
 use super::molecules::{Record, Rows, cloud, models, pdb};
 use crate::programs::{outcome, run};
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use spmesh_stream::{Event, Header, StreamReader, StreamWriter};
 
-use super::meshes::Mesh;
+use super::mesh::Mesh;
 use crate::programs::{Folder, outcome, run};
 
 const FILES: [&str; 4] = ["1aki.cif", "1l2y.pdb.gz", "1pfe.cif.gz", "altloc.cif"];
