@@ -26,12 +26,11 @@ const OF_TOOLS: &[&str] = &["io", "crs", "geometry", "stream", "model", "core"];
 const OF_TOOL: [(&str, &[&str]); 2] = [("constrain", &["lines"]), ("splinefit", &["splines"])];
 
 /// Packages that only one crate may use, so that a library user does not pay for them.
-const PACKAGES: [(&str, &str); 7] = [
+const PACKAGES: [(&str, &str); 6] = [
     ("clap", "cli"),
     ("anyhow", "cli"),
     ("epsg-utils", "crs"),
     ("faer", "splines"),
-    ("parquet", "io"),
     ("resvg", "view"),
     ("zstd", "stream"),
 ];

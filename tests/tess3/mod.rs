@@ -11,6 +11,8 @@ mod filtration;
 mod formats;
 mod meshes;
 mod molecules;
+mod parquet_reader;
+mod parquet_values;
 mod pictures;
 mod pipes;
 mod selections;
