@@ -88,7 +88,6 @@
 //! | `programs` (default) | all programs |
 //! | `pipeline`, `terrain`, `view`, `convert`, `molecules`, `spacetime`, `splines` | the programs of one subject |
 //! | `geopackage` (default) | lines of GeoPackages |
-//! | `parquet` (default) | tables of `tess3` as Parquet |
 //! | `experiments` | flags that measure the kernels |
 
 pub use spmesh_core as core;

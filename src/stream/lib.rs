@@ -94,6 +94,7 @@ mod writer;
 
 pub use ascending::{Ascending, Place};
 pub use cell_words::check_word_count;
+pub use compression::zstd_frame;
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;
 pub use configurations::{check_degree, claim_from_name, claim_name};

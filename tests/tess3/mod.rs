@@ -10,6 +10,8 @@ mod formats;
 mod mesh;
 mod meshes;
 mod molecules;
+mod parquet_reader;
+mod parquet_values;
 mod pictures;
 mod pipes;
 mod selections;

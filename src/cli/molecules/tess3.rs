@@ -288,9 +288,6 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
     let shown = flags.summary.clone().unwrap_or_else(|| folder.join(SUMMARY_NAME));
     endings::check(&shown, &[tables::ENDINGS])?;
     let is_parquet = TableFormat::of(&shown) == Some(TableFormat::Parquet);
-    if is_parquet {
-        TableFormat::Parquet.check()?;
-    }
     // Parquet is written at the end. Until then, and for --resume, the summary is in its usual place.
     let summary = if is_parquet { folder.join(SUMMARY_NAME) } else { shown.clone() };
     if flags.resume && summary == Path::new("-") {

@@ -49,6 +49,12 @@ impl Method {
     }
 }
 
+/// A zstd frame (RFC 8878) of any bytes, for formats that hold such frames.
+#[must_use]
+pub fn zstd_frame(bytes: &[u8]) -> Vec<u8> {
+    Packer::default().records(bytes).to_vec()
+}
+
 /// Compresses payloads in buffers that are used again.
 #[derive(Default)]
 pub(super) struct Compressor {

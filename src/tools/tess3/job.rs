@@ -191,7 +191,7 @@ impl Job<'_> {
     fn table(&mut self) -> Result<&mut TableSink> {
         if self.table.is_none() {
             let columns = columns(&self.columns());
-            self.table = Some(TableSink::create(self.options.format, columns, (self.open)(None)?)?);
+            self.table = Some(TableSink::create(self.options.format, columns, (self.open)(None)?));
         }
         Ok(self.table.as_mut().expect("there is one now"))
     }

@@ -32,7 +32,7 @@ impl From<TableFlag> for TableFormat {
 /// The format that `--format` asks for, or else the ending of the output.
 ///
 /// # Errors
-/// Usage, if the two differ, if there is no table, or if this program was built without the format.
+/// Usage, if the two differ, or if there is no table.
 pub(super) fn format(
     flag: Option<TableFlag>,
     output: Option<&Path>,
@@ -44,14 +44,12 @@ pub(super) fn format(
         return if flag.is_some() { Err(Error::usage(message)) } else { Ok(TableFormat::default()) };
     }
     let of_ending = output.and_then(TableFormat::of);
-    let format = match (flag.map(TableFormat::from), of_ending, output) {
+    match (flag.map(TableFormat::from), of_ending, output) {
         (Some(flag), Some(ending), Some(output)) if flag != ending => {
             let (flag, ending) = (flag.ending(), ending.ending());
             let message = format!("the name is that of {ending}, but --format is {flag}: change one of them");
-            return Err(Error::usage(message).of_input(output.display().to_string()));
+            Err(Error::usage(message).of_input(output.display().to_string()))
         }
-        (flag, ending, _) => flag.or(ending).unwrap_or_default(),
-    };
-    format.check()?;
-    Ok(format)
+        (flag, ending, _) => Ok(flag.or(ending).unwrap_or_default()),
+    }
 }

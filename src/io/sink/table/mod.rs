@@ -1,7 +1,6 @@
 //! Tables with typed columns, which are given row by row: tab-separated text, JSON Lines or Parquet.
 
 mod number;
-#[cfg(feature = "parquet")]
 mod parquet;
 mod text;
 
@@ -9,8 +8,7 @@ use std::fmt::Display;
 use std::io::Write;
 use std::path::Path;
 
-#[cfg(feature = "parquet")]
-use self::parquet::ParquetRows;
+use parquet::ParquetRows;
 use text::TextRows;
 
 use spmesh_core::error::{Error, Result};
@@ -57,19 +55,6 @@ impl TableFormat {
             TableFormat::Parquet => "parquet",
         }
     }
-
-    /// Whether this program can write it.
-    ///
-    /// # Errors
-    /// Usage, if it was built without.
-    pub fn check(self) -> Result<()> {
-        if self != TableFormat::Parquet || cfg!(feature = "parquet") {
-            return Ok(());
-        }
-        let message = "this program was built without the feature `parquet`: take a name that ends in .tsv \
-                       or .jsonl, or --format tsv or jsonl";
-        Err(Error::usage(message))
-    }
 }
 
 /// Types of columns.
@@ -105,26 +90,19 @@ pub struct TableSink {
 
 enum Rows {
     Text(TextRows),
-    #[cfg(feature = "parquet")]
     Parquet(Box<ParquetRows>),
 }
 
 impl TableSink {
     /// A table without rows.
-    ///
-    /// # Errors
-    /// If writing fails; usage, if this program was built without the format.
-    pub fn create(format: TableFormat, columns: Vec<Column>, output: Output) -> Result<TableSink> {
-        format.check()?;
+    #[must_use]
+    pub fn create(format: TableFormat, columns: Vec<Column>, output: Output) -> TableSink {
         let rows = match format {
             TableFormat::Tsv => Rows::Text(TextRows::tsv(&columns)),
             TableFormat::JsonLines => Rows::Text(TextRows::json_lines(&columns)),
-            #[cfg(feature = "parquet")]
-            TableFormat::Parquet => Rows::Parquet(Box::new(ParquetRows::new(&columns)?)),
-            #[cfg(not(feature = "parquet"))]
-            TableFormat::Parquet => unreachable!("checked above"),
+            TableFormat::Parquet => Rows::Parquet(Box::new(ParquetRows::new(&columns))),
         };
-        Ok(TableSink { rows, output, columns, fields: 0 })
+        TableSink { rows, output, columns, fields: 0 }
     }
 
     /// Adds a text to the row.
@@ -132,7 +110,6 @@ impl TableSink {
         let column = self.next(ColumnKind::Text);
         match &mut self.rows {
             Rows::Text(rows) => rows.text(column, text),
-            #[cfg(feature = "parquet")]
             Rows::Parquet(rows) => rows.text(column, text),
         }
     }
@@ -145,7 +122,6 @@ impl TableSink {
         let column = self.next(ColumnKind::Integer);
         match &mut self.rows {
             Rows::Text(rows) => rows.integer(column, value),
-            #[cfg(feature = "parquet")]
             Rows::Parquet(rows) => match value.try_into() {
                 Ok(value) => rows.integer(column, value),
                 Err(_) => {
@@ -164,7 +140,6 @@ impl TableSink {
         let column = self.next(ColumnKind::Number);
         match &mut self.rows {
             Rows::Text(rows) => rows.number(column, value),
-            #[cfg(feature = "parquet")]
             Rows::Parquet(rows) => rows.number(column, value),
         }
     }
@@ -175,7 +150,6 @@ impl TableSink {
         self.fields += 1;
         match &mut self.rows {
             Rows::Text(rows) => rows.nothing(column),
-            #[cfg(feature = "parquet")]
             Rows::Parquet(rows) => rows.nothing(column),
         }
     }
@@ -189,8 +163,7 @@ impl TableSink {
         self.fields = 0;
         let is_full = match &mut self.rows {
             Rows::Text(rows) => rows.end() >= BUFFER_LEN,
-            #[cfg(feature = "parquet")]
-            Rows::Parquet(rows) => rows.end(),
+            Rows::Parquet(rows) => rows.end()?,
         };
         if is_full { self.flush() } else { Ok(()) }
     }
@@ -201,9 +174,8 @@ impl TableSink {
     /// If writing fails.
     pub fn commit(mut self) -> Result<()> {
         self.flush()?;
-        #[cfg(feature = "parquet")]
         if let Rows::Parquet(rows) = self.rows {
-            self.output.write_all(&rows.footer()?).map_err(write_error)?;
+            self.output.write_all(&rows.footer()).map_err(write_error)?;
         }
         self.output.commit()
     }
@@ -212,7 +184,6 @@ impl TableSink {
     fn flush(&mut self) -> Result<()> {
         let bytes = match &mut self.rows {
             Rows::Text(rows) => &mut rows.bytes,
-            #[cfg(feature = "parquet")]
             Rows::Parquet(rows) => rows.group()?,
         };
         self.output.write_all(bytes).map_err(write_error)?;

@@ -23,7 +23,7 @@ pub(super) fn write_parquet(summary: &Path, output: Output) -> Result<()> {
     let failed = |e| Error::io("reading the summary", e).of_input(summary.display().to_string());
     let lines = BufReader::new(fs::File::open(summary).map_err(failed)?).lines();
     let format = Format::of(summary);
-    let mut table = TableSink::create(TableFormat::Parquet, columns(), output)?;
+    let mut table = TableSink::create(TableFormat::Parquet, columns(), output);
     for line in lines.skip(format.head().lines().count()) {
         if let Some(row) = format.row(&line.map_err(failed)?) {
             row.write(&mut table)?;
