@@ -4,7 +4,7 @@ mod meshes;
 mod simplices;
 mod values;
 
-use spmesh_geometry::diagram4::diagram;
+use spmesh_geometry4::diagram4::diagram;
 use spmesh_model::cells4::Point4;
 use spmesh_model::diagram4::Diagram4;
 

@@ -6,9 +6,9 @@
 
 use std::path::PathBuf;
 
+use spmesh_configurations::{self as configurations, Knots, Rule};
 use spmesh_core::random::Random;
 use spmesh_experiments::files::{Paths, timed};
-use spmesh_geometry::configurations::{self, Knots, Rule};
 use spmesh_geometry::delaunay2::{Kernel, Triangles};
 
 const ROUNDS: usize = 3;

@@ -9,7 +9,7 @@ use std::fs::File;
 use std::num::NonZeroUsize;
 
 use spmesh_experiments::files::{read_tuples, timed};
-use spmesh_geometry::diagram4::{Route, Stats, diagram_by};
+use spmesh_geometry4::diagram4::{Route, Stats, diagram_by};
 use spmesh_model::cells4::Cells4;
 use spmesh_model::diagram4::Diagram4;
 

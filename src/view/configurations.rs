@@ -10,8 +10,8 @@ use super::sheet::{Furniture, Mark, Shape};
 use super::svg::{self, Anchor};
 use super::ticks;
 use super::units::Units;
+use spmesh_configurations::{CentroidMesh, Configurations, FARAWAY, Knots};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::configurations::{self, CentroidMesh, Configurations, FARAWAY, Knots};
 use spmesh_io::raster::colour_map::{Colour, hex};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{ConfigurationSet, Header};
@@ -128,7 +128,7 @@ impl Diagram<'_> {
         }
         let names: Vec<String> = chosen.iter().map(u32::to_string).collect();
         let names = names.join(",");
-        let links = configurations::links(self.knots, self.degree(chosen.len().wrapping_sub(1))?)?;
+        let links = spmesh_configurations::links(self.knots, self.degree(chosen.len().wrapping_sub(1))?)?;
         let Some(link) = links.find(&chosen).map(|index| links.link(index)) else {
             return Err(Error::usage(format!("the set {names} has no link")));
         };

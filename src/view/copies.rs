@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
-use spmesh_geometry::configurations::Configurations;
+use spmesh_configurations::Configurations;
 use spmesh_model::bounds::Point;
 
 /// How far copies move: this share of the distance from their place to the nearest neighbour.

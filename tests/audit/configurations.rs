@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use spmesh_audit::configurations::{ConfigurationSet, Proof, Violation, check};
-use spmesh_geometry::configurations::{self, Claim, Configurations, Knots, Rule};
+use spmesh_configurations::{self as configurations, Claim, Configurations, Knots, Rule};
 use spmesh_stream::write_configurations;
 
 use super::held;

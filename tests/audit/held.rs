@@ -1,7 +1,7 @@
 //! Conversion of the library's configurations to the types of the audit.
 
 use spmesh_audit::configurations as audit;
-use spmesh_geometry::configurations::{Configurations, Knots};
+use spmesh_configurations::{Configurations, Knots};
 
 /// The knots as the audit holds them; it computes their ranks itself.
 pub fn knots(knots: &Knots) -> audit::Knots {

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use spmesh_audit::configurations::{ConfigurationSet, Configurations, Knots, Proof, Violation, check};
-use spmesh_geometry::configurations::{Claim, FARAWAY};
+use spmesh_configurations::{Claim, FARAWAY};
 
 use spmesh_reference::configurations::{by_definition, lines};
 use spmesh_reference::sets::Random;

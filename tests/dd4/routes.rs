@@ -2,7 +2,6 @@
 
 use crate::programs::{outcome, run};
 
-#[cfg(not(feature = "experiments"))]
 #[test]
 fn a_build_without_experiments_says_how_to_get_them() {
     let (code, message) = outcome(&run("dd4", &["--grid", "2x2x2x2", "--route", "direct"], &[]));

@@ -2,11 +2,9 @@
 
 mod balls;
 mod circle;
-mod configurations;
 mod constrained;
 #[cfg(feature = "experiments")]
 mod delaunay3_float;
-mod diagram4;
 mod grids;
 mod kernel;
 mod kernel3;
@@ -19,5 +17,4 @@ mod queries;
 mod sphere;
 mod surface;
 mod surfaces;
-mod sweep;
 mod vectors;

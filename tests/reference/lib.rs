@@ -8,6 +8,7 @@ pub mod exact;
 pub mod exact3;
 pub mod exhaustive;
 pub mod incremental;
+pub mod laplace;
 pub mod noding;
 pub mod peer;
 pub mod segments;

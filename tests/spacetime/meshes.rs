@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_dd4::{Form, Placement, Product};
-use spmesh_geometry::spacetime::{Slice, Surface, isosurface, slice};
+use spmesh_geometry4::spacetime::{Slice, Surface, isosurface, slice};
 use spmesh_model::cells4::Point4;
 
 use super::{sampled, scattered, volume, with_values};

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use spmesh_audit::diagram::check_simplices;
-use spmesh_geometry::diagram4::diagram;
-use spmesh_geometry::spacetime::{Rule, Subdivision, subdivide};
+use spmesh_geometry4::diagram4::diagram;
+use spmesh_geometry4::spacetime::{Rule, Subdivision, subdivide};
 use spmesh_model::diagram4::Diagram4;
 use spmesh_stream::{Event, StreamReader};
 

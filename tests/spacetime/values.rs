@@ -1,8 +1,8 @@
 //! Values between points.
 
 use spmesh_core::error::ErrorKind;
-use spmesh_geometry::diagram4::diagram;
-use spmesh_geometry::spacetime::{Interpolator, Locator};
+use spmesh_geometry4::diagram4::diagram;
+use spmesh_geometry4::spacetime::{Interpolator, Locator};
 use spmesh_model::cells4::Point4;
 
 use super::{sampled, scattered, with_values};

@@ -5,8 +5,7 @@ use std::fs;
 use spmesh_core::error::ErrorKind;
 
 use super::{knots, output, plane, points};
-use crate::programs::{Folder, assert_silent_without_reader, outcome, run};
-use crate::vectors::kind_of_damage;
+use crate::programs::{Folder, assert_silent_without_reader, kind_of_damage, outcome, run};
 
 #[test]
 fn each_failure_has_its_exit_code() {

@@ -1,6 +1,6 @@
 //! Pictures of configurations: the counts of drawn elements agree with the stream.
 
-use spmesh_geometry::configurations::{CentroidMesh, Knots, links};
+use spmesh_configurations::{CentroidMesh, Knots, links};
 use spmesh_stream::ConfigurationSet;
 use spmesh_stream::StreamReader;
 use spmesh_view::Options;

@@ -14,7 +14,7 @@ use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_dd4::{Made, Options, Product, Quantum, TimeScale};
-use spmesh_geometry::diagram4::Route;
+use spmesh_geometry4::diagram4::Route;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::{Common, StatsFormat, notice, parse_size, progress::Progress, threads};

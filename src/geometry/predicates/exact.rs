@@ -12,7 +12,7 @@ use super::{PredicateCounts, Sign, big, pairs};
 ///
 /// Domain: finite coordinates.
 #[cold]
-pub(crate) fn sign<F: Form<N, D>, const N: usize, const D: usize>(
+pub fn sign<F: Form<N, D>, const N: usize, const D: usize>(
     from: [f64; D],
     to: [[f64; D]; N],
     is_bounded: bool,

@@ -3,13 +3,13 @@
 use std::ops::{Add, Mul, Sub};
 
 /// Numbers of a ring: `f64`, pairs of them, residues, big integers.
-pub(crate) trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+pub trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 impl<T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
 
 /// The sum of the magnitudes of all products of a value: subtraction adds.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Magnitude(pub(crate) f64);
+pub struct Magnitude(pub f64);
 
 impl Add for Magnitude {
     type Output = Self;
@@ -42,7 +42,7 @@ impl Mul for Magnitude {
 
 /// A determinant of N rows, one for each vector: its D coordinates, and its lift if there are more rows than
 /// coordinates. Up to the sign.
-pub(crate) trait Form<const N: usize, const D: usize> {
+pub trait Form<const N: usize, const D: usize> {
     /// The rows have lifts.
     const IS_LIFTED: bool = N > D;
 
@@ -54,7 +54,7 @@ pub(crate) trait Form<const N: usize, const D: usize> {
 }
 
 /// det(a - c, b - c), from the differences to c.
-pub(crate) struct Orient2d;
+pub struct Orient2d;
 
 impl Form<2, 2> for Orient2d {
     #[inline(always)]
@@ -64,7 +64,7 @@ impl Form<2, 2> for Orient2d {
 }
 
 /// The in-circle determinant of a, b, c and d, from the differences to d.
-pub(crate) struct Incircle;
+pub struct Incircle;
 
 impl Form<3, 2> for Incircle {
     #[inline(always)]
@@ -74,7 +74,7 @@ impl Form<3, 2> for Incircle {
 }
 
 /// det(b - a, c - a, d - a), from the differences to a.
-pub(crate) struct Orient3d;
+pub struct Orient3d;
 
 impl Form<3, 3> for Orient3d {
     #[inline(always)]
@@ -84,7 +84,7 @@ impl Form<3, 3> for Orient3d {
 }
 
 /// The in-sphere determinant of a, b, c, d and e, from the differences to e.
-pub(crate) struct Insphere;
+pub struct Insphere;
 
 impl Form<4, 3> for Insphere {
     #[inline(always)]
@@ -97,49 +97,37 @@ impl Form<4, 3> for Insphere {
 }
 
 #[inline(always)]
-pub(crate) fn times<T: Number>(a: &T, b: &T) -> T {
+pub fn times<T: Number>(a: &T, b: &T) -> T {
     a.clone() * b.clone()
 }
 
 /// The 2x2 determinant of columns `i` and `j` of two rows.
 #[inline(always)]
-pub(crate) fn minor<T: Number>(p: &[T], q: &[T], i: usize, j: usize) -> T {
+pub fn minor<T: Number>(p: &[T], q: &[T], i: usize, j: usize) -> T {
     times(&p[i], &q[j]) - times(&p[j], &q[i])
 }
 
 #[inline(always)]
-pub(crate) fn cross<T: Number>(p: &[T; 3], q: &[T; 3]) -> [T; 3] {
+pub fn cross<T: Number>(p: &[T; 3], q: &[T; 3]) -> [T; 3] {
     [minor(p, q, 1, 2), minor(p, q, 2, 0), minor(p, q, 0, 1)]
 }
 
 #[inline(always)]
-pub(crate) fn dot<T: Number, const D: usize>(p: &[T; D], q: &[T; D]) -> T {
+pub fn dot<T: Number, const D: usize>(p: &[T; D], q: &[T; D]) -> T {
     let rest = times(&p[0], &q[0]) + times(&p[1], &q[1]);
     (2..D).fold(rest, |sum, i| sum + times(&p[i], &q[i]))
 }
 
 /// Squared length.
 #[inline(always)]
-pub(crate) fn lift<T: Number, const D: usize>(v: &[T; D]) -> T {
+pub fn lift<T: Number, const D: usize>(v: &[T; D]) -> T {
     dot(v, v)
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
-
-    /// A determinant by Laplace's expansion along the first row.
-    pub(crate) fn determinant<const N: usize>(m: [[i64; N]; N]) -> i64 {
-        fn minor(rows: &[Vec<i64>]) -> i64 {
-            let Some((first, rest)) = rows.split_first() else { return 1 };
-            let without = |column: usize| {
-                rest.iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect::<Vec<_>>()
-            };
-            let sign = |column: usize| if column.is_multiple_of(2) { 1 } else { -1 };
-            (0..first.len()).map(|column| sign(column) * first[column] * minor(&without(column))).sum()
-        }
-        minor(&m.map(|row| row.to_vec()))
-    }
+    use spmesh_reference::laplace::determinant;
 
     #[test]
     fn forms_are_determinants() {

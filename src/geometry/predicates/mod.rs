@@ -20,14 +20,18 @@ mod big;
 pub mod circle;
 mod counterclockwise;
 mod counts;
-pub(crate) mod exact;
+// Hidden: for the kernels of other crates of the workspace.
+#[doc(hidden)]
+pub mod exact;
 pub mod exact_integers;
 mod extent;
-pub(crate) mod forms;
+#[doc(hidden)]
+pub mod forms;
 mod integer;
 mod pairs;
 mod perturbation;
-pub(crate) mod residues;
+#[doc(hidden)]
+pub mod residues;
 pub(crate) mod spatial;
 pub mod sphere;
 

@@ -13,12 +13,12 @@ use std::ops::{Add, Mul, Sub};
 
 /// An integer modulo 2^(64 L), the least digit first.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Residue<const L: usize>([u64; L]);
+pub struct Residue<const L: usize>([u64; L]);
 
 impl<const L: usize> Residue<L> {
     /// `significand * 2^shift`.
     #[inline(always)]
-    pub(crate) fn shifted(significand: i64, shift: u32) -> Self {
+    pub fn shifted(significand: i64, shift: u32) -> Self {
         let (digit, bits) = ((shift / 64) as usize, shift % 64);
         let parts = (i128::from(significand)) << bits;
         let extension = (parts >> 127) as u64;
@@ -32,7 +32,7 @@ impl<const L: usize> Residue<L> {
 
     /// The sign of the integer with this residue and the least magnitude.
     #[inline(always)]
-    pub(crate) fn sign(self) -> Sign {
+    pub fn sign(self) -> Sign {
         if self.0[L - 1] >> 63 == 1 {
             Sign::Negative
         } else if self.is_zero() {
@@ -109,7 +109,7 @@ impl<const L: usize> Mul for Residue<L> {
 const MOST: usize = 12;
 
 /// Differences from one point to others, as integers in powers of two, one for each axis.
-pub(crate) struct Integers<const N: usize, const D: usize> {
+pub struct Integers<const N: usize, const D: usize> {
     from: [Odd; D],
     to: [[Odd; D]; N],
     units: [i32; D],
@@ -120,7 +120,7 @@ pub(crate) struct Integers<const N: usize, const D: usize> {
 impl<const N: usize, const D: usize> Integers<N, D> {
     /// Domain: finite coordinates.
     #[inline(always)]
-    pub(crate) fn of(from: [f64; D], to: [[f64; D]; N]) -> Self {
+    pub fn of(from: [f64; D], to: [[f64; D]; N]) -> Self {
         let (mut units, mut tops) = ([Odd::ZERO.exponent; D], [i32::MIN / 8; D]);
         let mut numbers = |point: [f64; D]| {
             let mut numbers = [Odd::ZERO; D];
@@ -201,12 +201,12 @@ impl<const N: usize, const D: usize> Integers<N, D> {
 
     /// The differences in one unit for all axes.
     #[inline(always)]
-    pub(crate) fn lengths<const L: usize>(&self) -> [[Residue<L>; D]; N] {
+    pub fn lengths<const L: usize>(&self) -> [[Residue<L>; D]; N] {
         self.differences([self.unit(); D])
     }
 
     /// Bits of the magnitude of a difference in this unit, at most.
-    pub(crate) fn bits_of_lengths(&self) -> i32 {
+    pub fn bits_of_lengths(&self) -> i32 {
         self.tops.iter().fold(i32::MIN / 8, |greatest, top| greatest.max(*top)) + 1 - self.unit()
     }
 

@@ -8,8 +8,8 @@ use super::function_sets::FunctionSets;
 use super::linear_simplex::LinearSimplex;
 use super::simplex::MAX_DEGREE;
 use super::tree::{Hull, Tree};
+use spmesh_configurations::{self as configurations, Configurations, FARAWAY, Knots};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::configurations::{self, Configurations, FARAWAY, Knots};
 use spmesh_geometry::predicates::{BoundedFloatPredicates, Extent, Point2};
 use spmesh_model::functions::Function;
 

@@ -29,7 +29,7 @@
 //! domain is empty. Copies, and several knots on a line, are limits of knots that are moved.
 
 use super::directional_limit::DirectionalLimit;
-use spmesh_geometry::configurations::{Configurations, Knots};
+use spmesh_configurations::{Configurations, Knots};
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// The intersection of the closed half-planes to the right of directed lines.

@@ -8,7 +8,7 @@
 //! elements of different knots are the same function and are merged.
 
 use foldhash::HashMap;
-use spmesh_geometry::configurations::{Configurations, Knots};
+use spmesh_configurations::{Configurations, Knots};
 use spmesh_geometry::delaunay2::distinct;
 use spmesh_geometry::order::{Curve, SpatialOrder};
 use spmesh_geometry::predicates::{Extent, FiniteFloatPredicates, Point2, Predicates2, Sign, area};

@@ -2,7 +2,7 @@
 //!
 //! [`simplex_spline`] evaluates one simplex spline of any degree. [`Basis`] evaluates all functions at a
 //! point: B-splines, which come from links of configurations, and the sums of B-splines that
-//! [`spmesh_geometry::configurations::special`] collects for sharp features and box splines.
+//! [`spmesh_configurations::special`] collects for sharp features and box splines.
 //!
 //! | file | what it does |
 //! |---|---|

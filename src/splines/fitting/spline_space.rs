@@ -3,9 +3,9 @@
 
 use super::mesh::Mesh;
 use crate::bases::Basis;
+use spmesh_configurations::special::{Features, Function, features};
+use spmesh_configurations::{self as configurations, Configurations, Knots, Rule};
 use spmesh_core::error::Result;
-use spmesh_geometry::configurations::special::{Features, Function, features};
-use spmesh_geometry::configurations::{self, Configurations, Knots, Rule};
 use spmesh_geometry::predicates::Point2;
 
 /// Places of knots with their triangulation, and the functions of degree 2 over them.

@@ -1,7 +1,7 @@
 //! Counts configurations, links and functions by kind.
 
+use spmesh_configurations::{self as configurations, Configurations, Knots};
 use spmesh_core::error::Result;
-use spmesh_geometry::configurations::{self, Configurations, Knots};
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Predicates2, Sign};
 use spmesh_model::functions::{Function, FunctionKind};
 

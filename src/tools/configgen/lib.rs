@@ -1,7 +1,7 @@
 //! `configgen`: computes configurations of knots, of all degrees up to a given one.
 //!
 //! `sites` reads knots and the triangulation over them, if there is one. `options` holds the options of a
-//! run. `start` turns both into the input of [`spmesh_geometry::configurations`]. `special` sets up special
+//! run. `start` turns both into the input of [`spmesh_configurations`]. `special` sets up special
 //! configurations, which `parts` reads from text. `mesh` writes centroid triangulations.
 
 mod counts;
@@ -23,9 +23,9 @@ use std::io::Write;
 use std::time::{Duration, Instant};
 
 use self::start::{Origin, Setup};
+use spmesh_configurations::special::{Function, functions};
+use spmesh_configurations::{self as configurations, CentroidMesh, Configurations, Knots};
 use spmesh_core::error::Result;
-use spmesh_geometry::configurations::special::{Function, functions};
-use spmesh_geometry::configurations::{self, CentroidMesh, Configurations, Knots};
 use spmesh_stream::Header;
 use spmesh_stream::{Content, configurations_header, write_content};
 

@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use super::sites::Frame;
+use spmesh_configurations::{CentroidMesh, Knots};
 use spmesh_core::error::Result;
-use spmesh_geometry::configurations::{CentroidMesh, Knots};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind, write_triangles};
 

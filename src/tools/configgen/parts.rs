@@ -2,8 +2,8 @@
 
 use std::io::Read;
 
+use spmesh_configurations::special::{Crease, Features, Patch};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::configurations::special::{Crease, Features, Patch};
 use spmesh_io::source::{finite, for_each_line, quote};
 
 /// Reads features: lines of a word, `corner`, `crease`, `smooth-crease` or `linear`, and ids of knots.

@@ -3,9 +3,9 @@
 use std::str::FromStr;
 
 use super::sites::Sites;
+use spmesh_configurations::Knots;
+use spmesh_configurations::special::{self, Features, Patch, Special, ZpSplit};
 use spmesh_core::error::Result;
-use spmesh_geometry::configurations::Knots;
-use spmesh_geometry::configurations::special::{self, Features, Patch, Special, ZpSplit};
 use spmesh_stream::Coordinates;
 
 /// Special configurations for splines with sharp or box-spline parts (thesis, chapter 8).

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::spacetime::{Slice, Surface};
+use spmesh_geometry4::spacetime::{Slice, Surface};
 use spmesh_io::sink::{
     EventSink, MeditSink, ObjSink, PlyEncoding, PlySink, VtuSink, surface_header, write_volume,
 };

@@ -22,7 +22,7 @@ use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
 
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::diagram4::{Route, Stats, diagram_by};
+use spmesh_geometry4::diagram4::{Route, Stats, diagram_by};
 use spmesh_io::source::points4::Selected4;
 use spmesh_model::cells4::Point4;
 use spmesh_model::diagram4::Diagram4;

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::spacetime::{Slice, Surface};
+use spmesh_geometry4::spacetime::{Slice, Surface};
 use spmesh_io::source::points4::Orientation;
 use spmesh_model::cells4::Point4;
 

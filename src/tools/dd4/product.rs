@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::{Form, Placement, write_diagram, write_simplices, write_slice, write_surface, write_values};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::spacetime::{
+use spmesh_geometry4::spacetime::{
     Interpolator, NO_VALUES, Rule, Slice, first_time, isosurface, slice, subdivide,
 };
 use spmesh_model::cells4::Point4;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::words::{WordFile, WordReader};
 use spmesh_core::error::Result;
-use spmesh_geometry::diagram4::{CellSink, sort_distinct};
+use spmesh_geometry4::diagram4::{CellSink, sort_distinct};
 use spmesh_model::cells4::Cell4;
 
 /// Maximum number of shelves; each may be a file.

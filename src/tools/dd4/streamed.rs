@@ -8,7 +8,7 @@ use super::shelves::Shelves;
 use super::write::write_cells;
 use super::{Counts, Options, Placement, Product, Report, checked};
 use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_geometry::diagram4::{Room, sweep};
+use spmesh_geometry4::diagram4::{Room, sweep};
 use spmesh_io::source::points4::Selected4;
 
 /// Bytes of a point, from the first to the last stage.

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use spmesh_core::error::Result;
-use spmesh_geometry::spacetime::Subdivision;
+use spmesh_geometry4::spacetime::Subdivision;
 use spmesh_model::cells4::Cell4;
 use spmesh_model::diagram4::Diagram4;
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};

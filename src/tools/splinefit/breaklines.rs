@@ -3,8 +3,8 @@
 use super::distinct_points::without_copies;
 use super::fit::KNOTS_MAX;
 use super::options::Options;
+use spmesh_configurations::special::{Crease, Features};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::configurations::special::{Crease, Features};
 use spmesh_geometry::delaunay2;
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::source::{Polyline, PolylineKind};

@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::Path;
 
 use super::frame::Frame;
+use spmesh_configurations::{Configurations, Knots};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::configurations::{Configurations, Knots};
 use spmesh_io::detect::SPLINEFIT;
 use spmesh_io::source::{EventSource, Opened, SourceOptions, name_of, open_knots};
 use spmesh_model::functions::Function;

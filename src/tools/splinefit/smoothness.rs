@@ -10,8 +10,8 @@
 
 use super::jumps::Jumps;
 use super::layout::Layout;
+use spmesh_configurations::{self as configurations, Rule};
 use spmesh_core::error::Result;
-use spmesh_geometry::configurations::{self, Rule};
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
 use spmesh_splines::bases::{Jet, Scratch};
 

@@ -4,11 +4,11 @@ use std::borrow::Cow;
 use std::num::NonZeroUsize;
 
 use spmesh_audit::{Audit, Standard, configurations::StreamAudit, diagram::check};
+use spmesh_configurations::{Knots, Rule, delaunay, generate};
 use spmesh_core::error::ErrorKind;
-use spmesh_geometry::configurations::{Knots, Rule, delaunay, generate};
-use spmesh_geometry::diagram4::{Route, diagram_by};
 use spmesh_geometry::order::{Curve, Sequence};
 use spmesh_geometry::{delaunay2, delaunay3};
+use spmesh_geometry4::diagram4::{Route, diagram_by};
 use spmesh_model::cells4::Point4;
 use spmesh_model::diagram4::Diagram4;
 use spmesh_reference::space::distinct;

@@ -2,7 +2,7 @@
 //! sums.
 
 use super::sets::{Case, cases};
-use spmesh_geometry::configurations::{self, FARAWAY};
+use spmesh_configurations::{self as configurations, FARAWAY};
 use spmesh_geometry::predicates::area;
 use spmesh_splines::bases::{Basis, Scratch, simplex_spline};
 use std::collections::HashMap;

@@ -1,7 +1,7 @@
 //! The domain against its definition: every closed half-plane with the point on its border has at least k
 //! knots.
 
-use spmesh_geometry::configurations::{self, Knots, Rule};
+use spmesh_configurations::{self as configurations, Knots, Rule};
 use spmesh_reference::sets::{Random, as_floats};
 use spmesh_splines::bases::{Basis, Scratch};
 

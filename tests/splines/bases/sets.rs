@@ -1,6 +1,6 @@
 //! Knots, starts and rules to test, and points to evaluate at.
 
-use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Start};
+use spmesh_configurations::{self as configurations, Configurations, Knots, Rule, Start};
 use spmesh_reference::sets::Random;
 use spmesh_splines::bases::Basis;
 

@@ -1,7 +1,7 @@
 //! Functions that are sums of B-splines: box splines (theorem 8.2.4) and Bézier tents (theorem 8.3.1).
 
-use spmesh_geometry::configurations::special::{self, Features, Function, FunctionKind, Special, ZpSplit};
-use spmesh_geometry::configurations::{self, Knots, Rule};
+use spmesh_configurations::special::{self, Features, Function, FunctionKind, Special, ZpSplit};
+use spmesh_configurations::{self as configurations, Knots, Rule};
 use spmesh_reference::sets::Random;
 use spmesh_splines::bases::{Basis, Scratch};
 

@@ -1,7 +1,7 @@
 //! Bases, observations and evaluations shared by tests.
 
-use spmesh_geometry::configurations::special::{Features, features};
-use spmesh_geometry::configurations::{self, Knots, Rule};
+use spmesh_configurations::special::{Features, features};
+use spmesh_configurations::{self as configurations, Knots, Rule};
 use spmesh_geometry::delaunay2;
 use spmesh_reference::sets::Random;
 use spmesh_splines::bases::{Basis, Scratch};

@@ -1,8 +1,8 @@
 //! Quadratic splines over grids with clamped corners: functions of knots on a straight border.
 
 use super::bases::{ONE, dense, deviation, scattered, value};
-use spmesh_geometry::configurations::special::functions;
-use spmesh_geometry::configurations::{self, Knots, Rule};
+use spmesh_configurations::special::functions;
+use spmesh_configurations::{self as configurations, Knots, Rule};
 use spmesh_splines::bases::Basis;
 use spmesh_splines::fitting::{Equations, NormalEquations, Observation, bending, interpolate, least_squares};
 

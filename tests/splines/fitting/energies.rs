@@ -2,7 +2,7 @@
 
 use super::bases::{cubic, grid, pulled_apart};
 use super::random_knots::{Border, over, random_points};
-use spmesh_geometry::configurations::{self, Knots, Rule};
+use spmesh_configurations::{self as configurations, Knots, Rule};
 use spmesh_reference::sets::Random;
 use spmesh_splines::bases::{Basis, Scratch};
 use spmesh_splines::fitting::{bending, control_bending, interpolate, thin_plate};

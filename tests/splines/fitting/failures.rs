@@ -2,8 +2,8 @@
 
 use super::bases::{ONE, cubic, grid, pulled_apart, scattered};
 use super::random_knots::{Border, over};
-use spmesh_geometry::configurations::special::{Features, features};
-use spmesh_geometry::configurations::{self, Knots};
+use spmesh_configurations::special::{Features, features};
+use spmesh_configurations::{self as configurations, Knots};
 use spmesh_splines::bases::Basis;
 use spmesh_splines::fitting::{
     Equations, Interpolation, Loss, Mesh, NormalEquations, Observation, bending, for_each_residual,

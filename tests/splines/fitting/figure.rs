@@ -1,8 +1,8 @@
 //! Figure 8.8 of the thesis, as far as it can be reproduced, and the order of convergence.
 
 use super::bases::{grid, pulled_apart, value};
-use spmesh_geometry::configurations::special::{Features, ZpSplit, features, zp};
-use spmesh_geometry::configurations::{self, Configurations, Knots, Rule};
+use spmesh_configurations::special::{Features, ZpSplit, features, zp};
+use spmesh_configurations::{self as configurations, Configurations, Knots, Rule};
 use spmesh_geometry::delaunay2;
 use spmesh_splines::bases::Basis;
 use spmesh_splines::fitting::Interpolation;

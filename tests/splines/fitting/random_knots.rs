@@ -1,7 +1,7 @@
 //! Fits over random knots: equations are positive definite wherever knots are.
 
 use super::bases::{ONE, scattered};
-use spmesh_geometry::configurations::{self, Knots, Rule, Start};
+use spmesh_configurations::{self as configurations, Knots, Rule, Start};
 use spmesh_reference::sets::Random;
 use spmesh_splines::bases::Basis;
 use spmesh_splines::fitting::{Equations, NormalEquations, bending, restricted_likelihood};

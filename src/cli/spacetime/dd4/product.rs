@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use spmesh_convert::Format;
 use spmesh_core::error::{Error, Result};
 use spmesh_dd4::{Form, Product};
-use spmesh_geometry::spacetime::Rule;
+use spmesh_geometry4::spacetime::Rule;
 use spmesh_io::source::points4::{From4, Request, Selection, Spacing, read_points4};
 use spmesh_model::cells4::Point4;
 

@@ -1,0 +1,127 @@
+//! Centroid triangulations: the points are k-sets, the triangles are configurations of two degrees (thesis
+//! 7.3 and 7.4).
+
+use super::knots::Knots;
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_geometry::predicates::Point2;
+use spmesh_model::configurations::Configurations;
+
+/// A planar triangulation of the centroids of k-sets; with Delaunay configurations, the order-k Delaunay
+/// triangulation.
+#[derive(Debug, Clone, Default)]
+pub struct CentroidMesh {
+    pub(super) order: usize,
+    /// The k-sets, each sorted, concatenated.
+    pub(super) sets: Vec<u32>,
+    /// Centroids of the k-sets, in lexicographic order of the sets. Coordinates are rounded.
+    pub vertices: Vec<Point2>,
+    /// Counterclockwise. First come those from the higher degree: a vertex is the interior set and one knot
+    /// of the boundary. Then come those from the lower degree, with two knots of the boundary. Triangles of
+    /// copies of a knot may be flat.
+    pub triangles: Vec<[u32; 3]>,
+    /// Number of triangles from the higher degree.
+    pub from_upper: usize,
+}
+
+impl CentroidMesh {
+    /// The centroid triangulation of order k, by the union map from the configurations of degrees k - 2 and
+    /// k - 1.
+    ///
+    /// `lower` is `None` for order 1, which is the start triangulation itself.
+    ///
+    /// Shape: c_(k-1) + c_(k-2) triangles.
+    ///
+    /// Cost: little more than linear if no knot is in very many of the sets. Memory: 12 (k + 1) bytes per
+    /// triangle, temporarily.
+    ///
+    /// # Errors
+    /// Degrees that are not consecutive; too many triangles.
+    pub fn of(knots: &Knots, lower: Option<&Configurations>, upper: &Configurations) -> Result<CentroidMesh> {
+        let expected = upper.degree().checked_sub(1);
+        if lower.map(Configurations::degree) != expected {
+            let degree = upper.degree();
+            let needed = expected.map_or(String::new(), |lower| format!("{lower} and "));
+            let what = format!("centroids of order {} need degrees {needed}{degree}", degree + 1);
+            return Err(Error::usage(what));
+        }
+        let lower_len = lower.map_or(0, Configurations::len);
+        if upper.len() + lower_len > (u32::MAX / 3) as usize {
+            return Err(Error::new(ErrorKind::Memory, "too many triangles for one mesh: use fewer knots"));
+        }
+        let order = upper.degree() + 1;
+        let mut corners = Vec::with_capacity(3 * order * (upper.len() + lower_len));
+        for ([a, b, c], interior) in upper.iter() {
+            [[a], [b], [c]].iter().for_each(|some| push_set(&mut corners, interior, some));
+        }
+        for ([a, b, c], interior) in lower.into_iter().flat_map(Configurations::iter) {
+            // Each centroid is the point reflection of the corner that its pair leaves out, so the pairs in
+            // this order are counterclockwise, too.
+            [[b, c], [c, a], [a, b]].iter().for_each(|some| push_set(&mut corners, interior, some));
+        }
+        let mut mesh = CentroidMesh { order, from_upper: upper.len(), ..CentroidMesh::default() };
+        mesh.join(&corners, knots.len());
+        mesh.vertices = mesh.sets.chunks_exact(order).map(|set| centroid(knots, set)).collect();
+        Ok(mesh)
+    }
+
+    /// The order k.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.order
+    }
+
+    /// The k-set of a vertex, sorted.
+    #[must_use]
+    pub fn set(&self, vertex: u32) -> &[u32] {
+        &self.sets[vertex as usize * self.order..][..self.order]
+    }
+
+    /// Numbers the distinct sets among the corners of triangles. All knots are below `knots`. A counting sort
+    /// by least knot leaves small buckets, which are then sorted.
+    fn join(&mut self, corners: &[u32], knots: usize) {
+        let set = |at: u32| &corners[at as usize * self.order..][..self.order];
+        let mut order = by_least(corners, self.order, knots);
+        self.triangles = vec![[0; 3]; order.len() / 3];
+        let mut vertex = 0;
+        for bucket in order.chunk_by_mut(|&a, &b| set(a)[0] == set(b)[0]) {
+            bucket.sort_unstable_by_key(|&at| &set(at)[1..]);
+            for same in bucket.chunk_by(|&a, &b| set(a) == set(b)) {
+                self.sets.extend_from_slice(set(same[0]));
+                for &at in same {
+                    self.triangles[at as usize / 3][at as usize % 3] = vertex;
+                }
+                vertex += 1;
+            }
+        }
+    }
+}
+
+/// The indices of sets of one size, in the order of their first knots.
+fn by_least(sets: &[u32], size: usize, knots: usize) -> Vec<u32> {
+    let mut starts = vec![0u32; knots + 1];
+    sets.chunks_exact(size).for_each(|set| starts[set[0] as usize + 1] += 1);
+    for knot in 0..knots {
+        starts[knot + 1] += starts[knot];
+    }
+    let mut order = vec![0; sets.len() / size];
+    for (number, set) in (0..).zip(sets.chunks_exact(size)) {
+        let start = &mut starts[set[0] as usize];
+        order[*start as usize] = number;
+        *start += 1;
+    }
+    order
+}
+
+fn push_set(sets: &mut Vec<u32>, interior: &[u32], some: &[u32]) {
+    let start = sets.len();
+    sets.extend_from_slice(interior);
+    sets.extend_from_slice(some);
+    sets[start..].sort_unstable();
+}
+
+/// The centroid of knots.
+#[must_use]
+pub fn centroid(knots: &Knots, set: &[u32]) -> Point2 {
+    let sum = set.iter().fold([0.0; 2], |sum, &id| [sum[0] + knots.at(id)[0], sum[1] + knots.at(id)[1]]);
+    sum.map(|coordinate: f64| coordinate / set.len() as f64)
+}

@@ -1,0 +1,4 @@
+//! Diagrams of four dimensions against slow and plain references.
+
+mod diagram4;
+mod sweep;
