@@ -5,6 +5,7 @@ mod interrupts;
 mod memory;
 mod oblique;
 mod products;
+#[cfg(feature = "experiments")]
 mod routes;
 mod time_scale;
 

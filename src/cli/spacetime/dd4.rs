@@ -120,21 +120,26 @@ enum RouteFlag {
     Direct,
 }
 
+/// The direct route, if this build has it.
+#[cfg(feature = "experiments")]
+const DIRECT: Option<Route> = Some(Route::Direct);
+#[cfg(not(feature = "experiments"))]
+const DIRECT: Option<Route> = None;
+
 impl RouteFlag {
-    /// The route in the engine.
+    /// The route in the engine, whose direct one is `direct`.
     ///
     /// # Errors
-    /// Usage, if this build does not have it.
-    fn route(self) -> Result<Route> {
+    /// Usage, if there is none.
+    fn route(self, direct: Option<Route>) -> Result<Route> {
         match self {
             RouteFlag::Simplices => Ok(Route::Simplices),
-            #[cfg(feature = "experiments")]
-            RouteFlag::Direct => Ok(Route::Direct),
-            #[cfg(not(feature = "experiments"))]
-            RouteFlag::Direct => Err(Error::usage(
-                "--route direct is an experiment, and this build has none: install one that has them with \
-                 `cargo install --locked --path . --features experiments`",
-            )),
+            RouteFlag::Direct => direct.ok_or_else(|| {
+                Error::usage(
+                    "--route direct is an experiment, and this build has none: install one that has them with \
+                     `cargo install --locked --path . --features experiments`",
+                )
+            }),
         }
     }
 }
@@ -153,7 +158,7 @@ impl Flags {
         let out_of_memory = OUT_OF_MEMORY[usize::from(self.memory.is_some())];
         system::exit_at_abort(out_of_memory, ErrorKind::Memory.exit_code());
         let (quantum, time_scale) = (self.quantum, self.time_scale);
-        let (route, threads) = (self.route.route()?, threads(self.threads));
+        let (route, threads) = (self.route.route(DIRECT)?, threads(self.threads));
         let options = Options { quantum, time_scale, route, threads };
         if self.source.is_stdin() && self.product.reads_stdin() {
             return Err(Error::usage("points and sites cannot both come from stdin"));
@@ -208,5 +213,21 @@ impl Flags {
 
     fn notice(&self, message: &str) {
         notice("dd4", &self.common, message);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_build_without_experiments_says_how_to_get_them() {
+        let error = RouteFlag::Direct.route(None).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("--features experiments"), "{error}");
+        assert!(
+            RouteFlag::Simplices.route(None).is_ok()
+                && RouteFlag::Direct.route(DIRECT).is_ok() == DIRECT.is_some()
+        );
     }
 }

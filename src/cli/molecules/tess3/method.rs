@@ -86,9 +86,7 @@ impl MethodFlags {
     /// # Errors
     /// Usage, if exact signs are to be checked, or if the build lacks experiments and a flag asks for one.
     pub(super) fn method(&self, threads: NonZeroUsize) -> Result<Method> {
-        if !HAS_EXPERIMENTS && !self.is_default() {
-            return Err(Error::usage(NO_EXPERIMENTS));
-        }
+        self.check(HAS_EXPERIMENTS)?;
         let curve = match self.order {
             OrderFlag::Hilbert | OrderFlag::Random => Curve::Hilbert,
             OrderFlag::Morton => Curve::Morton,
@@ -112,6 +110,12 @@ impl MethodFlags {
         Ok(Method { arithmetic, curve, sequence, by_bit_levels, seed, is_timed, threads })
     }
 
+    /// # Errors
+    /// Usage, if the build lacks experiments and a flag asks for one.
+    fn check(&self, has_experiments: bool) -> Result<()> {
+        if has_experiments || self.is_default() { Ok(()) } else { Err(Error::usage(NO_EXPERIMENTS)) }
+    }
+
     fn is_default(&self) -> bool {
         let MethodFlags { arithmetic, order, sequence, bit_levels, seed, check_signs, timed } = *self;
         (arithmetic, order, seed) == (ArithmeticFlag::Exact, OrderFlag::Hilbert, SEED)
@@ -130,5 +134,35 @@ impl fmt::Display for MethodFlags {
             return Ok(());
         };
         write!(f, " --arithmetic float ({curve:?}, {sequence:?}, bit levels {by_bit_levels}, seed {seed})")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Program {
+        #[command(flatten)]
+        method: MethodFlags,
+    }
+
+    #[test]
+    fn experiments_need_a_build_with_them() {
+        for flags in
+            ["--arithmetic float", "--order morton", "--sequence pass", "--bit-levels on", "--seed 2"]
+                .into_iter()
+                .chain(["--check-signs", "--timed"])
+        {
+            let Program { method } = Program::parse_from(["tess3"].into_iter().chain(flags.split(' ')));
+            method.check(true).unwrap();
+            let error = method.check(false).unwrap_err();
+            assert_eq!(error.exit_code(), 2);
+            let flag = flags.split(' ').next().unwrap();
+            assert!(error.to_string().contains("--features experiments"), "{flags}: {error}");
+            assert!(error.to_string().contains(flag), "{flags}: {error}");
+        }
+        Program::parse_from(["tess3"]).method.check(false).unwrap();
     }
 }
