@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use crate::programs::{Folder, assert_outcome, cloud, outcome, run, start};
+use crate::programs::{Folder, assert_outcome, cloud, outcome, run, skip, start};
 
 /// Bytes after which a tool must have given up, with room for pipes and buffers.
 const READ_MAX: usize = 32 << 20;
@@ -102,7 +102,7 @@ fn zeros_and_lines_without_numbers_are_refused_after_their_first_bytes() {
 #[test]
 fn devices_without_end_are_refused() {
     if !std::path::Path::new("/dev/zero").exists() {
-        eprintln!("SKIPPED: there is no /dev/zero");
+        skip("there is no /dev/zero");
         return;
     }
     for_each_reading("/dev/zero", |tool, arguments| {

@@ -7,7 +7,7 @@ mod sides;
 
 use std::process::{Command, Output};
 
-use crate::programs::{Folder, cloud, outcome, run, sample, tool};
+use crate::programs::{Folder, cloud, outcome, run, sample, skip, tool};
 
 /// Runs a tool with a limit of the shell, such as `-v 40000` for KiB of address space.
 fn limited(limit: &str, name: &str, arguments: &[&str]) -> Output {
@@ -87,6 +87,7 @@ fn refused_threads_are_an_error_with_advice() {
     };
     // Without setpriv, without the right to become another user, or in a folder that others may not enter.
     if !limited("spinfo", &["--version"]).is_ok_and(|output| output.status.success()) {
+        skip("this user cannot become another one, whose threads can be limited");
         return;
     }
     for (threads, expected) in [("1", 0), ("8", 1)] {

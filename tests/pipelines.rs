@@ -4,7 +4,7 @@ mod failures;
 
 use std::fs;
 
-use crate::programs::{Folder, assert_outcome, cloud, outcome, run, sample};
+use crate::programs::{Folder, assert_outcome, cloud, outcome, run, sample, skip};
 use crate::sources::las_file::LasFile;
 use crate::vectors::run_python;
 
@@ -395,7 +395,7 @@ fn generated_flight_lines_go_through() {
     let examples = std::path::Path::new(env!("CARGO_BIN_EXE_spinfo")).with_file_name("examples");
     let generator = examples.join("gen_lidar");
     if !generator.exists() {
-        eprintln!("SKIPPED: the example gen_lidar is not built (a plain `cargo test` builds it)");
+        skip("the example gen_lidar is not built (a plain `cargo test` builds it)");
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::{Read, Write};
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
@@ -47,6 +48,32 @@ pub fn run(name: &str, arguments: &[&str], input: &[u8]) -> Output {
 /// Starts a tool that reads from `stdin`.
 pub fn start(name: &str, arguments: &[&str], stdin: Stdio) -> Child {
     tool(name).args(arguments).stdin(stdin).spawn().expect("the tool starts")
+}
+
+/// Lets a command start its program with these signals ignored, as after `nohup`, or with their default
+/// effect. Otherwise a program inherits what whoever started the tests ignores or blocks.
+pub fn with_signals<'c>(command: &'c mut Command, signals: &[i32], are_ignored: bool) -> &'c mut Command {
+    let signals = signals.to_vec();
+    let effect = if are_ignored { libc::SIG_IGN } else { libc::SIG_DFL };
+    let prepare = move || {
+        let mut none = std::mem::MaybeUninit::<libc::sigset_t>::zeroed();
+        // SAFETY: the pointers are valid for the calls, which are async-signal-safe; no handler is set.
+        unsafe {
+            libc::sigemptyset(none.as_mut_ptr());
+            libc::sigprocmask(libc::SIG_SETMASK, none.as_ptr(), std::ptr::null_mut());
+            for &signal in &signals {
+                libc::signal(signal, effect);
+            }
+        }
+        Ok(())
+    };
+    // SAFETY: between fork and exec, only async-signal-safe calls are made.
+    unsafe { command.pre_exec(prepare) }
+}
+
+/// Says on stderr that a test checks nothing here. The test harness captures `eprintln!`.
+pub fn skip(why: &str) {
+    writeln!(std::io::stderr(), "SKIPPED: {why}").expect("stderr");
 }
 
 /// Exit code and messages, for assertions.

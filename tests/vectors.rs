@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_stream::{Event, Header, MemoryRules, StreamReader};
 
-use crate::programs::run;
+use crate::programs::{run, skip};
 
 /// One vector: its name, its bytes, and the expected text twin, or words and exit code of the error.
 pub struct Vector {
@@ -86,9 +86,7 @@ pub fn run_python(script: &str, arguments: &[&str], input: &[u8]) -> Option<Outp
         .stderr(Stdio::piped())
         .spawn();
     let Ok(mut child) = spawned else {
-        // The test harness captures eprintln!, so write to stderr directly.
-        let mut stderr = std::io::stderr();
-        writeln!(stderr, "SKIPPED: python3 is missing, {script} was not run").unwrap();
+        skip(&format!("python3 is missing, {script} was not run"));
         return None;
     };
     let mut stdin = child.stdin.take().unwrap();

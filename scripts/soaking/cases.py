@@ -194,6 +194,13 @@ def heights(trial):
     trial.pipe(audit(mesh))
 
 
+def deadly():
+    """Signals that end a program: those ignored here, such as SIGHUP under nohup, are ignored by programs, too."""
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, [])
+    numbers = (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP)
+    return [number for number in numbers if number not in blocked and signal.getsignal(number) != signal.SIG_IGN]
+
+
 def killed(trial):
     """A program of a pipe is killed at any time: no file is left but a mesh that is whole. Then it runs again."""
     points, mesh = trial.file("points.raw"), trial.file("mesh.spm")
@@ -201,8 +208,7 @@ def killed(trial):
     commands = [trial.finalize("--raw", "u16le", points), trial.reduce("-o", mesh)]
     pipe, messages = trial.start(commands)
     time.sleep(trial.random.uniform(0, 0.5))
-    signals = (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP)
-    os.kill(trial.random.choice(pipe.processes).pid, trial.random.choice(signals))
+    os.kill(trial.random.choice(pipe.processes).pid, trial.random.choice(deadly()))
     codes, _ = pipe.wait()
     if processes.PANIC in (said := processes.said(messages)):
         raise Fault(f"a panic: {said[:2000]}")

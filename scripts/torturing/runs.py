@@ -173,6 +173,10 @@ def start(room, programs, command, stdin, stdout, log, plan, k, group):
 
     def prepare():
         os.setpgid(0, group or 0)
+        # Under nohup or in the background, the program would inherit that signals are ignored.
+        signal.pthread_sigmask(signal.SIG_SETMASK, [])
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, signal.SIG_DFL)
         if before:
             before()
 

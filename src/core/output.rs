@@ -332,6 +332,7 @@ mod tests {
 
     /// The child: it writes to a file with a temporary name, says so, and waits for its end.
     fn write_and_wait(folder: &Path) {
+        take_signals();
         remove_names_at_signals();
         let sink = create_named(folder.join("mesh.spm"), None).unwrap();
         let mut output = Output { name: "mesh.spm".into(), sink, written: 0, write_back_end: 0 };
@@ -340,6 +341,19 @@ mod tests {
         println!("ready");
         let _ = io::stdin().read_line(&mut String::new());
         output.commit().unwrap();
+    }
+
+    /// Whoever starts the tests may ignore or block signals, as nohup does, and this child inherits that.
+    fn take_signals() {
+        let mut none = std::mem::MaybeUninit::<libc::sigset_t>::zeroed();
+        // SAFETY: the pointers are valid for the calls, and no handler is set.
+        unsafe {
+            libc::sigemptyset(none.as_mut_ptr());
+            libc::pthread_sigmask(libc::SIG_SETMASK, none.as_ptr(), std::ptr::null_mut());
+            for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGHUP] {
+                libc::signal(signal, libc::SIG_DFL);
+            }
+        }
     }
 
     #[test]

@@ -38,6 +38,13 @@ impl Place {
     }
 }
 
+/// Whether `path` is that of a device, such as /dev/fd/3.png, whose ending stands for no format. /dev/shm is a
+/// folder of files.
+#[must_use]
+pub fn is_device(path: &Path) -> bool {
+    path.starts_with("/dev") && !path.starts_with("/dev/shm")
+}
+
 /// The files that a run reads.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs {

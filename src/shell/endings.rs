@@ -6,6 +6,7 @@
 use std::path::Path;
 
 use spmesh_core::error::{Error, Result};
+use spmesh_core::places::is_device;
 
 /// Streams of spmesh.
 pub const STREAM: &[&str] = &["spm"];
@@ -63,7 +64,7 @@ pub fn check(path: &Path, own: &[&[&str]]) -> Result<()> {
     };
     let stands_in = |endings: &[&str]| endings.contains(&&ending[..]);
     // A device such as /dev/fd/3.json has no format.
-    if own.iter().any(|endings| stands_in(endings)) || path.starts_with("/dev") {
+    if own.iter().any(|endings| stands_in(endings)) || is_device(path) {
         return Ok(());
     }
     let Some((meaning, _)) = MEANINGS.iter().find(|(_, endings)| stands_in(endings)) else { return Ok(()) };
@@ -99,9 +100,12 @@ mod tests {
         ] {
             check(Path::new(name), &[own]).unwrap();
         }
-        for (name, part) in
-            [("a.jpg", ".tif, .tiff or .asc"), ("a.tif.gz", "compressed"), ("a.spm", "a stream")]
-        {
+        for (name, part) in [
+            ("a.jpg", ".tif, .tiff or .asc"),
+            ("a.tif.gz", "compressed"),
+            ("a.spm", "a stream"),
+            ("/dev/shm/a.png", "a picture"),
+        ] {
             let error = check(Path::new(name), &[RASTER]).unwrap_err();
             assert!(error.exit_code() == 2 && error.to_string().contains(part), "{error}");
         }

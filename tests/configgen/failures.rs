@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::{lines, output, scattered};
-use crate::programs::{Folder, assert_silent_without_reader, cloud, kind_of_damage, outcome, run};
+use crate::programs::{Folder, assert_silent_without_reader, cloud, kind_of_damage, outcome, run, skip};
 
 const SQUARE: &[u8] = b"0 0\n1 0\n1 1\n0 1\n";
 
@@ -100,7 +100,7 @@ fn a_closed_pipe_is_silent() {
 #[test]
 fn a_full_disk_is_an_error_with_its_reason() {
     if !std::path::Path::new("/dev/full").exists() {
-        eprintln!("SKIPPED: there is no /dev/full");
+        skip("there is no /dev/full");
         return;
     }
     let (code, message) = outcome(&run("configgen", &["--centroids", "-o", "/dev/full"], SQUARE));

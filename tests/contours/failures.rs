@@ -2,7 +2,7 @@
 
 use crate::programs::{
     Folder, assert_damage_leaves_no_file, assert_outcome, assert_silent_without_reader, cloud, mesh_of_cloud,
-    run,
+    run, skip,
 };
 
 fn mesh() -> Vec<u8> {
@@ -96,7 +96,7 @@ fn closed_pipes_are_silent_and_full_disks_are_not() {
     let name = folder.write("mesh.spm", &mesh);
     assert_silent_without_reader("spdem", &["-q", "--contours", "1", &name]);
     if !std::path::Path::new("/dev/full").exists() {
-        eprintln!("SKIPPED: there is no /dev/full");
+        skip("there is no /dev/full");
         return;
     }
     for format in ["geojson", "geojsonl"] {

@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use std::process::{Command, Stdio};
 
 use super::diagram;
-use crate::programs::{Folder, assert_silent_without_reader, outcome, run, start, tool};
+use crate::programs::{Folder, assert_silent_without_reader, outcome, run, skip, start, tool};
 
 #[test]
 fn points_without_a_volume_say_their_dimension() {
@@ -99,7 +99,7 @@ fn a_closed_pipe_is_silent() {
 #[test]
 fn a_full_disk_is_an_error_with_its_reason() {
     if !std::path::Path::new("/dev/full").exists() {
-        eprintln!("SKIPPED: there is no /dev/full");
+        skip("there is no /dev/full");
         return;
     }
     let (code, message) = outcome(&run("dd4", &["--grid", "4x4x4x4", "-o", "/dev/full"], &[]));
@@ -125,7 +125,7 @@ fn too_little_memory_has_its_exit_code() {
         let output = shell.args(["-c", &limited]).env("RUST_BACKTRACE", "0").output().unwrap();
         let (code, message) = outcome(&output);
         if code == Some(99) {
-            eprintln!("SKIPPED: memory cannot be limited here");
+            skip("memory cannot be limited here");
             return;
         }
         assert_eq!(code, Some(5), "{message}");
@@ -148,7 +148,7 @@ fn selections_that_do_not_fit_the_memory_are_refused_before_the_work() {
         let output = Command::new("sh").args(["-c", &limited]).env("RUST_BACKTRACE", "0").output().unwrap();
         let (found, message) = outcome(&output);
         if found == Some(99) || !cfg!(target_os = "linux") {
-            eprintln!("SKIPPED: memory cannot be limited here, or is not told");
+            skip("memory cannot be limited here, or is not told");
             return;
         }
         let early = "the diagram of 146286 points takes at least 98 MiB, there are 98";

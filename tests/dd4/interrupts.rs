@@ -3,45 +3,52 @@
 use std::fs;
 use std::io::Write;
 use std::os::unix::process::ExitStatusExt;
-use std::process::{Command, Stdio};
+use std::process::{Child, Output, Stdio};
 
-use crate::programs::{outcome, run, tool};
+use crate::programs::{Folder, outcome, tool, with_signals};
 
-#[test]
-fn a_signal_leaves_no_file_and_keeps_the_old_one() {
-    for (name, number) in [("INT", 2), ("TERM", 15), ("HUP", 1)] {
-        let [folder, temporary] = [(); 2].map(|()| tempfile::tempdir().unwrap());
-        let old = folder.path().join("old.spm");
-        fs::write(&old, "old").unwrap();
-        for output in ["old.spm", "new.spm"] {
-            let mut dd4 = tool("dd4");
-            dd4.arg("-o").arg(folder.path().join(output)).arg("-").env("TMPDIR", temporary.path());
-            let mut child = dd4.stdin(Stdio::piped()).spawn().unwrap();
-            // More than a pipe holds, so that the program has made its output and reads.
-            let lines: String =
-                (0..500_000).map(|i| format!("{i} {} {} {}\n", i % 7, i % 11, i % 13)).collect();
-            child.stdin.as_mut().unwrap().write_all(lines.as_bytes()).unwrap();
-            let kill = format!("kill -{name} {}", child.id());
-            assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
-            let output = child.wait_with_output().unwrap();
-            assert_eq!(output.status.signal(), Some(number), "{:?}", outcome(&output));
-        }
-        assert_eq!(fs::read_to_string(&old).unwrap(), "old");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-        assert_eq!(fs::read_dir(temporary.path()).unwrap().count(), 0);
-    }
+const SIGNALS: [i32; 3] = [libc::SIGINT, libc::SIGTERM, libc::SIGHUP];
+
+/// Starts the program and gives it more than a pipe holds, so that it has made its output and reads.
+fn start(output: &str, temporary: &Folder, are_ignored: bool) -> Child {
+    let mut dd4 = tool("dd4");
+    dd4.args(["-o", output, "-"]).env("TMPDIR", temporary.root()).stdin(Stdio::piped());
+    let mut child = with_signals(&mut dd4, &SIGNALS, are_ignored).spawn().unwrap();
+    let lines: String =
+        (0..500_000).map(|i| format!("{} {} {} {}\n", i % 3, i % 7, i % 11, i % 13)).collect();
+    child.stdin.as_mut().unwrap().write_all(lines.as_bytes()).unwrap();
+    child
+}
+
+/// Sends a signal, closes stdin, and waits.
+fn end(child: Child, signal: i32) -> Output {
+    // SAFETY: the call takes integers, and the child is not yet waited for.
+    assert_eq!(unsafe { libc::kill(child.id() as i32, signal) }, 0);
+    child.wait_with_output().unwrap()
 }
 
 #[test]
+fn a_signal_leaves_no_file_and_keeps_the_old_one() {
+    for signal in SIGNALS {
+        let [folder, temporary] = [(); 2].map(|()| Folder::new());
+        let old = folder.write("old.spm", "old");
+        for output in [&old, &folder.path("new.spm")] {
+            let output = end(start(output, &temporary, false), signal);
+            assert_eq!(output.status.signal(), Some(signal), "{:?}", outcome(&output));
+        }
+        assert_eq!(fs::read_to_string(&old).unwrap(), "old");
+        assert_eq!(folder.names(""), ["old.spm"]);
+        assert_eq!(temporary.names("").len(), 0);
+    }
+}
+
+/// As after `nohup`, and in jobs that a script starts with `&`.
+#[test]
 fn ignored_signals_stay_ignored() {
-    // As after nohup: the shell ignores the signal, and its child inherits this.
-    let dd4 = env!("CARGO_BIN_EXE_dd4");
-    let script =
-        format!("trap '' INT; '{dd4}' --grid 2x2x2x2 -o /dev/null & trap - INT; kill -INT $!; wait $!");
-    let status = Command::new("sh").args(["-c", &script]).status().unwrap();
-    assert!(status.success(), "{status:?}");
-    assert_eq!(
-        outcome(&run("dd4", &["--grid", "2x2x2x2", "-o", "/dev/null"], &[])),
-        (Some(0), String::new())
-    );
+    for signal in SIGNALS {
+        let [folder, temporary] = [(); 2].map(|()| Folder::new());
+        let output = end(start(&folder.path("new.spm"), &temporary, true), signal);
+        assert_eq!(output.status.code(), Some(0), "{:?}", outcome(&output));
+        assert_eq!(folder.names(""), ["new.spm"]);
+    }
 }

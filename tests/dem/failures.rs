@@ -7,7 +7,7 @@ use spmesh_terrain::dem::Quantity;
 use super::{Mesh, file, options};
 use crate::programs::{
     Folder, assert_damage_leaves_no_file, assert_outcome, assert_silent_without_reader, cloud, mesh_of_cloud,
-    run,
+    run, skip,
 };
 
 /// A mesh of scattered points.
@@ -143,7 +143,7 @@ fn closed_pipes_are_silent_and_full_disks_are_not() {
     let name = folder.write("mesh.spm", &mesh);
     assert_silent_without_reader("spdem", &["-q", "--step", "100", "--format", "asc", &name]);
     if !std::path::Path::new("/dev/full").exists() {
-        eprintln!("SKIPPED: there is no /dev/full");
+        skip("there is no /dev/full");
         return;
     }
     let step: &[&str] = &["--step", "100", "-o", "/dev/full"];

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use super::{TRIANGULATORS, long_stream, mesh_of};
-use crate::programs::{Folder, assert_silent_without_reader, cloud, outcome, run, sample, start, tool};
+use crate::programs::{Folder, assert_silent_without_reader, cloud, outcome, run, sample, skip, start, tool};
 
 #[test]
 fn a_killed_producer_leaves_no_result() {
@@ -80,7 +80,7 @@ fn a_closed_pipe_is_silent() {
 #[test]
 fn a_full_disk_is_an_error_with_its_reason() {
     if !std::path::Path::new("/dev/full").exists() {
-        eprintln!("SKIPPED: there is no /dev/full");
+        skip("there is no /dev/full");
         return;
     }
     let points = long_stream(&[]);
@@ -122,21 +122,21 @@ fn the_first_program_that_fails_gives_the_code_and_the_message() {
     let tile = fs::read(sample("lareunion.laz")).unwrap();
     let cut = folder.write("cut.laz", &tile[..tile.len() / 2]);
     let twin = folder.write("bad.txt", "#spmesh points 2\nv 1 2\nx\n");
-    let dem = format!("spdem -o {}", folder.path("a.tif"));
+    let dem = format!("spdem -o '{}'", folder.path("a.tif"));
     for (first, code) in [
         ("spfinalize /no/such.laz".to_string(), 1),
         ("spfinalize --no-such-flag a.laz".to_string(), 2),
         ("spfinalize --lof - -".to_string(), 2),
-        (format!("spfinalize {cut}"), 3),
-        (format!("spfinalize --memory 1K {}", sample("lareunion.laz")), 5),
-        (format!("spconvert {twin} --to spm"), 3),
+        (format!("spfinalize '{cut}'"), 3),
+        (format!("spfinalize --memory 1K '{}'", sample("lareunion.laz")), 5),
+        (format!("spconvert '{twin}' --to spm"), 3),
     ] {
         let (codes, whole, said) = pipe(&format!("{first} | spdelaunay2d | {dem}"));
         assert_eq!((codes, whole), (vec![code; 3], code), "{first}: {said}");
         assert!(!said.contains("spdelaunay2d:") && !said.contains("spdem:"), "{first}: {said}");
         assert!(!said.is_empty());
     }
-    let (codes, whole, said) = pipe(&format!("head -c 100 {cut} | spdelaunay2d | {dem}"));
+    let (codes, whole, said) = pipe(&format!("head -c 100 '{cut}' | spdelaunay2d | {dem}"));
     assert_eq!((codes, whole), (vec![0, 3, 3], 3));
     assert_eq!(said.lines().count(), 1, "{said}");
     assert_eq!(folder.names("."), ["bad.txt", "cut.laz"]);
@@ -148,9 +148,9 @@ fn a_failure_in_the_middle_of_a_stream_is_passed_on() {
     let points = long_stream(&[]);
     for len in [points.len() / 2, points.len() - 1] {
         let file = folder.write("cut.spm", &points[..len]);
-        let dem = format!("spdem -o {}", folder.path("a.tif"));
+        let dem = format!("spdem -o '{}'", folder.path("a.tif"));
         let (codes, _, said) =
-            pipe(&format!("spconvert {file} --to spm | spdelaunay2d | spconvert --to spm | {dem}"));
+            pipe(&format!("spconvert '{file}' --to spm | spdelaunay2d | spconvert --to spm | {dem}"));
         assert_eq!(codes, [3; 4], "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
     }

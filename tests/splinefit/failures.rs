@@ -5,7 +5,7 @@ use std::fs;
 use spmesh_core::error::ErrorKind;
 
 use super::{knots, output, plane, points};
-use crate::programs::{Folder, assert_silent_without_reader, kind_of_damage, outcome, run};
+use crate::programs::{Folder, assert_silent_without_reader, kind_of_damage, outcome, run, skip};
 
 #[test]
 fn each_failure_has_its_exit_code() {
@@ -133,7 +133,7 @@ fn closed_pipes_are_silent() {
 #[test]
 fn full_disks_are_errors_with_their_reason() {
     if !std::path::Path::new("/dev/full").exists() {
-        eprintln!("SKIPPED: there is no /dev/full");
+        skip("there is no /dev/full");
         return;
     }
     let spline = output(&["fit"], points(500, 1, plane).as_bytes());

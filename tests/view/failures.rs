@@ -2,7 +2,7 @@
 
 use super::{grid, mesh_of, output};
 use crate::programs::{
-    Folder, assert_damage_leaves_no_file, assert_outcome, assert_silent_without_reader, cloud,
+    Folder, assert_damage_leaves_no_file, assert_outcome, assert_silent_without_reader, cloud, skip,
 };
 
 fn check(cases: &[(&[&str], &[u8], i32, &str)]) {
@@ -95,7 +95,7 @@ fn closed_pipes_are_silent_and_full_disks_are_not() {
     assert_silent_without_reader("spview", &["-q", "--vector", &name]);
     assert_silent_without_reader("spview", &["-q", "--tee", "-o", "/dev/null", &name]);
     if !std::path::Path::new("/dev/full").exists() {
-        eprintln!("SKIPPED: there is no /dev/full");
+        skip("there is no /dev/full");
         return;
     }
     check(&[

@@ -1,6 +1,7 @@
 //! Names of incomplete files, which are removed if a signal ends the process.
 
 use std::ffi::CString;
+use std::mem::MaybeUninit;
 use std::os::raw::c_char;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
@@ -43,14 +44,23 @@ impl Drop for Name {
 /// ignored, as after `nohup`, stay ignored.
 pub fn remove_names_at_signals() {
     for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGHUP] {
+        if is_ignored(signal) {
+            continue;
+        }
         let handler: extern "C" fn(libc::c_int) = remove_names;
         // SAFETY: the handler only makes async-signal-safe calls.
-        unsafe {
-            if libc::signal(signal, handler as libc::sighandler_t) == libc::SIG_IGN {
-                libc::signal(signal, libc::SIG_IGN);
-            }
-        }
+        unsafe { libc::signal(signal, handler as libc::sighandler_t) };
     }
+}
+
+/// Asks without a change: a signal that was not ignored for a moment could end the process.
+fn is_ignored(signal: libc::c_int) -> bool {
+    let mut action = MaybeUninit::<libc::sigaction>::zeroed();
+    // SAFETY: the pointer is valid for the call, which changes nothing else.
+    let result = unsafe { libc::sigaction(signal, ptr::null(), action.as_mut_ptr()) };
+    // SAFETY: all bytes zero are a valid value, and the call may have written its own.
+    let action = unsafe { action.assume_init() };
+    result == 0 && action.sa_sigaction == libc::SIG_IGN
 }
 
 extern "C" fn remove_names(signal: libc::c_int) {

@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::ValueEnum;
 
 use spmesh_core::error::{Error, Result};
+use spmesh_core::places::is_device;
 use spmesh_io::raster::RasterFormat;
 use spmesh_io::sink::MatrixFormat;
 use spmesh_shell::{cells, endings};
@@ -91,7 +92,7 @@ fn of_ending(output: &Path) -> Option<Form> {
     let ending = output.extension()?.to_string_lossy().to_ascii_lowercase();
     // A device such as /dev/fd/3.npy has no format.
     match &ending[..] {
-        _ if output.starts_with("/dev") => None,
+        _ if is_device(output) => None,
         "npy" => Some(Form::Array),
         "npz" => Some(Form::Matrix(MatrixFormat::Npz)),
         "mtx" => Some(Form::Matrix(MatrixFormat::MatrixMarket)),

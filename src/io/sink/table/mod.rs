@@ -13,6 +13,7 @@ use text::TextRows;
 
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
+use spmesh_core::places::is_device;
 
 /// Bytes of rows that are buffered before they are written.
 const BUFFER_LEN: usize = 1 << 16;
@@ -37,7 +38,7 @@ impl TableFormat {
     /// device, such as /dev/fd/3.parquet.
     #[must_use]
     pub fn of(path: &Path) -> Option<TableFormat> {
-        let ending = path.extension().filter(|_| !path.starts_with("/dev"))?.to_str()?.to_ascii_lowercase();
+        let ending = path.extension().filter(|_| !is_device(path))?.to_str()?.to_ascii_lowercase();
         Some(match &ending[..] {
             "tsv" => TableFormat::Tsv,
             "jsonl" | "ndjson" => TableFormat::JsonLines,
