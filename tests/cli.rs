@@ -104,9 +104,7 @@ fn few_points_are_a_valid_mesh_with_a_warning() {
         "5 5 1\n5 5 2\n5 5 3\n",
     ];
     for input in inputs {
-        let points = run("spfinalize", &["--from-text", "-"], input.as_bytes());
-        let points =
-            if points.status.success() { points } else { run("spfinalize", &["-"], input.as_bytes()) };
+        let points = run("spfinalize", &["-"], input.as_bytes());
         assert!(points.status.success(), "{input:?}: {:?}", outcome(&points));
         let mesh = run("spdelaunay2d", &[], &points.stdout);
         let (code, message) = outcome(&mesh);

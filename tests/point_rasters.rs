@@ -18,10 +18,23 @@ fn files() -> Vec<LasFile> {
     places.push((0..5000).map(|_| [0, 0, 0].map(|_: i32| random.below(2000) as i32 - 1000)).collect());
     places.push((0..900).map(|i| [i % 30 * STEPS, i / 30 * STEPS, i]).collect());
     places.push((0..50).map(|i| [i * STEPS, 0, -i * i]).collect());
-    // In many tiles.
-    places.push((0..300).map(|i| [i * 7919 % 10_007 * 10, i * 104_729 % 9_973 * 10, i]).collect());
-    places.into_iter().map(|places| LasFile { scale: [SCALE; 3], ..LasFile::of(&places) }).collect()
+    let mut files: Vec<LasFile> = places.iter().map(|places| of_steps(places)).collect();
+    files.push(far_apart([2003, 1009]));
+    files
 }
+
+fn of_steps(places: &[[i32; 3]]) -> LasFile {
+    LasFile { scale: [SCALE; 3], ..LasFile::of(places) }
+}
+
+/// Points all over an area of about this many units, which is in many tiles.
+fn far_apart([width, height]: [i32; 2]) -> LasFile {
+    let places: Vec<_> = (0..300).map(|i| [i * 7919 % width * 10, i * 104_729 % height * 10, i]).collect();
+    of_steps(&places)
+}
+
+/// An area of 25 million cells.
+const WIDE: [i32; 2] = [10_007, 9_973];
 
 fn stream_of(file: &LasFile) -> Vec<u8> {
     let points = run("spfinalize", &["-q", "--attributes", "intensity", "-"], &file.bytes());
@@ -45,7 +58,8 @@ impl Grid {
             let (name, value) = line.split_once(' ').unwrap();
             head.insert(name.to_string(), value.parse::<f64>().unwrap());
         }
-        let number = |word: &str| word.parse::<f64>().ok().filter(|&value| value != head["NODATA_value"]);
+        let missing = head["NODATA_value"];
+        let number = |word: &str| word.parse::<f64>().ok().filter(|&value| value != missing);
         let values: Vec<Vec<_>> =
             text.lines().skip(6).map(|line| line.split(' ').map(number).collect()).collect();
         let cell = |name: &str| (head[name] / 2.0) as i32;
@@ -81,7 +95,18 @@ fn expected(kind: &str, values: &[f64]) -> f64 {
 
 #[test]
 fn cells_hold_statistics_of_their_points() {
-    for mut file in files() {
+    check_statistics(files());
+}
+
+/// Cells of millions, most of them empty.
+#[test]
+#[ignore = "long: run with -- --ignored"]
+fn cells_of_wide_areas_hold_statistics_of_their_points() {
+    check_statistics(vec![far_apart(WIDE)]);
+}
+
+fn check_statistics(files: Vec<LasFile>) {
+    for mut file in files {
         let mut random = Random::new(3);
         file.records.iter_mut().for_each(|record| record.intensity = random.below(60_000) as u16);
         let stream = stream_of(&file);
@@ -120,7 +145,7 @@ fn cells_hold_statistics_of_their_points() {
 #[test]
 fn order_and_memory_do_not_matter() {
     let folder = Folder::new();
-    let mut file = files().pop().unwrap();
+    let mut file = far_apart(WIDE);
     let stream = stream_of(&file);
     file.records.reverse();
     let preserved = run("spfinalize", &["-q", "--preserve", "-"], &file.bytes()).stdout;

@@ -1,5 +1,7 @@
 //! The EPSG dataset: definitions of codes, and codes of definitions.
 
+use std::sync::LazyLock;
+
 use super::from_wkt;
 use super::names::{is_empty, is_same_datum};
 use super::system::{Geographic, Kind, System, Vertical};
@@ -18,9 +20,22 @@ pub(crate) fn system(code: u32) -> Option<System> {
     text(code).map(from_wkt::system)
 }
 
-/// The code of the heights or depths that `wanted` defines: with its datum, unit and direction.
+/// Codes and texts of the systems that start with `keyword`, which is that of geographic or vertical systems, in
+/// the order of the codes.
 ///
-/// It reads the whole dataset, in some twenty milliseconds.
+/// The first call reads the whole dataset, in some twenty milliseconds.
+fn defined(keyword: &'static str) -> impl Iterator<Item = (u32, &'static str)> {
+    static TEXTS: LazyLock<Vec<(u32, &'static str)>> = LazyLock::new(|| {
+        let all = CODES.filter_map(|code| Some((code, text(code)?)));
+        all.filter(|(_, text)| [GEOGRAPHIC, VERTICAL].iter().any(|word| text.starts_with(word))).collect()
+    });
+    TEXTS.iter().copied().filter(move |(_, text)| text.starts_with(keyword))
+}
+
+const GEOGRAPHIC: &str = "GEOGCRS";
+const VERTICAL: &str = "VERTCRS";
+
+/// The code of the heights or depths that `wanted` defines: with its datum, unit and direction.
 pub(crate) fn vertical_code(wanted: &Vertical) -> Option<u32> {
     let is_wanted = |known: &Vertical| {
         let is_same = match (known.datum_code, wanted.datum_code) {
@@ -29,36 +44,28 @@ pub(crate) fn vertical_code(wanted: &Vertical) -> Option<u32> {
         };
         is_same && known.unit.is_same(&wanted.unit) && known.is_depth == wanted.is_depth
     };
-    let named = CODES.filter_map(|code| Some((code, text(code)?)));
-    named
-        .filter(|(_, text)| text.starts_with("VERTCRS"))
-        .find_map(|(code, text)| from_wkt::system(text).vertical.filter(is_wanted).map(|_| code))
+    defined(VERTICAL).find_map(|(code, text)| from_wkt::system(text).vertical.filter(is_wanted).map(|_| code))
 }
 
 /// The code of longitude, latitude and ellipsoidal height on the datum of `base`.
 pub(crate) fn solid_code(base: &Geographic) -> Option<u32> {
-    let solid = CODES.filter_map(|code| Some((code, text(code)?)));
-    solid.filter(|(_, text)| text.starts_with("GEOGCRS") && text.contains("CS[ellipsoidal,3")).find_map(
-        |(code, text)| match from_wkt::system(text).horizontal?.kind {
+    defined(GEOGRAPHIC).filter(|(_, text)| text.contains("CS[ellipsoidal,3")).find_map(|(code, text)| {
+        match from_wkt::system(text).horizontal?.kind {
             Kind::Geographic(known) if known.datum_code.is_some() && known.datum_code == datum_code(base) => {
                 Some(code)
             }
             _ => None,
-        },
-    )
+        }
+    })
 }
 
 /// The code of longitude and latitude on the datum that `wanted` names, in degrees.
-///
-/// It reads the whole dataset, in some twenty milliseconds.
 pub(crate) fn geographic_code(wanted: &Geographic) -> Option<u32> {
     if is_empty(&wanted.datum) || wanted.meridian != 0. || !wanted.unit.is_same(&Unit::degree()) {
         return None;
     }
-    let mut flat = CODES
-        .filter_map(text)
-        .filter(|text| text.starts_with("GEOGCRS") && text.contains("CS[ellipsoidal,2"));
-    flat.find_map(|text| match from_wkt::system(text).horizontal?.kind {
+    let mut flat = defined(GEOGRAPHIC).filter(|(_, text)| text.contains("CS[ellipsoidal,2"));
+    flat.find_map(|(_, text)| match from_wkt::system(text).horizontal?.kind {
         Kind::Geographic(known)
             if is_same_datum(&known.datum, &wanted.datum) && known.ellipsoid.is_same(&wanted.ellipsoid) =>
         {
@@ -74,15 +81,11 @@ pub(crate) fn datum_code(base: &Geographic) -> Option<u32> {
 }
 
 /// The geographic system in two dimensions on the datum of an EPSG code.
-///
-/// It reads the whole dataset, in some twenty milliseconds.
 pub(crate) fn geographic_of_datum(datum: u32) -> Option<Geographic> {
-    let mut flat = CODES.filter_map(text).filter(|text| {
-        text.starts_with("GEOGCRS")
-            && text.contains("CS[ellipsoidal,2")
-            && text.contains(&format!(",{datum}]"))
-    });
-    flat.find_map(|text| match from_wkt::system(text).horizontal?.kind {
+    let named = format!(",{datum}]");
+    let mut flat =
+        defined(GEOGRAPHIC).filter(|(_, text)| text.contains("CS[ellipsoidal,2") && text.contains(&named));
+    flat.find_map(|(_, text)| match from_wkt::system(text).horizontal?.kind {
         Kind::Geographic(known) if known.datum_code == Some(datum) => Some(known),
         _ => None,
     })

@@ -41,8 +41,19 @@ fn sheets(
 }
 
 /// Compares each sheet with the part of the whole that its name and the margin state.
-fn check(stream: &[u8], grid: &Grid, options: &Options, [side, margin]: [f64; 2], old: &[&str]) {
-    let whole = raster(stream, grid, options);
+fn check(stream: &[u8], grid: &Grid, options: &Options, sizes: [f64; 2], old: &[&str]) {
+    check_parts(&raster(stream, grid, options), stream, grid, options, sizes, old);
+}
+
+/// As [`check`], with the raster of the whole.
+fn check_parts(
+    whole: &[f32],
+    stream: &[u8],
+    grid: &Grid,
+    options: &Options,
+    [side, margin]: [f64; 2],
+    old: &[&str],
+) {
     let division = Division { size: SheetSize::Side(side), anchor: [0.0; 2], buffer: margin };
     let (mut files, blank) = sheets(stream, grid, options, division, old);
     let squares = |low: f64, high: f64| (low / side).floor() as i64..=((high / side).ceil() as i64 - 1);
@@ -95,10 +106,13 @@ fn sheets_are_parts_of_the_whole() {
         (mean, 100.0, 0.0),
     ];
     for (case, side, margin) in cases {
+        // Formats and memory do not show in it.
+        let whole = raster(&stream, &grid, &case);
         for format in [RasterFormat::GeoTiff, RasterFormat::Ascii] {
             for memory in [0, 1 << 30] {
                 let raster = RasterOptions { format, ..RasterOptions::default() };
-                check(&stream, &grid, &Options { raster, memory, ..case.clone() }, [side, margin], &[]);
+                let options = Options { raster, memory, ..case.clone() };
+                check_parts(&whole, &stream, &grid, &options, [side, margin], &[]);
             }
         }
     }

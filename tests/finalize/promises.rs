@@ -83,8 +83,9 @@ pub(super) fn check(set: &Set, options: &Options, stream: &[u8]) -> Decoded {
     assert_eq!(header.chunked, options.order == Order::Chunked && !set.points.is_empty(), "{name}");
     assert_eq!(header.crs, Crs::Wkt("LOCAL_CS[\"test\"]".into()));
     assert_eq!(sorted(points), sorted(&set.points), "{name}: every point comes out once");
+    let by_x = ByX::new(points);
     for (before, cell) in tags {
-        let late = points[*before..].iter().find(|point| cell.contains(point));
+        let late = by_x.inside(cell).into_iter().find(|at| at >= before).map(|at| points[at]);
         assert_eq!(late, None, "{name}: after the tag of its cell");
     }
     let mut ranges: Vec<_> = tags.iter().map(|(_, cell)| cell.codes.clone()).collect();
@@ -106,13 +107,38 @@ pub(super) fn check(set: &Set, options: &Options, stream: &[u8]) -> Decoded {
     decoded
 }
 
+/// Points by x: what is in a cell is found among the points of its columns alone, as streams have ten thousands
+/// of cells.
+struct ByX<'a> {
+    points: &'a [Point],
+    order: Vec<usize>,
+}
+
+impl ByX<'_> {
+    fn new(points: &[Point]) -> ByX<'_> {
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_by(|&a, &b| points[a][0].total_cmp(&points[b][0]));
+        ByX { points, order }
+    }
+
+    /// The numbers of the points in a cell, in ascending order.
+    fn inside(&self, cell: &Tagged) -> Vec<usize> {
+        let until = |x: f64| self.order.partition_point(|&at| self.points[at][0] < x);
+        let columns = &self.order[until(cell.min[0])..until(cell.max[0])];
+        let mut inside: Vec<usize> =
+            columns.iter().copied().filter(|&at| cell.contains(&self.points[at])).collect();
+        inside.sort_unstable();
+        inside
+    }
+}
+
 /// The points of a cell stand right before its tag, in the order of the input.
 pub(super) fn check_chunks(set: &Set, decoded: &Decoded) {
+    let by_x = ByX::new(&set.points);
     let mut start = 0;
     for (end, cell) in &decoded.tags {
-        let expected: Vec<&Point> = set.points.iter().filter(|point| cell.contains(point)).collect();
-        let found: Vec<&Point> = decoded.points[start..*end].iter().collect();
-        assert_eq!(found, expected, "{}: chunk", set.name);
+        let expected: Vec<Point> = by_x.inside(cell).into_iter().map(|at| set.points[at]).collect();
+        assert_eq!(decoded.points[start..*end], expected, "{}: chunk", set.name);
         start = *end;
     }
     assert_eq!(start, decoded.points.len(), "{}: a tag follows the last point", set.name);

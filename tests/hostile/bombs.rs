@@ -19,11 +19,17 @@ fn bomb_of(most: usize, [head, unit, tail]: [&[u8]; 3]) -> Vec<u8> {
     let made = |copies: usize| -> Vec<u8> {
         let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
         encoder.write_all(head).expect("memory takes it");
-        (0..copies).try_for_each(|_| encoder.write_all(unit)).expect("memory takes it");
+        // Many at a time: a copy may be of one byte.
+        let many = unit.repeat(copies.min(10_000));
+        (0..copies / 10_000).try_for_each(|_| encoder.write_all(&many)).expect("memory takes it");
+        encoder.write_all(&many[..copies % 10_000 * unit.len()]).expect("memory takes it");
         encoder.write_all(tail).expect("memory takes it");
         encoder.finish().expect("memory takes it")
     };
-    let mut copies = (most << 10) / unit.len();
+    // As many as two small ones let expect.
+    let few = (most << 6) / unit.len();
+    let [one, two] = [1, 2].map(|times| made(times * few).len());
+    let mut copies = few + few * (most - 100 - one) / (two - one);
     loop {
         let bytes = made(copies);
         if bytes.len() <= most {

@@ -16,25 +16,29 @@ pub fn sorted(mut points: Vec<Point>) -> Vec<Point> {
     points
 }
 
-/// Determinant of a square matrix, along its first row.
-fn determinant(rows: &[Vec<i128>]) -> i128 {
-    let Some((first, rest)) = rows.split_first() else { return 1 };
-    let without = |column: usize| -> Vec<Vec<i128>> {
-        rest.iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect()
-    };
-    (0..first.len())
-        .filter(|&column| first[column] != 0)
-        .map(|column| first[column] * determinant(&without(column)) * if column % 2 == 0 { 1 } else { -1 })
-        .sum()
+/// The determinants of the first rows in each set of as many columns, along their last row. A set is the sum of
+/// 2^column.
+fn minors(rows: &[&[i128]], columns: usize) -> Vec<i128> {
+    let mut minors = vec![0; 1 << columns];
+    minors[0] = 1;
+    for set in 1..minors.len() {
+        let size = set.count_ones() as usize;
+        let Some(row) = rows.get(size - 1) else { continue };
+        let mut sign = if size % 2 == 0 { -1 } else { 1 };
+        for column in (0..columns).filter(|column| set >> column & 1 == 1) {
+            minors[set] += sign * row[column] * minors[set ^ 1 << column];
+            sign = -sign;
+        }
+    }
+    minors
 }
 
 /// The signed minors of a matrix with one more column than rows. Their dot product with a row is the
 /// determinant of the matrix with that row put first.
-fn complement(rows: &[Vec<i128>]) -> Vec<i128> {
-    let minor = |column: usize| -> Vec<Vec<i128>> {
-        rows.iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect()
-    };
-    (0..=rows.len()).map(|c| determinant(&minor(c)) * if c % 2 == 0 { 1 } else { -1 }).collect()
+fn complement(rows: &[&[i128]]) -> Vec<i128> {
+    let minors = minors(rows, rows.len() + 1);
+    let all = minors.len() - 1;
+    (0..=rows.len()).map(|c| minors[all ^ 1 << c] * if c % 2 == 0 { 1 } else { -1 }).collect()
 }
 
 /// The row (1, x, y, z, t), followed by the lift if `is_lifted`.
@@ -85,7 +89,7 @@ fn supported(rows: &[Vec<i128>], both: bool) -> BTreeSet<Vec<u32>> {
     let mut found = BTreeSet::new();
     let Some(size) = rows.first().map(Vec::len) else { return found };
     for subset in subsets(rows.len(), size - 1) {
-        let chosen: Vec<Vec<i128>> = subset.iter().map(|&i| rows[i].clone()).collect();
+        let chosen: Vec<&[i128]> = subset.iter().map(|&i| &rows[i][..]).collect();
         let form = complement(&chosen);
         if form.iter().all(|&x| x == 0) {
             continue;
@@ -134,7 +138,8 @@ fn ridges(points: &[Point], facet: &[u32], facets: &[Vec<u32>]) -> BTreeSet<Vec<
 
 /// det(b - a, c - a, d - a, e - a).
 pub fn orientation(simplex: [Point; 5]) -> i128 {
-    determinant(&simplex.map(|point| row(&point, false)))
+    let rows = simplex.map(|point| row(&point, false));
+    minors(&rows.each_ref().map(|row| &row[..]), 5)[31]
 }
 
 /// The diagram of distinct points in lexicographic order: finite cells sorted by vertices, then infinite

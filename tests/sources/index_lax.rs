@@ -11,7 +11,7 @@ use crate::programs::Folder;
 use spmesh_core::error::ErrorKind;
 use spmesh_core::random::Random;
 use spmesh_io::source::SourceOptions;
-use spmesh_model::bounds::Bounds;
+use spmesh_model::bounds::{Bounds, Point};
 
 const POINTS: usize = 6_000;
 const CHUNK: u32 = 150;
@@ -69,14 +69,27 @@ fn random_box(random: &mut Random, part: f64) -> Bounds {
     found
 }
 
-/// Checks that partial reading gives the points in a box; returns the number of records decoded, and notices.
-fn check(path: &Path, bounds: Bounds) -> (u64, Vec<String>) {
-    let [whole, part] = options(bounds);
-    let (expected, all, _) = decoded(path, &whole).unwrap();
+/// Checks that partial reading of a file of `las` gives the points in a box; returns the number of records decoded,
+/// and notices.
+fn check(path: &Path, las: &LasFile, bounds: Bounds) -> (u64, Vec<String>) {
+    let [_, part] = options(bounds);
+    let is_inside =
+        |at: &[f64; 2]| (0..2).all(|axis| bounds.min[axis] <= at[axis] && at[axis] <= bounds.max[axis]);
+    let pairs = las.records.iter().zip(world(las));
+    let expected: Vec<Point> =
+        pairs.filter(|(_, at)| is_inside(at)).map(|(record, _)| record.position.map(f64::from)).collect();
     let (found, records, notices) = decoded(path, &part).unwrap();
     assert_eq!(found, expected, "{bounds:?}");
-    assert_eq!(all, POINTS as u64);
     (records, notices)
+}
+
+/// As [`check`], and that reading without the index gives these points, too, of all records.
+fn check_both(path: &Path, las: &LasFile, bounds: Bounds) -> (u64, Vec<String>) {
+    let [whole, part] = options(bounds);
+    let (expected, all, _) = decoded(path, &whole).unwrap();
+    assert_eq!(decoded(path, &part).unwrap().0, expected, "{bounds:?}");
+    assert_eq!(all, POINTS as u64);
+    check(path, las, bounds)
 }
 
 #[test]
@@ -92,9 +105,10 @@ fn points_in_a_box_are_found_with_fewer_records() {
         }
         let mut records = [0, 0];
         for round in 0..16 {
+            let check = if round < 4 { check_both } else { check };
             let bounds = random_box(&mut random, [0.0, 0.01, 0.1, 0.4][round % 4]);
             for (path, records) in [&plain, &compressed].into_iter().zip(&mut records) {
-                let (count, notices) = check(path, bounds);
+                let (count, notices) = check(path, &las, bounds);
                 assert!(notices.is_empty(), "{notices:?}");
                 *records += count;
             }
@@ -115,12 +129,13 @@ fn an_index_in_the_file_is_used() {
         embedded(las.bytes(), &index),
         embedded(las.compressed(CHUNK), &index),
         appended(las.compressed(CHUNK), &index),
+        // Other files have the same places.
         appended(file(1).compressed(CHUNK), &index_of(&file(1), LAYOUTS[1])),
     ];
     for content in files {
         let path = folder.file("tile.laz", content);
         for _ in 0..10 {
-            let (records, notices) = check(&path, random_box(&mut random, 0.05));
+            let (records, notices) = check(&path, &las, random_box(&mut random, 0.05));
             assert!(records < POINTS as u64 && notices.is_empty(), "{records}, {notices:?}");
         }
     }
@@ -155,7 +170,7 @@ fn an_index_that_does_not_fit_is_left_out() {
     let folder = Folder::new();
     let mut random = Random::new(6);
     let refused = |path: &Path, random: &mut Random, what: &str| {
-        let (records, notices) = check(path, random_box(random, 0.05));
+        let (records, notices) = check(path, &las, random_box(random, 0.05));
         assert_eq!(records, POINTS as u64, "{what}");
         let is_named = |notice: &String| notice.contains(what) && notice.contains("tile.lax is left out");
         assert!(notices.iter().any(is_named), "{what}: {notices:?}");
@@ -190,7 +205,7 @@ fn an_index_that_does_not_fit_is_left_out() {
         refused(&path, &mut random, "older than the file");
         // Without any change it is used.
         folder.file("tile.lax", &whole);
-        assert!(check(&path, random_box(&mut random, 0.05)).0 < POINTS as u64);
+        assert!(check(&path, &las, random_box(&mut random, 0.05)).0 < POINTS as u64);
     }
 }
 
@@ -206,7 +221,7 @@ fn damage_to_an_index_loses_no_points() {
         let mut damaged = whole.clone();
         damaged[at] ^= 1 << random.below(8);
         folder.file("tile.lax", damaged);
-        refused += usize::from(!check(&path, random_box(&mut random, 0.1)).1.is_empty());
+        refused += usize::from(!check(&path, &las, random_box(&mut random, 0.1)).1.is_empty());
     }
     assert!(refused > whole.len() / 6, "{refused} of {}", whole.len() / 3);
 }

@@ -28,12 +28,23 @@ fn gappy(count: usize, error_every: usize) -> String {
     corners + &lines
 }
 
+/// The finer knots have several functions for each point.
 #[test]
 fn every_choice_bridges_gaps() {
+    try_gaps(&["1.6", "3"]);
+}
+
+#[test]
+#[ignore = "long: run with -- --ignored"]
+fn every_choice_bridges_gaps_of_many_knots() {
+    try_gaps(&["1", "2"]);
+}
+
+fn try_gaps(steps: &[&str]) {
     let folder = Folder::new();
     let points = folder.write("points.txt", gappy(3_000, 0));
     for lambda in ["reml", "gcv", "cv"] {
-        for step in ["1", "3"] {
+        for &step in steps {
             let said = stats(&["--step", step, "--lambda", lambda, &points], &[]);
             let range = [0, 1].map(|at| said["range"][at].as_f64().unwrap());
             let extent = ["least", "greatest"].map(|end| said["extent"][end]["value"].as_f64().unwrap());
@@ -82,8 +93,20 @@ fn splines_that_leave_the_range_are_named() {
     assert!(value < -15.0 && json["extent"]["least"]["value"] == excess["value"]);
 }
 
+/// Each choice, each loss, and both losses with the usual choice.
 #[test]
 fn lambda_is_chosen_with_robust_weights() {
+    try_losses(&[("reml", &["huber", "tukey"]), ("gcv", &["huber"]), ("cv", &["tukey"])]);
+}
+
+#[test]
+#[ignore = "long: run with -- --ignored"]
+fn lambda_is_chosen_with_robust_weights_of_every_loss() {
+    let losses = &["huber", "tukey"][..];
+    try_losses(&[("reml", losses), ("gcv", losses), ("cv", losses)]);
+}
+
+fn try_losses(choices: &[(&str, &[&str])]) {
     let folder = Folder::new();
     let clean = folder.write("clean.txt", gappy(4_000, 0));
     let spoilt = folder.write("spoilt.txt", gappy(4_000, 20));
@@ -91,9 +114,9 @@ fn lambda_is_chosen_with_robust_weights() {
         let spline = output(&[&["fit", "--step", "2"], flags, &[points]].concat(), &[]);
         mean_deviation(&spline, hills)
     };
-    for lambda in ["reml", "gcv", "cv"] {
+    for (lambda, losses) in choices {
         let best = of(&["--lambda", lambda], &clean);
-        for loss in ["huber", "tukey"] {
+        for loss in *losses {
             let found = of(&["--lambda", lambda, "--robust", loss], &spoilt);
             assert!(found < 1.5 * best, "{lambda} {loss}: {found}, {best}");
         }
