@@ -24,7 +24,7 @@ fn minors(rows: &[&[i128]], columns: usize) -> Vec<i128> {
     for set in 1..minors.len() {
         let size = set.count_ones() as usize;
         let Some(row) = rows.get(size - 1) else { continue };
-        let mut sign = if size % 2 == 0 { -1 } else { 1 };
+        let mut sign = if size.is_multiple_of(2) { -1 } else { 1 };
         for column in (0..columns).filter(|column| set >> column & 1 == 1) {
             minors[set] += sign * row[column] * minors[set ^ 1 << column];
             sign = -sign;

@@ -1,0 +1,18 @@
+//! Points to meshes by `spfinalize`, `spdelaunay2d` and `spconstrain`: lines, areas, water, limits, files.
+
+mod areas;
+mod banks;
+mod cell_grid;
+mod crs;
+mod empty;
+mod endless;
+mod files;
+mod finalize;
+mod limits;
+mod lines;
+mod messages;
+#[allow(dead_code, reason = "other test programs use more of it")]
+mod programs;
+mod spconstrain;
+mod system;
+mod water;
