@@ -25,7 +25,12 @@ const ARROWS: [(&str, &[&str]); 13] = [
 /// Crates of the workspace that any tool may use. No tool may use another.
 const OF_TOOLS: &[&str] = &["io", "crs", "geometry", "stream", "model", "core"];
 /// Additional crates, by tool.
-const OF_TOOL: [(&str, &[&str]); 2] = [("constrain", &["lines"]), ("splinefit", &["splines"])];
+const OF_TOOL: [(&str, &[&str]); 4] = [
+    ("configgen", &["configurations"]),
+    ("constrain", &["lines"]),
+    ("dd4", &["geometry4"]),
+    ("splinefit", &["configurations", "splines"]),
+];
 
 /// The command line that another one may use: terrain takes flags for lines from it.
 const SHARED_COMMAND_LINE: (&str, &str) = ("cli-terrain", "cli-pipeline");

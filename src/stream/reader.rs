@@ -101,6 +101,30 @@ impl<R: Read> StreamReader<R> {
         })
     }
 
+    /// The same reader of an input that `wrap` makes of this one, such as a boxed one.
+    pub fn map_input<S: Read>(self, wrap: impl FnOnce(R) -> S) -> StreamReader<S> {
+        StreamReader {
+            input: wrap(self.input),
+            name: self.name,
+            header: self.header,
+            weights: self.weights,
+            payload: self.payload,
+            rows: self.rows,
+            compressed: self.compressed,
+            decompressor: self.decompressor,
+            plain_offset: self.plain_offset,
+            spare: self.spare,
+            points_bounds: self.points_bounds,
+            block: self.block,
+            offset: self.offset,
+            event_place: self.event_place,
+            last_tag: self.last_tag,
+            tally: self.tally,
+            cell_words: self.cell_words,
+            ended: self.ended,
+        }
+    }
+
     /// The header.
     pub fn header(&self) -> &Header {
         &self.header

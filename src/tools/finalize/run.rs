@@ -26,11 +26,11 @@ use spmesh_stream::{Header, Kind, StreamWriter};
 /// Those of the input; [`spmesh_core::error::ErrorKind::Malformed`] if it changes between passes;
 /// [`spmesh_core::error::ErrorKind::Memory`] if the budget is too small for the counters or leaves asked for;
 /// I/O if output or temporary file cannot be written.
-pub fn run<P: Passes + ?Sized, W: Write>(
-    input: &P,
+pub fn run(
+    input: &dyn Passes,
     options: &Options,
     observer: &mut dyn Observer,
-    output: W,
+    output: impl Write,
 ) -> Result<Stats> {
     run_with(input, &AddedPoints::default(), options, observer, output)
 }
@@ -39,12 +39,23 @@ pub fn run<P: Passes + ?Sized, W: Write>(
 ///
 /// # Errors
 /// As [`run`].
-pub fn run_with<P: Passes + ?Sized, W: Write>(
-    input: &P,
+pub fn run_with(
+    input: &dyn Passes,
     added: &AddedPoints,
     options: &Options,
     observer: &mut dyn Observer,
-    output: W,
+    mut output: impl Write,
+) -> Result<Stats> {
+    // Of one type, so that all of this is compiled once, in this crate.
+    finalize(input, added, options, observer, &mut output)
+}
+
+fn finalize(
+    input: &dyn Passes,
+    added: &AddedPoints,
+    options: &Options,
+    observer: &mut dyn Observer,
+    output: &mut dyn Write,
 ) -> Result<Stats> {
     options.check(input.description().dims)?;
     let budget = options.budget.beside_rows(input.description().attributes.row_len())?;
@@ -60,12 +71,12 @@ pub fn run_with<P: Passes + ?Sized, W: Write>(
     })
 }
 
-fn write<P: Passes + ?Sized, W: Write>(
-    input: &P,
+fn write(
+    input: &dyn Passes,
     added: &AddedPoints,
     options: &Options,
     observer: &mut dyn Observer,
-    output: W,
+    output: &mut dyn Write,
 ) -> Result<Stats> {
     if added.is_empty() {
         return write_all(input, options, observer, output);
@@ -73,11 +84,11 @@ fn write<P: Passes + ?Sized, W: Write>(
     write_all(&WithAdded::new(input, added), options, observer, output)
 }
 
-fn write_all<P: Passes + ?Sized, W: Write>(
-    input: &P,
+fn write_all(
+    input: &dyn Passes,
     options: &Options,
     observer: &mut dyn Observer,
-    output: W,
+    output: &mut dyn Write,
 ) -> Result<Stats> {
     let mut work = Work::new(input, options, observer);
     work.write(options, output)?;
@@ -85,13 +96,13 @@ fn write_all<P: Passes + ?Sized, W: Write>(
 }
 
 /// Finds the points that are kept, and writes them.
-fn write_thinned<P: Passes + ?Sized, W: Write>(
-    input: &P,
+fn write_thinned(
+    input: &dyn Passes,
     added: &AddedPoints,
     thin: &Thin,
     options: &Options,
     observer: &mut dyn Observer,
-    output: W,
+    output: &mut dyn Write,
 ) -> Result<Stats> {
     let start = Instant::now();
     observer.pass(Pass::Thin, input.description().stated_points);

@@ -7,7 +7,7 @@ use std::io::{Read, Write};
 
 use super::bulk::Bulk;
 use super::duplicates::Duplicates;
-use super::merge::{check_together, region_of};
+use super::merge::{Input, Sink, boxed, check_together, region_of};
 use super::node::Solver;
 use super::origins::Origins;
 use super::plane::Plane;
@@ -34,31 +34,46 @@ const NODE: u64 = 0;
 /// # Errors
 /// Usage, if the inputs are no residuals of the same mesh, or do not fit together; malformed, if one of them
 /// is damaged; I/O, if reading or writing fails.
-pub fn join_triangles<R: Read, W: Write>(
+pub fn join_triangles<R: Read, W: Write + Send>(
     readers: Vec<StreamReader<R>>,
-    outputs: Outputs<W>,
+    mut outputs: Outputs<W>,
     options: &Options,
 ) -> Result<(Outputs<W>, Stats)> {
-    join::<Plane, R, W, 2>(readers, outputs, options)
+    let stats = join_plane(boxed(readers), outputs.borrowed(), options)?;
+    Ok((outputs, stats))
 }
 
 /// Joins residuals in space, as [`join_triangles`] does in the plane.
 ///
 /// # Errors
 /// As [`join_triangles`].
-pub fn join_tetrahedra<R: Read, W: Write>(
+pub fn join_tetrahedra<R: Read, W: Write + Send>(
     readers: Vec<StreamReader<R>>,
-    outputs: Outputs<W>,
+    mut outputs: Outputs<W>,
     options: &Options<3>,
 ) -> Result<(Outputs<W>, Stats)> {
-    join::<Space, R, W, 3>(readers, outputs, options)
+    let stats = join_space(boxed(readers), outputs.borrowed(), options)?;
+    Ok((outputs, stats))
+}
+
+// In this crate alone, as merging is.
+fn join_plane(readers: Vec<StreamReader<Input>>, outputs: Outputs<Sink>, options: &Options) -> Result<Stats> {
+    join::<Plane, Input, Sink, 2>(readers, outputs, options)
+}
+
+fn join_space(
+    readers: Vec<StreamReader<Input>>,
+    outputs: Outputs<Sink>,
+    options: &Options<3>,
+) -> Result<Stats> {
+    join::<Space, Input, Sink, 3>(readers, outputs, options)
 }
 
 fn join<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     mut readers: Vec<StreamReader<R>>,
     outputs: Outputs<W>,
     options: &Options<D>,
-) -> Result<(Outputs<W>, Stats)> {
+) -> Result<Stats> {
     let header = header_of::<B, R, D>(&readers, options)?;
     let part = options.part.map(|part| part.region(&header)).transpose()?;
     let region = part.unwrap_or(Region::EVERYTHING);
@@ -88,7 +103,8 @@ fn join<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     let merged = stats.merged;
     sequencer.add_to(&mut stats);
     stats.predicates = solver.counts();
-    Ok((sequencer.end(stats.points, merged, 0)?, stats))
+    sequencer.end(stats.points, merged, 0)?;
+    Ok(stats)
 }
 
 /// The header of the part, after a check that the inputs fit together.

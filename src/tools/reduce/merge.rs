@@ -40,26 +40,54 @@ const MERGED: u64 = 1;
 /// # Errors
 /// If the inputs do not fit together (kind, coordinates, reference system, overlapping regions), or one is
 /// malformed or truncated, or writing fails. END is not written then.
-pub fn merge_triangles<R: Read, W: Write>(
+pub fn merge_triangles<R: Read, W: Write + Send>(
     readers: Vec<StreamReader<R>>,
-    output: W,
+    mut output: W,
     options: &Options,
-    progress: impl FnMut(u64),
+    mut progress: impl FnMut(u64),
 ) -> Result<(W, Stats)> {
-    merge::<Plane, R, W, 2>(readers, output, options, progress)
+    let stats = merge_plane(boxed(readers), &mut output, options, &mut progress)?;
+    Ok((output, stats))
 }
 
 /// Merges the results of partial runs in space, as [`merge_triangles`] does in the plane.
 ///
 /// # Errors
 /// As [`merge_triangles`].
-pub fn merge_tetrahedra<R: Read, W: Write>(
+pub fn merge_tetrahedra<R: Read, W: Write + Send>(
     readers: Vec<StreamReader<R>>,
-    output: W,
+    mut output: W,
     options: &Options<3>,
-    progress: impl FnMut(u64),
+    mut progress: impl FnMut(u64),
 ) -> Result<(W, Stats)> {
-    merge::<Space, R, W, 3>(readers, output, options, progress)
+    let stats = merge_space(boxed(readers), &mut output, options, &mut progress)?;
+    Ok((output, stats))
+}
+
+/// An input of merging, and what it writes to: of one type each, so that the code is compiled in this crate alone.
+pub(super) type Input<'a> = Box<dyn Read + 'a>;
+pub(super) type Sink<'a> = &'a mut (dyn Write + Send + 'a);
+
+pub(super) fn boxed<'a, R: Read + 'a>(readers: Vec<StreamReader<R>>) -> Vec<StreamReader<Input<'a>>> {
+    readers.into_iter().map(|reader| reader.map_input(|input| Box::new(input) as Input)).collect()
+}
+
+fn merge_plane(
+    readers: Vec<StreamReader<Input>>,
+    output: Sink,
+    options: &Options,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Stats> {
+    merge::<Plane, Input, Sink, 2>(readers, output, options, progress)
+}
+
+fn merge_space(
+    readers: Vec<StreamReader<Input>>,
+    output: Sink,
+    options: &Options<3>,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Stats> {
+    merge::<Space, Input, Sink, 3>(readers, output, options, progress)
 }
 
 fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
@@ -67,7 +95,7 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     output: W,
     options: &Options<D>,
     mut progress: impl FnMut(u64),
-) -> Result<(W, Stats)> {
+) -> Result<Stats> {
     let (part, compressed) = (options.part, options.compress);
     let header = Header { compressed, ..merged_header::<B, R, D>(&readers, part)? };
     let region = region_of(&header);
@@ -98,8 +126,8 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     }
     sequencer.add_to(&mut stats);
     stats.predicates = solver.counts();
-    let outputs = sequencer.end(stats.points, stats.merged, stats.merged)?;
-    Ok((outputs.mesh, stats))
+    sequencer.end(stats.points, stats.merged, stats.merged)?;
+    Ok(stats)
 }
 
 /// Header of the result, after a check that the inputs fit together.

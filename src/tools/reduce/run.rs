@@ -79,7 +79,7 @@ where
     W: Write + Send,
 {
     let outputs = Outputs { mesh: output, residual: None };
-    let (outputs, stats) = reduce::<Plane, R, W, 2>(reader, outputs, options, progress)?;
+    let (outputs, stats) = triangulate_part(reader, outputs, options, progress)?;
     Ok((outputs.mesh, stats))
 }
 
@@ -102,7 +102,7 @@ where
     W: Write + Send,
 {
     let outputs = Outputs { mesh: output, residual: None };
-    let (outputs, stats) = reduce::<Space, R, W, 3>(reader, outputs, options, progress)?;
+    let (outputs, stats) = tetrahedralize_part(reader, outputs, options, progress)?;
     Ok((outputs.mesh, stats))
 }
 
@@ -114,15 +114,16 @@ where
 /// As [`triangulate`].
 pub fn triangulate_part<R, W>(
     reader: StreamReader<R>,
-    outputs: Outputs<W>,
+    mut outputs: Outputs<W>,
     options: &Options,
-    progress: impl FnMut(u64),
+    mut progress: impl FnMut(u64),
 ) -> Result<(Outputs<W>, Stats)>
 where
     R: Read + Send + 'static,
     W: Write + Send,
 {
-    reduce::<Plane, R, W, 2>(reader, outputs, options, progress)
+    let stats = reduce_plane(boxed(reader), outputs.borrowed(), options, &mut progress)?;
+    Ok((outputs, stats))
 }
 
 /// Tetrahedralizes a part of a mesh in parts, as [`triangulate_part`] does in the plane.
@@ -131,15 +132,51 @@ where
 /// As [`triangulate`].
 pub fn tetrahedralize_part<R, W>(
     reader: StreamReader<R>,
-    outputs: Outputs<W>,
+    mut outputs: Outputs<W>,
     options: &Options<3>,
-    progress: impl FnMut(u64),
+    mut progress: impl FnMut(u64),
 ) -> Result<(Outputs<W>, Stats)>
 where
     R: Read + Send + 'static,
     W: Write + Send,
 {
-    reduce::<Space, R, W, 3>(reader, outputs, options, progress)
+    let stats = reduce_space(boxed(reader), outputs.borrowed(), options, &mut progress)?;
+    Ok((outputs, stats))
+}
+
+/// The input of a run, and what it writes to: of one type each, so that all of the code below is compiled once, in
+/// this crate, and not in each crate that calls it.
+type Input = Box<dyn Read + Send>;
+type Sink<'a> = &'a mut (dyn Write + Send + 'a);
+
+fn boxed<R: Read + Send + 'static>(reader: StreamReader<R>) -> StreamReader<Input> {
+    reader.map_input(|input| Box::new(input) as Input)
+}
+
+/// Reduces points of the plane to a mesh.
+///
+/// # Errors
+/// As [`triangulate`].
+fn reduce_plane(
+    reader: StreamReader<Input>,
+    outputs: Outputs<Sink>,
+    options: &Options,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Stats> {
+    Ok(reduce::<Plane, Input, Sink, 2>(reader, outputs, options, progress)?.1)
+}
+
+/// Reduces points of space to a mesh.
+///
+/// # Errors
+/// As [`triangulate`].
+fn reduce_space(
+    reader: StreamReader<Input>,
+    outputs: Outputs<Sink>,
+    options: &Options<3>,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Stats> {
+    Ok(reduce::<Space, Input, Sink, 3>(reader, outputs, options, progress)?.1)
 }
 
 /// Reduces points to a mesh.

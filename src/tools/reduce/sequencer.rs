@@ -22,6 +22,13 @@ pub struct Outputs<W> {
     pub residual: Option<W>,
 }
 
+impl<W: Write + Send> Outputs<W> {
+    /// The same outputs, lent.
+    pub(super) fn borrowed(&mut self) -> Outputs<&mut (dyn Write + Send + '_)> {
+        Outputs { mesh: &mut self.mesh, residual: self.residual.as_mut().map(|output| output as _) }
+    }
+}
+
 /// Residual points per block.
 const RESIDUAL_CHUNK: usize = 1 << 14;
 
