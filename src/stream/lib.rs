@@ -71,6 +71,7 @@ mod diagram4;
 mod event;
 mod finalized;
 mod functions;
+mod head;
 mod header;
 mod header_code;
 mod joined;
