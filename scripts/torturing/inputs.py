@@ -7,6 +7,7 @@ import pathlib
 import random
 import shutil
 import struct
+import shlex
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -70,7 +71,7 @@ def nodes(programs, folder):
 
 def run(programs, pipe, folder):
     """Runs an undisturbed pipe and returns what it writes to stdout."""
-    stages = [f"{programs}/{stage} --quiet" for stage in pipe.split(" | ")]
+    stages = [f"{shlex.quote(str(programs))}/{stage} --quiet" for stage in pipe.split(" | ")]
     command = ["bash", "-c", "set -o pipefail; " + " | ".join(stages)]
     return subprocess.run(command, cwd=folder, check=True, stdout=subprocess.PIPE, text=True).stdout
 
