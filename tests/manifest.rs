@@ -53,8 +53,8 @@ fn no_dependency_needs_a_newer_compiler() {
     }
 }
 
-/// Otherwise a build of further programs, as in `scripts/quickstart`, compiles the dependencies of the first ones
-/// again, and all that uses them.
+/// Otherwise a build of further programs, as in `scripts/quickstart`, compiles the dependencies of the first
+/// ones again, and all that uses them.
 #[test]
 fn further_programs_take_the_same_features_of_dependencies() {
     let of = |features| foreign(&["--no-default-features", "--features", features]);

@@ -222,8 +222,8 @@ fn the_small_reader_and_writer_do_what_they_say() {
     assert_eq!(refused.trim_end(), format!("accepted [-1], refused {}", vector.len()));
 }
 
-/// Runs a reader on a stream as it is, which is byte -1, and on the stream with each of its bytes changed; all in one
-/// process, as each start of Python takes longer than hundreds of streams.
+/// Runs a reader on a stream as it is, which is byte -1, and on the stream with each of its bytes changed;
+/// all in one process, as each start of Python takes longer than hundreds of streams.
 const DAMAGE: &str = "
 import contextlib, io, sys
 code, stream = compile(open(sys.argv[1]).read(), 'reader', 'exec'), sys.stdin.buffer.read()

@@ -46,8 +46,8 @@ fn differences(limits: &BTreeMap<String, usize>, found: &BTreeMap<String, usize>
     wrong
 }
 
-/// Packages with their features that a build of the root package takes from elsewhere, besides those of tests.
-/// Each line is `NAME vVERSION|FEATURES`. Without cargo, prints a note and returns none.
+/// Packages with their features that a build of the root package takes from elsewhere, besides those of
+/// tests. Each line is `NAME vVERSION|FEATURES`. Without cargo, prints a note and returns none.
 pub fn foreign(flags: &[&str]) -> Option<BTreeSet<String>> {
     let shape =
         ["--offline", "--locked", "--edges", "normal,build", "--prefix", "none", "--format", "{p}|{f}"];

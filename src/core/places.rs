@@ -38,8 +38,8 @@ impl Place {
     }
 }
 
-/// Whether `path` is that of a device, such as /dev/fd/3.png, whose ending stands for no format. /dev/shm is a
-/// folder of files.
+/// Whether `path` is that of a device, such as /dev/fd/3.png, whose ending stands for no format. /dev/shm is
+/// a folder of files.
 #[must_use]
 pub fn is_device(path: &Path) -> bool {
     path.starts_with("/dev") && !path.starts_with("/dev/shm")

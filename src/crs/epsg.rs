@@ -20,8 +20,8 @@ pub(crate) fn system(code: u32) -> Option<System> {
     text(code).map(from_wkt::system)
 }
 
-/// Codes and texts of the systems that start with `keyword`, which is that of geographic or vertical systems, in
-/// the order of the codes.
+/// Codes and texts of the systems that start with `keyword`, which is that of geographic or vertical systems,
+/// in the order of the codes.
 ///
 /// The first call reads the whole dataset, in some twenty milliseconds.
 fn defined(keyword: &'static str) -> impl Iterator<Item = (u32, &'static str)> {

@@ -7,9 +7,9 @@ pub(super) type Shapes = Vec<(Path, FillRule)>;
 
 /// The pixels that a clip hides, in whole or in part, as they were before anything was drawn in it.
 ///
-/// Shapes are drawn in a clip as if there were none; then these pixels come back. If each shape was drawn through
-/// a mask instead, those that share a pixel at the border of the clip would cover more of it than the clip
-/// leaves open. A clip within another one needs nothing more: each takes back what is outside of it.
+/// Shapes are drawn in a clip as if there were none; then these pixels come back. If each shape was drawn
+/// through a mask instead, those that share a pixel at the border of the clip would cover more of it than the
+/// clip leaves open. A clip within another one needs nothing more: each takes back what is outside of it.
 ///
 /// Memory: a byte for each pixel of the picture, and 4 bytes for each that is hidden.
 pub(super) struct Hidden {

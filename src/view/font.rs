@@ -1,8 +1,8 @@
 //! The embedded font: the glyphs of characters, as contours.
 //!
-//! It is a file of OpenType, but always the same one. So this reads the tables that place and draw glyphs (`cmap`,
-//! `hhea`, `hmtx`, `loca`, `glyf`), in the forms that they have there, and no other. The font has no table for
-//! kerning.
+//! It is a file of OpenType, but always the same one. So this reads the tables that place and draw glyphs
+//! (`cmap`, `hhea`, `hmtx`, `loca`, `glyf`), in the forms that they have there, and no other. The font has no
+//! table for kerning.
 
 /// The Latin letters of DejaVu Sans. An embedded font makes pictures look the same everywhere.
 const FONT: &[u8] = include_bytes!("DejaVuSans-latin.ttf");

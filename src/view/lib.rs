@@ -10,8 +10,8 @@
 //! the live vertices, `cells` the cells of a finalization. `configurations` draws knots and centroid
 //! triangulations. A [`Picture`] is SVG; `page` wraps it in an HTML page that pans and zooms.
 //!
-//! `render` turns the SVG of pictures, and of nothing else, into pixels: `element` refuses what it does not know,
-//! `pen` is what elements inherit, `outlines` are the shapes, `glyphs` text in the `font`, and `clip` clips.
+//! `render` turns the SVG of pictures alone into pixels: `element` refuses what it does not know, `pen` is
+//! what elements inherit, `outlines` are the shapes, `glyphs` text in the `font`, and `clip` clips.
 //!
 //! `solid` draws surfaces of files in space from any side.
 //!

@@ -1,5 +1,5 @@
-//! SVG as pixels: exactly the elements and attributes that pictures have. Anything else is an error, so that no
-//! picture loses a part unnoticed.
+//! SVG as pixels: exactly the elements and attributes that pictures have. Anything else is an error, so that
+//! no picture loses a part unnoticed.
 
 use std::collections::HashMap;
 

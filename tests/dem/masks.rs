@@ -17,7 +17,8 @@ fn halves([x, y]: [f64; 2]) -> [i64; 2] {
     [x, y].map(|value| (value * 2.0) as i64)
 }
 
-/// The edges of a polygon that reach this far up and down: the other ones do not matter to places at this `y`.
+/// The edges of a polygon that reach this far up and down: the other ones do not matter to places at this
+/// `y`.
 fn edges_at(polygon: &Polygon, y: f64) -> Vec<[[i64; 2]; 2]> {
     let edges = polygon.iter().flat_map(|ring| {
         ring.iter().enumerate().map(|(number, &from)| [from, ring[(number + 1) % ring.len()]].map(halves))

@@ -1,5 +1,5 @@
-//! Programs that were built with experiments: a test program of its own, because all other tests run the programs
-//! as they are shipped.
+//! Programs that were built with experiments: a test program of its own, because all other tests run the
+//! programs as they are shipped.
 
 mod dd4;
 #[allow(dead_code, reason = "the tests of `tess3` use more of it")]

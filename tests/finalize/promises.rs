@@ -107,8 +107,8 @@ pub(super) fn check(set: &Set, options: &Options, stream: &[u8]) -> Decoded {
     decoded
 }
 
-/// Points by x: what is in a cell is found among the points of its columns alone, as streams have ten thousands
-/// of cells.
+/// Points by x: what is in a cell is found among the points of its columns alone, as streams have ten
+/// thousands of cells.
 struct ByX<'a> {
     points: &'a [Point],
     order: Vec<usize>,

@@ -8,8 +8,8 @@ use crate::sources::las_file::LasFile;
 
 const NO_DATA: i32 = i32::MIN;
 
-/// The height of a point in steps of the ground as a fraction with a positive denominator; `None` outside. With
-/// coordinates below 2^31, no number has more than 100 bits.
+/// The height of a point in steps of the ground as a fraction with a positive denominator; `None` outside.
+/// With coordinates below 2^31, no number has more than 100 bits.
 fn exact(triangles: &[[Point; 3]], point: [i64; 3]) -> Option<(i128, i128)> {
     let [x, y, z] = point.map(i128::from);
     triangles.iter().find_map(|corners| {

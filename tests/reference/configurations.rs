@@ -55,8 +55,8 @@ pub fn moved(points: &[[f64; 2]]) -> Vec<ExactPoint> {
     if (0..exact.len()).all(|id| rank(id) == BigInt::ZERO) {
         return exact;
     }
-    // Determinants have degree 4 in coordinates of some bits and in ranks below 2^100, so coefficients of powers
-    // of e are below 1 / e.
+    // Determinants have degree 4 in coordinates of some bits and in ranks below 2^100, so coefficients of
+    // powers of e are below 1 / e.
     let bits = 4 * exact.iter().flatten().map(BigInt::bits).max().unwrap_or(0) + 600;
     let moved = (0..exact.len()).map(|id| {
         let [x, y] = &exact[id];

@@ -16,8 +16,8 @@ pub fn sorted(mut points: Vec<Point>) -> Vec<Point> {
     points
 }
 
-/// The determinants of the first rows in each set of as many columns, along their last row. A set is the sum of
-/// 2^column.
+/// The determinants of the first rows in each set of as many columns, along their last row. A set is the sum
+/// of 2^column.
 fn minors(rows: &[&[i128]], columns: usize) -> Vec<i128> {
     let mut minors = vec![0; 1 << columns];
     minors[0] = 1;

@@ -5,8 +5,8 @@ use num_bigint::{BigInt, Sign};
 /// An exact point. All points of a set are scaled by the same power of two.
 pub type ExactPoint = [BigInt; 2];
 
-/// The points as integers: times the least power of two that makes all of them integers, so that small ones stay
-/// small.
+/// The points as integers: times the least power of two that makes all of them integers, so that small ones
+/// stay small.
 pub fn exact_points(points: &[[f64; 2]]) -> Vec<ExactPoint> {
     let integers: Vec<ExactPoint> = points.iter().map(|p| p.map(times_2_1074)).collect();
     let zeros = integers.iter().flatten().filter_map(BigInt::trailing_zeros).min().unwrap_or(0);

@@ -1,7 +1,7 @@
 //! Incremental insertion (Bowyer and Watson) over integer points, with a ghost vertex at infinity, in `i128`.
 //!
-//! Every new point is tested against every triangle: O(n^2), and simple. Floating point decides where its error
-//! cannot matter, which is almost everywhere.
+//! Every new point is tested against every triangle: O(n^2), and simple. Floating point decides where its
+//! error cannot matter, which is almost everywhere.
 
 use super::as_set;
 use std::collections::HashMap;
@@ -62,8 +62,8 @@ fn in_conflict(points: &[IntegerPoint], [a, b, c]: [usize; 3], p: usize) -> bool
     filtered_incircle(four).unwrap_or_else(|| perturbed_incircle(four))
 }
 
-/// The sign of the determinant of differences to the last point, if rounding cannot change it. Differences are
-/// exact; each product has less than 10 roundings of 2^-53.
+/// The sign of the determinant of differences to the last point, if rounding cannot change it. Differences
+/// are exact; each product has less than 10 roundings of 2^-53.
 fn filtered_incircle(points: [IntegerPoint; 4]) -> Option<bool> {
     let [a, b, c, d] = points.map(|p| p.map(|value| value as f64));
     let [a, b, c] = [a, b, c].map(|p| [p[0] - d[0], p[1] - d[1]]);

@@ -69,8 +69,8 @@ fn random_box(random: &mut Random, part: f64) -> Bounds {
     found
 }
 
-/// Checks that partial reading of a file of `las` gives the points in a box; returns the number of records decoded,
-/// and notices.
+/// Checks that partial reading of a file of `las` gives the points in a box; returns the number of records
+/// decoded, and notices.
 fn check(path: &Path, las: &LasFile, bounds: Bounds) -> (u64, Vec<String>) {
     let [_, part] = options(bounds);
     let is_inside =

@@ -1,5 +1,5 @@
-//! Reads files of Parquet, as apache/parquet-format specifies them, and refuses whatever `tess3` has no reason to
-//! write. It shares no code with the writer, and knows field numbers only.
+//! Reads files of Parquet, as apache/parquet-format specifies them, and refuses whatever `tess3` has no
+//! reason to write. It shares no code with the writer, and knows field numbers only.
 
 use std::collections::BTreeMap;
 

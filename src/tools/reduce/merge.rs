@@ -64,7 +64,8 @@ pub fn merge_tetrahedra<R: Read, W: Write + Send>(
     Ok((output, stats))
 }
 
-/// An input of merging, and what it writes to: of one type each, so that the code is compiled in this crate alone.
+/// An input of merging, and what it writes to: of one type each, so that the code is compiled in this crate
+/// alone.
 pub(super) type Input<'a> = Box<dyn Read + 'a>;
 pub(super) type Sink<'a> = &'a mut (dyn Write + Send + 'a);
 

@@ -144,8 +144,8 @@ where
     Ok((outputs, stats))
 }
 
-/// The input of a run, and what it writes to: of one type each, so that all of the code below is compiled once, in
-/// this crate, and not in each crate that calls it.
+/// The input of a run, and what it writes to: of one type each, so that all of the code below is compiled
+/// once, in this crate, and not in each crate that calls it.
 type Input = Box<dyn Read + Send>;
 type Sink<'a> = &'a mut (dyn Write + Send + 'a);
 

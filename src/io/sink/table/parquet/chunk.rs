@@ -77,8 +77,8 @@ impl Chunk {
 #[derive(Default)]
 struct Page {
     rows: usize,
-    /// Definition levels: 1 where a row has a value, 0 where it has none. Each run of equal ones is twice its length,
-    /// then the level; the lowest bit would mark levels that are packed.
+    /// Definition levels: 1 where a row has a value, 0 where it has none. Each run of equal ones is twice its
+    /// length, then the level; the lowest bit would mark levels that are packed.
     levels: Vec<u8>,
     /// Level and length of the last run, which is not among `levels` yet.
     run: (bool, u64),

@@ -1,13 +1,13 @@
 //! Rows as a file of Apache Parquet.
 //!
-//! A file starts and ends with `PAR1`. Groups of rows follow one another; each has its columns, in order, as *chunks*
-//! of pages. The footer says where chunks start. What is written is the least that readers ask for:
+//! A file starts and ends with `PAR1`. Groups of rows follow one another; each has its columns, in order, as
+//! *chunks* of pages. The footer says where chunks start. What is written is the least that readers ask for:
 //!
 //! * Each column is optional, and of the type INT64, DOUBLE or BYTE_ARRAY; the last is a string in UTF-8.
-//! * A page is a header, then a zstd frame. In it are definition levels, as runs behind their length, then the values,
-//!   encoded as PLAIN: eight bytes, or four bytes of length and the text; all little-endian.
-//! * Of statistics, there are the numbers of rows without a value. Neither dictionaries nor indexes nor checksums are
-//!   written: on tables of atoms, frames are smaller without dictionaries.
+//! * A page is a header, then a zstd frame. In it are definition levels, as runs behind their length, then
+//!   the values, encoded as PLAIN: eight bytes, or four bytes of length and the text; all little-endian.
+//! * Of statistics, there are the numbers of rows without a value. Neither dictionaries nor indexes nor
+//!   checksums are written: on tables of atoms, frames are smaller without dictionaries.
 //!
 //! Specification: apache/parquet-format, README.md (layout), Encodings.md (PLAIN, and RLE for levels) and
 //! src/main/thrift/parquet.thrift (metadata, in the compact protocol of Thrift).
@@ -36,8 +36,8 @@ const TEXT_MAX: usize = 8 << 20;
 
 /// A table while it is written.
 ///
-/// Memory: the pages of the current group, compressed but for the last of each column, and for the footer 32 bytes per
-/// column of each group.
+/// Memory: the pages of the current group, compressed but for the last of each column, and for the footer 32
+/// bytes per column of each group.
 pub(super) struct ParquetRows {
     chunks: Vec<Chunk>,
     rows: usize,
