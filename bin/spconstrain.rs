@@ -4,5 +4,5 @@
 static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
 
 fn main() -> std::process::ExitCode {
-    spmesh_shell::main(spmesh_cli_terrain::spconstrain::run)
+    spmesh_shell::main(spmesh_terrain::flags::spconstrain::run)
 }

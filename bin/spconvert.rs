@@ -6,5 +6,5 @@ use std::process::ExitCode;
 static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
 
 fn main() -> ExitCode {
-    spmesh_shell::main(spmesh_cli_convert::spconvert::run)
+    spmesh_shell::main(spmesh_convert::flags::spconvert::run)
 }

@@ -4,5 +4,5 @@
 static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
 
 fn main() -> std::process::ExitCode {
-    spmesh_shell::main(spmesh_cli_terrain::spheight::run)
+    spmesh_shell::main(spmesh_terrain::flags::spheight::run)
 }

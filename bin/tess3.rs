@@ -2,8 +2,8 @@
 
 /// Counts what each file of a sweep takes.
 #[global_allocator]
-static HEAP: spmesh_cli_molecules::tess3::CountingHeap = spmesh_cli_molecules::tess3::CountingHeap;
+static HEAP: spmesh_molecules::flags::tess3::CountingHeap = spmesh_molecules::flags::tess3::CountingHeap;
 
 fn main() -> std::process::ExitCode {
-    spmesh_shell::main(spmesh_cli_molecules::tess3::run)
+    spmesh_shell::main(spmesh_molecules::flags::tess3::run)
 }

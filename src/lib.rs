@@ -90,8 +90,8 @@
 //! | `geopackage` (default) | lines of GeoPackages |
 //! | `experiments` | flags that measure the kernels |
 
-pub use spmesh_core as core;
-pub use spmesh_geometry as geometry;
-pub use spmesh_model as model;
-pub use spmesh_reduce as reduce;
+pub use spmesh_base as core;
+pub use spmesh_delaunay as geometry;
+pub use spmesh_pipeline::reduce;
 pub use spmesh_stream as stream;
+pub use spmesh_stream::model;

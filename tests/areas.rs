@@ -1,6 +1,6 @@
 //! `spfinalize --clip` and `--drop-inside` against a search of all edges in integers.
 
-use spmesh_core::random::Random;
+use spmesh_base::random::Random;
 use spmesh_stream::{Event, StreamReader};
 
 use crate::programs::{Folder, assert_outcome, outcome, run, sample};

@@ -1,8 +1,8 @@
 //! Attributes of points from files through every program, against records that are taken apart by hand.
 
 use serde_json::Value;
-use spmesh_model::attributes::Attributes;
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::attributes::Attributes;
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, StreamReader};
 
 use crate::programs::{Folder, assert_outcome, outcome, run, sample};

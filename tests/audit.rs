@@ -48,8 +48,8 @@ mod tetrahedralized;
 mod winding;
 
 use spmesh_audit::{Audit, PointSet, Report, Standard, Violation};
-use spmesh_core::error::ErrorKind;
-use spmesh_model::bounds::Point;
+use spmesh_base::error::ErrorKind;
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind, Patch, StreamReader, StreamWriter};
 
 /// Audits a whole stream. A malformed stream gives the reader's message instead of a violation.

@@ -1,6 +1,6 @@
 //! `spcanopy`: its raster against the steps that it consists of, one by one.
 
-use spmesh_core::random::Random;
+use spmesh_base::random::Random;
 
 use crate::programs::{Folder, assert_outcome, outcome, run};
 use crate::sources::las_file::{LasFile, Record, geo_keys};

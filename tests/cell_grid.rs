@@ -1,8 +1,8 @@
 //! A batch of points gets the same cells as its points one by one, on borders of cells, too.
 
-use spmesh_finalize::cell_grid::CellGrid;
-use spmesh_model::bounds::{Bounds, Point};
-use spmesh_model::cells::CellTree;
+use spmesh_pipeline::finalize::cell_grid::CellGrid;
+use spmesh_stream::model::bounds::{Bounds, Point};
+use spmesh_stream::model::cells::CellTree;
 
 /// SplitMix64 by Steele, Lea and Flood.
 struct Random(u64);

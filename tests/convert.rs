@@ -13,8 +13,8 @@ mod volume;
 
 use std::io::Cursor;
 
+use spmesh_base::error::{ErrorKind, Result};
 use spmesh_convert::{Format, Options, convert};
-use spmesh_core::error::{ErrorKind, Result};
 
 use crate::programs::assert_outcome;
 use crate::vectors::load;

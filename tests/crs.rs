@@ -2,9 +2,9 @@
 
 use std::fs;
 
-use spmesh_core::error::ErrorKind;
-use spmesh_core::random::Random;
-use spmesh_crs::{GeoKeys, Horizontal, Kind, System, Unit, differences, geotiff_keys, requested};
+use spmesh_base::error::ErrorKind;
+use spmesh_base::random::Random;
+use spmesh_formats::crs::{GeoKeys, Horizontal, Kind, System, Unit, differences, geotiff_keys, requested};
 use spmesh_stream::Crs;
 
 use crate::programs::{Folder, outcome, run};

@@ -6,9 +6,9 @@ mod sets;
 mod spool;
 mod thin;
 
-use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_finalize::{Budget, Leaves, Options, Order, Spooling, Stats, run};
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_pipeline::finalize::{Budget, Leaves, Options, Order, Spooling, Stats, run};
+use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, StreamReader};
 
 use crate::programs::{outcome, run as run_tool, sample};

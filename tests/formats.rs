@@ -3,7 +3,7 @@
 
 use std::io::Write;
 
-use spmesh_io::detect::{Format, READERS, Reader, SPCONVERT, detect};
+use spmesh_formats::detect::{Format, READERS, Reader, SPCONVERT, detect};
 
 use crate::programs::{Folder, assert_outcome, cloud, outcome, run, sample};
 

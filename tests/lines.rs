@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use spmesh_core::error::ErrorKind;
-use spmesh_lines::{ChangeKind, Changes, Options, Target, read};
-use spmesh_model::network::Network;
+use spmesh_base::error::ErrorKind;
+use spmesh_delaunay::network::Network;
+use spmesh_pipeline::lines::{ChangeKind, Changes, Options, Target, read};
 use spmesh_stream::{Coordinates, Crs};
 
 use crate::programs::{Folder, assert_outcome, outcome, run};
@@ -50,7 +50,7 @@ fn all_files_are_one_set_of_lines() {
 
 #[test]
 fn other_systems_are_refused() {
-    let system = |name: &str| spmesh_crs::requested(name).expect("a system");
+    let system = |name: &str| spmesh_formats::crs::requested(name).expect("a system");
     let target = |name: &str| Target { crs: system(name), ..grid(0.001) };
     for format in &FORMATS[1..] {
         let read = |name: &str| read(&[sample(format)], &target(name), &Options::default());

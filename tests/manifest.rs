@@ -60,7 +60,10 @@ fn further_programs_take_the_same_features_of_dependencies() {
     let of = |features| foreign(&["--no-default-features", "--features", features]);
     let (Some(first), Some(more)) = (of("pipeline"), of("pipeline,terrain,view")) else { return };
     let differing: Vec<&String> = first.difference(&more).collect();
-    assert!(!first.is_empty() && differing.is_empty(), "{differing:?}: see crc32fast in src/io/Cargo.toml");
+    assert!(
+        !first.is_empty() && differing.is_empty(),
+        "{differing:?}: see crc32fast in src/formats/Cargo.toml"
+    );
 }
 
 #[test]

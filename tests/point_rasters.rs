@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use spmesh_core::random::Random;
+use spmesh_base::random::Random;
 
 use crate::programs::{Folder, assert_outcome, outcome, run, sample};
 use crate::sources::las_file::LasFile;

@@ -6,7 +6,7 @@ use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
-use spmesh_core::error::ErrorKind;
+use spmesh_base::error::ErrorKind;
 
 /// A command for a tool of the project.
 pub fn tool(name: &str) -> Command {

@@ -3,8 +3,8 @@
 use std::io::Cursor;
 use std::sync::LazyLock;
 
-use spmesh_crs::requested;
-use spmesh_io::raster::{
+use spmesh_formats::crs::requested;
+use spmesh_formats::raster::{
     Grid, NoData, RasterFile, RasterFormat, RasterOptions, Reduction, Reference, Samples, TILE, write_rows,
     write_tiles,
 };
@@ -25,7 +25,7 @@ fn value(column: u32, row: u32) -> f32 {
     }
 }
 
-fn row(number: u32, values: &mut [f32]) -> spmesh_core::error::Result<()> {
+fn row(number: u32, values: &mut [f32]) -> spmesh_base::error::Result<()> {
     (0..).zip(values).for_each(|(column, cell)| *cell = value(column, number));
     Ok(())
 }
@@ -137,7 +137,7 @@ fn texts_have_rows_from_the_top() {
 #[test]
 fn failures_stop_the_file() {
     let failing = |number: u32, _: &mut [f32]| match number {
-        5 => Err(spmesh_core::error::Error::usage("no more")),
+        5 => Err(spmesh_base::error::Error::usage("no more")),
         _ => Ok(()),
     };
     for format in [RasterFormat::Ascii, RasterFormat::GeoTiff] {

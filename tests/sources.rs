@@ -25,9 +25,9 @@ mod vtk_xml;
 
 use std::path::{Path, PathBuf};
 
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_io::source::{Input, SourceOptions};
-use spmesh_model::bounds::Point;
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_formats::source::{Input, SourceOptions};
+use spmesh_stream::model::bounds::Point;
 
 use crate::programs::Folder;
 

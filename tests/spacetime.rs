@@ -4,9 +4,9 @@ mod meshes;
 mod simplices;
 mod values;
 
-use spmesh_geometry4::diagram4::diagram;
-use spmesh_model::cells4::Point4;
-use spmesh_model::diagram4::Diagram4;
+use spmesh_spacetime::diagram4::diagram;
+use spmesh_stream::model::cells4::Point4;
+use spmesh_stream::model::diagram4::Diagram4;
 
 use spmesh_reference::sets::Random;
 

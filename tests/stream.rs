@@ -10,9 +10,9 @@ mod random;
 mod skipped;
 mod tools4;
 
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_model::bounds::Region;
-use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_stream::model::bounds::Region;
+use spmesh_stream::model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, StreamWriter};
 
 use random::random_stream;

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::os::fd::AsFd;
 
-use spmesh_core::system::widen_pipe;
+use spmesh_base::system::widen_pipe;
 
 use crate::programs::{run, start};
 

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_stream::{Event, Header, MemoryRules, StreamReader};
 
 use crate::programs::{Folder, run, skip};

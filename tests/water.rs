@@ -1,6 +1,6 @@
 //! `spfinalize --flatten`: lakes are flat and rivers fall, in the mesh and in rasters of it.
 
-use spmesh_core::random::Random;
+use spmesh_base::random::Random;
 use spmesh_stream::{Event, StreamReader};
 
 use crate::programs::{Folder, assert_outcome, outcome, run, sample};

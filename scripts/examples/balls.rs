@@ -8,7 +8,7 @@ use std::error::Error;
 use std::io::Write;
 use std::num::NonZeroUsize;
 
-use spmesh_geometry::balls::{Balls, measure, molecular_surface};
+use spmesh_molecules::balls::{Balls, measure, molecular_surface};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();

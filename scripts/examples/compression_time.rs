@@ -5,7 +5,7 @@
 
 use std::time::Instant;
 
-use spmesh_io::sink::{EventSink, SpmSink};
+use spmesh_formats::sink::{EventSink, SpmSink};
 use spmesh_stream::{Event, Header, StreamReader};
 
 /// Runs of which the fastest counts.
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-type Outcome<T> = spmesh_core::error::Result<T>;
+type Outcome<T> = spmesh_base::error::Result<T>;
 
 /// The result of the last run, and the seconds of the fastest.
 fn fastest<T>(run: impl Fn() -> Outcome<T>) -> Outcome<(T, f64)> {

@@ -6,10 +6,10 @@
 //! match, and prints a tab-separated row per degree.
 
 use spmesh_audit::configurations as audit;
+use spmesh_base::error::Result;
+use spmesh_base::random::Random;
 use spmesh_configurations::special::{self, ZpSplit};
 use spmesh_configurations::{self as configurations, Configurations, Knots, Rule, Start};
-use spmesh_core::error::Result;
-use spmesh_core::random::Random;
 
 /// The random number generator of a run.
 fn random_of(seed: u64) -> Random {

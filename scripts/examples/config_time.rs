@@ -6,10 +6,10 @@
 
 use std::path::PathBuf;
 
+use spmesh_base::random::Random;
 use spmesh_configurations::{self as configurations, Knots, Rule};
-use spmesh_core::random::Random;
+use spmesh_delaunay::delaunay2::{Kernel, Triangles};
 use spmesh_experiments::files::{Paths, timed};
-use spmesh_geometry::delaunay2::{Kernel, Triangles};
 
 const ROUNDS: usize = 3;
 

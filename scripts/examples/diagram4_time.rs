@@ -9,9 +9,9 @@ use std::fs::File;
 use std::num::NonZeroUsize;
 
 use spmesh_experiments::files::{read_tuples, timed};
-use spmesh_geometry4::diagram4::{Route, Stats, diagram_by};
-use spmesh_model::cells4::Cells4;
-use spmesh_model::diagram4::Diagram4;
+use spmesh_spacetime::diagram4::{Route, Stats, diagram_by};
+use spmesh_stream::model::cells4::Cells4;
+use spmesh_stream::model::diagram4::Diagram4;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();

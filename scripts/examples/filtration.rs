@@ -1,8 +1,8 @@
 //! Writes the filtration of weighted points: lines of `x y z weight` from stdin; without weights if there are
 //! three columns. For comparison with other programs.
 
-use spmesh_geometry::delaunay3::{triangulate, triangulate_weighted};
-use spmesh_tess3::filtration::Filtration;
+use spmesh_delaunay::delaunay3::{triangulate, triangulate_weighted};
+use spmesh_molecules::tess3::filtration::Filtration;
 use std::io::Read;
 
 fn main() -> anyhow::Result<()> {

@@ -5,8 +5,8 @@
 //! for the configurations and the basis, the normal equations, the thin-plate energy and the solution, the
 //! greatest residual and the peak memory.
 
-use spmesh_core::error::Result;
-use spmesh_core::random::Random;
+use spmesh_base::error::Result;
+use spmesh_base::random::Random;
 use spmesh_splines::fitting::{
     Equations, NormalEquations, Observation, ObservationReader, Observations, SplineSpace, summarise,
     thin_plate,

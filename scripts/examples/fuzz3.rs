@@ -16,9 +16,9 @@ use std::process::exit;
 use std::time::Instant;
 
 use clap::Parser;
+use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_delaunay::order::{Curve, Sequence};
 use spmesh_experiments::fuzzing::{Fuzzing, Trial};
-use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
-use spmesh_geometry::order::{Curve, Sequence};
 use spmesh_reference::clouds::{self, Family};
 use spmesh_reference::sets::Random;
 use spmesh_reference::space::{Point, Space, distinct};

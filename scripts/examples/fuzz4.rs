@@ -11,10 +11,10 @@
 use clap::Parser;
 use spmesh_audit::diagram::check;
 use spmesh_experiments::fuzzing::{Fuzzing, Trial};
-use spmesh_geometry4::diagram4::{Route, diagram_by};
-use spmesh_model::cells4::Point4;
-use spmesh_model::diagram4::Diagram4;
 use spmesh_reference::sets::Random;
+use spmesh_spacetime::diagram4::{Route, diagram_by};
+use spmesh_stream::model::cells4::Point4;
+use spmesh_stream::model::diagram4::Diagram4;
 use std::num::NonZeroUsize;
 
 /// Fuzzes the 4D engine.

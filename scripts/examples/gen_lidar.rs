@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use las::point::Format;
 use las::{Builder, PointDataBuilder, Vlr, Writer};
-use spmesh_core::random::Random;
+use spmesh_base::random::Random;
 
 /// Meters per step of the integer coordinates.
 const SCALE: f64 = 0.01;

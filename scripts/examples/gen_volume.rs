@@ -8,9 +8,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use spmesh_core::random::Random;
-use spmesh_model::bits::spread3;
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::random::Random;
+use spmesh_stream::model::bits::spread3;
+use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 
 /// Points that are written in one batch.
@@ -166,7 +166,7 @@ fn spread(arguments: &Arguments, random: &mut Random, sink: &mut Sink) -> Result
             if is_curve {
                 let side = f64::from(1 << level);
                 for (axis, x) in point.iter_mut().enumerate() {
-                    *x = (*x + f64::from(spmesh_model::bits::gather3(part >> axis))) / side;
+                    *x = (*x + f64::from(spmesh_stream::model::bits::gather3(part >> axis))) / side;
                 }
             } else {
                 point[2] = (point[2] + part as f64) / parts as f64;

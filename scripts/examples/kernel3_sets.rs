@@ -7,7 +7,7 @@
 use std::borrow::Cow;
 use std::io::{self, Read, Write};
 
-use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut input, mut output) = (io::stdin().lock(), io::BufWriter::new(io::stdout().lock()));

@@ -13,9 +13,9 @@ use std::borrow::Cow;
 use std::error::Error;
 use std::fs::File;
 
+use spmesh_delaunay::delaunay3::{Kernel, Stats, Tetrahedralization};
+use spmesh_delaunay::order::Sequence;
 use spmesh_experiments::files::{read_tuples, timed};
-use spmesh_geometry::delaunay3::{Kernel, Stats, Tetrahedralization};
-use spmesh_geometry::order::Sequence;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -69,7 +69,7 @@ fn in_a_way(points: Vec<[f64; 3]>, way: &str) -> Result<(), Box<dyn Error>> {
 
 #[cfg(feature = "experiments")]
 fn in_floating_point(points: &[[f64; 3]], sequence: Sequence) -> Result<(), Box<dyn Error>> {
-    use spmesh_geometry::delaunay3_float::{Options, triangulate};
+    use spmesh_delaunay::delaunay3_float::{Options, triangulate};
     let options = Options { sequence, ..Options::default() };
     let (result, seconds) = timed(|| triangulate(points, &options));
     report(&result?.0, points.len(), seconds);

@@ -5,8 +5,8 @@
 //! size of leaves, and reports the counters of the predicates. `scripts/bench` keeps its files of points in
 //! its folder.
 
+use spmesh_delaunay::delaunay2::{Kernel, Triangles};
 use spmesh_experiments::files::{Paths, timed};
-use spmesh_geometry::delaunay2::{Kernel, Triangles};
 
 const LEAF_POINTS: usize = 20_000;
 

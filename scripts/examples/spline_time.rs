@@ -5,8 +5,8 @@
 //! derivatives at up to a million points, random or along a curve; nanoseconds per pixel for a raster of 2000
 //! x 2000.
 
+use spmesh_base::random::Random;
 use spmesh_configurations::{self as configurations, Knots, Rule};
-use spmesh_core::random::Random;
 use spmesh_splines::bases::{Basis, Raster, Scratch};
 use std::hint::black_box;
 use std::time::Instant;

@@ -6,8 +6,8 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use spmesh_model::bounds::Point;
-use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_stream::model::bounds::Point;
+use spmesh_stream::model::cells::{CellCode, CellTree};
 
 /// Disjoint, not adjacent intervals of codes. Memory: their number.
 #[derive(Debug, Default)]

@@ -1,8 +1,8 @@
 //! The checks of an audit, their counts, and the first violation.
 
-use spmesh_core::error::{Error, ErrorKind};
-use spmesh_model::bounds::Point;
+use spmesh_base::error::{Error, ErrorKind};
 use spmesh_stream::Header;
+use spmesh_stream::model::bounds::Point;
 
 /// One kind of claim that an audit proves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

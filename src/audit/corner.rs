@@ -2,7 +2,7 @@
 
 use super::check::Violation;
 use super::vertices::Vertex;
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::bounds::Point;
 
 /// A vertex in D dimensions.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! Checks that the bounding box of the header holds the points.
 
 use super::check::{Check, Ledger, Violation};
-use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::Header;
+use spmesh_stream::model::bounds::{Bounds, Point};
 
 /// The box that a header states and the box of the points so far.
 #[derive(Debug)]

@@ -3,8 +3,8 @@
 use super::inventory_configurations::ConfigurationInventory;
 use super::inventory_constraints::ConstraintInventory;
 use super::inventory4::Inventory4;
-use spmesh_core::error::Result;
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::error::Result;
+use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{Event, Header, MemoryRules, Patch, Totals};
 
 /// Counts of a stream, gathered event by event. It also verifies the rules that the reader of the container
@@ -74,7 +74,7 @@ impl Inventory {
     /// Adds the next event.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] as [`MemoryRules::check`].
+    /// [`spmesh_base::error::ErrorKind::Malformed`] as [`MemoryRules::check`].
     pub fn event(&mut self, event: &Event) -> Result<()> {
         self.rules.check(event)?;
         match event {

@@ -1,7 +1,7 @@
 //! Counts the content of a stream of four dimensions.
 
-use spmesh_model::cells4::Point4;
 use spmesh_stream::Event;
+use spmesh_stream::model::cells4::Point4;
 
 /// Counts of a stream of four dimensions, gathered event by event.
 #[derive(Debug, Default)]

@@ -80,8 +80,8 @@ use points::{PointsAudit, points_checks};
 use tetrahedra::{LiveTetrahedra, TETRAHEDRA_CHECKS, TetrahedraAudit};
 use triangles::Triangles;
 
-use spmesh_core::error::Error;
-use spmesh_model::bounds::Point;
+use spmesh_base::error::Error;
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind};
 
 /// Audit of one stream of two or three dimensions: pass it every event, then get the report. Streams of four

@@ -16,7 +16,7 @@ use super::facets::OpenFacets;
 use super::residual_fit::{self, Wall, WallGeometry};
 use super::triangles::Standard;
 use super::vertices::Vertices;
-use spmesh_model::bounds::{Point, Region};
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Event, Header, Patch, Totals};
 
 /// What can be proved of final simplices one by one, with the vertices that are live and the facets that are

@@ -1,9 +1,9 @@
 //! Whether the vertices of a mesh are exactly the positions of given points.
 
 use super::check::{Check, Ledger, Violation};
-use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::Point;
+use spmesh_base::error::{Error, Result};
 use spmesh_stream::Coordinates;
+use spmesh_stream::model::bounds::Point;
 
 /// The distinct positions of points, in the plane or in space, and which of them a mesh has.
 ///

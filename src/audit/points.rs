@@ -3,8 +3,8 @@
 use super::cells::{CodeSet, code_of, codes_of};
 use super::check::{Check, Ledger, Violation};
 use super::extent::Extent;
-use spmesh_model::bounds::Point;
-use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_stream::model::bounds::Point;
+use spmesh_stream::model::cells::{CellCode, CellTree};
 use spmesh_stream::{Header, Totals};
 
 /// State of the audit of a points stream. Memory: the border of the tagged part, in cells.

@@ -21,7 +21,7 @@ use super::exact::Decided;
 use super::partial::FinalSimplices;
 use super::point_tree::PointTree;
 use super::triangles::Standard;
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::bounds::Point;
 
 /// A wall with the final simplex at it.
 pub(super) struct Wall<const D: usize> {

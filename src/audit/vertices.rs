@@ -1,7 +1,7 @@
 //! The vertices between their patch and their finalization.
 
 use super::check::{Check, Ledger, Violation};
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Ascending, Patch, Place};
 
 /// A vertex with data about its star, the simplices that have it.

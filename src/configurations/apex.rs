@@ -4,9 +4,9 @@
 use super::insertion::LARGE;
 use super::polygon::Triangulator;
 use super::rule::Rule;
-use spmesh_core::error::Result;
-use spmesh_core::random::Random;
-use spmesh_geometry::predicates::{Predicates2, Sign};
+use spmesh_base::error::Result;
+use spmesh_base::random::Random;
+use spmesh_delaunay::predicates::{Predicates2, Sign};
 
 impl<P: Predicates2> Triangulator<'_, P> {
     /// Triangulates a simple polygon of at least four vertices.

@@ -10,9 +10,9 @@
 
 use super::knots::Knots;
 use super::surface;
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2::{MAX_POINTS, distinct};
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::delaunay2::{MAX_POINTS, distinct};
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
 
 impl Knots {
     /// The corners of the convex hull with multiplicity `degree` + 1; knots along its edges stay as they are.

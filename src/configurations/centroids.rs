@@ -2,9 +2,9 @@
 //! 7.3 and 7.4).
 
 use super::knots::Knots;
-use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_geometry::predicates::Point2;
-use spmesh_model::configurations::Configurations;
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_delaunay::predicates::Point2;
+use spmesh_stream::model::configurations::Configurations;
 
 /// A planar triangulation of the centroids of k-sets; with Delaunay configurations, the order-k Delaunay
 /// triangulation.

@@ -5,8 +5,8 @@ use super::knots::Knots;
 use super::plane::Plane;
 use super::surface::{Corner, Start};
 use foldhash::{HashMap, HashMapExt};
-use spmesh_core::random::Random;
-use spmesh_geometry::predicates::FiniteFloatPredicates;
+use spmesh_base::random::Random;
+use spmesh_delaunay::predicates::FiniteFloatPredicates;
 use std::collections::BTreeMap;
 
 /// Knots at one place that are already in the triangulation, by rank.

@@ -5,9 +5,9 @@
 //! by the rest of J.
 
 use super::knots::Knots;
-use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_model::configurations::FARAWAY;
-use spmesh_model::configurations::{Configurations, Links};
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_stream::model::configurations::FARAWAY;
+use spmesh_stream::model::configurations::{Configurations, Links};
 
 /// A directed edge packed into one integer, with the start in the upper half; comparing one integer is faster
 /// than comparing two.

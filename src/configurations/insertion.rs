@@ -19,9 +19,9 @@
 
 use super::polygon::Triangulator;
 use super::surface::Corner;
-use spmesh_core::error::Result;
-use spmesh_core::random::Random;
-use spmesh_geometry::predicates::Predicates2;
+use spmesh_base::error::Result;
+use spmesh_base::random::Random;
+use spmesh_delaunay::predicates::Predicates2;
 
 /// Links of at least this many vertices are triangulated by insertion; for smaller ones a search is faster.
 pub(super) const LARGE: usize = 24;
@@ -151,9 +151,9 @@ mod tests {
     use crate::knots::Knots;
     use crate::rule::Rule;
     use crate::{Lift, Start, generate};
-    use spmesh_geometry::predicates::FiniteFloatPredicates;
-    use spmesh_model::configurations::FARAWAY;
-    use spmesh_model::configurations::{Claim, Configurations};
+    use spmesh_delaunay::predicates::FiniteFloatPredicates;
+    use spmesh_stream::model::configurations::FARAWAY;
+    use spmesh_stream::model::configurations::{Claim, Configurations};
 
     /// The triangles that one of the two methods yields, in a canonical order.
     fn sorted(out: &[[u32; 3]]) -> Vec<[u32; 3]> {

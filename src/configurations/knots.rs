@@ -13,9 +13,9 @@
 //! Copies lie on a parabola, so no three are on a line. No four are on a circle, because their abscissae
 //! would have to sum to zero.
 
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2::{MAX_POINTS, distinct};
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::delaunay2::{MAX_POINTS, distinct};
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
 use std::cmp::Ordering;
 
 /// Knots by id; knots at one place differ in rank.
@@ -103,7 +103,7 @@ impl Knots {
         self.ranks.get(id as usize).copied().unwrap_or(0)
     }
 
-    /// Position of knot `id`, which is not [`FARAWAY`](spmesh_model::configurations::FARAWAY).
+    /// Position of knot `id`, which is not [`FARAWAY`](spmesh_stream::model::configurations::FARAWAY).
     #[inline(always)]
     #[must_use]
     pub fn at(&self, id: u32) -> Point2 {

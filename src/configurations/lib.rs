@@ -38,15 +38,15 @@ pub use gathering::links;
 pub use knots::Knots;
 pub use lift::Lift;
 pub use rule::Rule;
-pub use spmesh_model::configurations::{Claim, Configurations, FARAWAY, Group, Link, Links};
+pub use spmesh_stream::model::configurations::{Claim, Configurations, FARAWAY, Group, Link, Links};
 pub use surface::{Start, delaunay};
 pub use union_map::{UnionSource, inverse_union_map, union_map};
 
 use diagonals::Diagonals;
 use polygon::Triangulator;
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::order::{Curve, SpatialOrder};
-use spmesh_geometry::predicates::{Arithmetic, Extent, PredicateCounts, Predicates2, WithPredicates2};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::order::{Curve, SpatialOrder};
+use spmesh_delaunay::predicates::{Arithmetic, Extent, PredicateCounts, Predicates2, WithPredicates2};
 
 /// The configurations of the next degree: every link is triangulated by `rule` (thesis, table 7.1).
 ///
@@ -60,7 +60,7 @@ use spmesh_geometry::predicates::{Arithmetic, Extent, PredicateCounts, Predicate
 ///
 /// # Errors
 /// Parameters of the rule that do not fit the knots; a link that is neither a simple polygon nor null (kind
-/// [`spmesh_core::error::ErrorKind::Audit`]: a counterexample to the theory, or configurations from
+/// [`spmesh_base::error::ErrorKind::Audit`]: a counterexample to the theory, or configurations from
 /// elsewhere); a link with more vertices than the rule takes.
 pub fn link_triangulate(
     knots: &Knots,

@@ -2,8 +2,8 @@
 
 use super::knots::Knots;
 use num_bigint::BigInt;
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::{Sign, exact_integers};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::{Sign, exact_integers};
 
 /// The function that replaces x² + y² in the in-circle determinant.
 #[derive(Debug, Clone, PartialEq)]

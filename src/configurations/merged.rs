@@ -4,8 +4,8 @@
 use super::centroids::{CentroidMesh, centroid};
 use super::knots::Knots;
 use foldhash::{HashMap, HashMapExt};
-use spmesh_geometry::delaunay2::distinct;
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Predicates2, Sign};
+use spmesh_delaunay::delaunay2::distinct;
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Predicates2, Sign};
 
 impl CentroidMesh {
     /// The same mesh with one vertex for all sets with the same places, and without flat triangles.

@@ -1,8 +1,8 @@
 //! Triangulates a link with required diagonals: they cut it into pieces, which the rule triangulates.
 
 use super::polygon::Triangulator;
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::Predicates2;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Predicates2;
 
 impl<P: Predicates2> Triangulator<'_, P> {
     /// Triangulates the polygon such that the given diagonals are edges.

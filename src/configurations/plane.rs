@@ -4,8 +4,8 @@
 use super::knots::Knots;
 use super::lift::Lift;
 use super::symbolic;
-use spmesh_geometry::predicates::{Predicates2, Sign};
-use spmesh_model::configurations::FARAWAY;
+use spmesh_delaunay::predicates::{Predicates2, Sign};
+use spmesh_stream::model::configurations::FARAWAY;
 
 /// The knots, and the predicates for them.
 pub(super) struct Plane<'a, P> {

@@ -6,11 +6,11 @@ use super::knots::Knots;
 use super::plane::Plane;
 use super::rule::Rule;
 use super::simple;
-use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_core::limits::LINK_VERTICES_MAX;
-use spmesh_geometry::predicates::{Predicates2, Sign};
-use spmesh_model::configurations::Claim;
-use spmesh_model::configurations::FARAWAY;
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::limits::LINK_VERTICES_MAX;
+use spmesh_delaunay::predicates::{Predicates2, Sign};
+use spmesh_stream::model::configurations::Claim;
+use spmesh_stream::model::configurations::FARAWAY;
 
 /// Triangulates links; its buffers are reused.
 pub(super) struct Triangulator<'a, P> {

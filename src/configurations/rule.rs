@@ -2,7 +2,7 @@
 
 use super::knots::Knots;
 use super::lift::Lift;
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Scale of coordinates and values, so that sums of differences stay finite even for the largest f64. Scaling
 /// is exact except for numbers near zero.

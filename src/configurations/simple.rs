@@ -1,7 +1,7 @@
 //! Whether a polygon is simple.
 
 use super::plane::Plane;
-use spmesh_geometry::predicates::Predicates2;
+use spmesh_delaunay::predicates::Predicates2;
 
 /// Two edges of a polygon, or of an open chain, that have a point in common other than a shared vertex.
 ///
@@ -60,7 +60,7 @@ fn meet<P: Predicates2>(plane: &mut Plane<P>, e: [u32; 2], f: [u32; 2]) -> bool 
 
 /// Whether the chain abc turns back on itself.
 fn folds<P: Predicates2>(plane: &mut Plane<P>, a: u32, b: u32, c: u32) -> bool {
-    plane.orient(a, b, c) == spmesh_geometry::predicates::Sign::Zero && !plane.is_between(a, c, b)
+    plane.orient(a, b, c) == spmesh_delaunay::predicates::Sign::Zero && !plane.is_between(a, c, b)
 }
 
 /// Tests a chain or polygon of at most three vertices.

@@ -6,9 +6,9 @@
 
 use super::knots::Knots;
 use super::plane::Plane;
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Sign};
-use spmesh_model::configurations::FARAWAY;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Sign};
+use spmesh_stream::model::configurations::FARAWAY;
 use std::cmp::Ordering;
 
 /// Checks triangles from an input.

@@ -4,12 +4,12 @@ use super::knots::Knots;
 use super::lift::Lift;
 use super::plane::Plane;
 use foldhash::HashMap;
-use spmesh_core::error::{Error, Result};
-use spmesh_core::random::Random;
-use spmesh_geometry::delaunay2::{Kernel, Triangles};
-use spmesh_geometry::predicates::FiniteFloatPredicates;
-use spmesh_model::configurations::FARAWAY;
-use spmesh_model::configurations::{Claim, Configurations};
+use spmesh_base::error::{Error, Result};
+use spmesh_base::random::Random;
+use spmesh_delaunay::delaunay2::{Kernel, Triangles};
+use spmesh_delaunay::predicates::FiniteFloatPredicates;
+use spmesh_stream::model::configurations::FARAWAY;
+use spmesh_stream::model::configurations::{Claim, Configurations};
 
 /// A corner of a triangle, and the half-edge opposite to it: three times the number of the triangle, plus the
 /// place of the corner.
@@ -27,7 +27,7 @@ pub struct Start {
 /// The canonical Delaunay triangulation; of several knots at one place, only the first is a vertex.
 fn kernel_mesh(knots: &Knots) -> Result<Triangles> {
     let mut mesh = Triangles::default();
-    Kernel::new().triangulate(knots.points(), &mut mesh)?;
+    Kernel::new().triangulate(knots.points(), &mut mesh).map_err(Error::of_computation)?;
     if mesh.triangles().is_empty() { Err(Knots::collinear()) } else { Ok(mesh) }
 }
 

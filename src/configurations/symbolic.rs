@@ -3,10 +3,10 @@
 use super::knots::Knots;
 use num_bigint::BigInt;
 use num_traits::Zero;
-use spmesh_geometry::delaunay2::MAX_POINTS;
-use spmesh_geometry::predicates::forms::{Form, Incircle, Number, Orient2d, lift};
-use spmesh_geometry::predicates::residues::{Integers, Residue};
-use spmesh_geometry::predicates::{Point2, Sign, exact_integers};
+use spmesh_delaunay::delaunay2::MAX_POINTS;
+use spmesh_delaunay::predicates::forms::{Form, Incircle, Number, Orient2d, lift};
+use spmesh_delaunay::predicates::residues::{Integers, Residue};
+use spmesh_delaunay::predicates::{Point2, Sign, exact_integers};
 use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
 
@@ -187,7 +187,7 @@ impl<T: Number + Zero, const C: usize> Mul for Polynomial<T, C> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spmesh_core::random::Random;
+    use spmesh_base::random::Random;
 
     /// Knots on a circle and a line, many of them repeated.
     fn knots(random: &mut Random) -> Knots {

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::parse_numbers;
-use spmesh_core::error::{Error, Result};
-use spmesh_core::output::Output;
-use spmesh_io::raster::{Cells, Grid, NoData, RasterFormat, RasterOptions, Window};
+use spmesh_base::error::{Error, Result};
+use spmesh_base::output::Output;
+use spmesh_formats::raster::{Cells, Grid, NoData, RasterFormat, RasterOptions, Window};
 use spmesh_stream::Crs;
 
 /// Flags for the grid of a raster.

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Whether the stream that a program writes is compressed.
 #[derive(Debug, Clone, Copy, Args)]

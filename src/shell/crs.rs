@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 use spmesh_stream::Crs;
 
 /// The coordinate reference system that a user states.
@@ -18,8 +18,8 @@ impl CrsFlag {
     /// The system, if the flag is given.
     ///
     /// # Errors
-    /// As [`spmesh_crs::requested`].
+    /// As [`spmesh_formats::crs::requested`].
     pub fn system(&self) -> Result<Option<Crs>> {
-        self.crs.as_deref().map(spmesh_crs::requested).transpose()
+        self.crs.as_deref().map(spmesh_formats::crs::requested).transpose()
     }
 }

@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use spmesh_core::error::{Error, Result};
-use spmesh_core::places::is_device;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::places::is_device;
 
 /// Streams of spmesh.
 pub const STREAM: &[&str] = &["spm"];

@@ -21,16 +21,16 @@ use std::process::ExitCode;
 use clap::{Args, Parser};
 
 pub use messages::{notice, say};
-pub use spmesh_core::allocator::Allocator;
-use spmesh_core::error::{Error, ErrorKind};
-use spmesh_core::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
-use spmesh_core::parallel::{THREADS_DEFAULT_MAX, available_threads};
-use spmesh_core::system;
-use spmesh_core::temporary::remove_names_at_signals;
-use spmesh_io::detect::BYTE_ORDER_MARK;
-use spmesh_io::source::{Plain, is_manifest, name_of, open_file, open_manifest, open_stdin};
-use spmesh_model::bounds::Bounds;
+pub use spmesh_base::allocator::Allocator;
+use spmesh_base::error::{Error, ErrorKind};
+use spmesh_base::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
+use spmesh_base::parallel::{THREADS_DEFAULT_MAX, available_threads};
+use spmesh_base::system;
+use spmesh_base::temporary::remove_names_at_signals;
+use spmesh_formats::detect::BYTE_ORDER_MARK;
+use spmesh_formats::source::{Plain, is_manifest, name_of, open_file, open_manifest, open_stdin};
 use spmesh_stream::StreamReader;
+use spmesh_stream::model::bounds::Bounds;
 
 /// Runs a tool: parses its flags, calls `run`, and turns the result into an exit code and a message.
 ///
@@ -156,7 +156,7 @@ pub fn peak_memory() -> u64 {
 ///
 /// # Errors
 /// If the file cannot be opened, or stdin is a terminal.
-pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Send>, String)> {
+pub fn open_input(path: &Path) -> spmesh_base::error::Result<(Box<dyn Read + Send>, String)> {
     open_as(path, Plain::new)
 }
 
@@ -164,7 +164,7 @@ pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Sen
 ///
 /// # Errors
 /// As [`open_input`]; if its header is malformed.
-pub fn open_stream(path: &Path) -> spmesh_core::error::Result<StreamReader<Box<dyn Read + Send>>> {
+pub fn open_stream(path: &Path) -> spmesh_base::error::Result<StreamReader<Box<dyn Read + Send>>> {
     let (input, name) = open_input(path)?;
     StreamReader::new(input, name)
 }
@@ -173,7 +173,7 @@ pub fn open_stream(path: &Path) -> spmesh_core::error::Result<StreamReader<Box<d
 ///
 /// # Errors
 /// As [`open_input`].
-pub fn open_held(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Send>, String)> {
+pub fn open_held(path: &Path) -> spmesh_base::error::Result<(Box<dyn Read + Send>, String)> {
     open_as(path, Plain::held)
 }
 
@@ -181,7 +181,7 @@ pub fn open_held(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Send
 fn open_as(
     path: &Path,
     plain: impl Fn(Box<dyn Read + Send>) -> std::io::Result<Plain<Box<dyn Read + Send>>>,
-) -> spmesh_core::error::Result<(Box<dyn Read + Send>, String)> {
+) -> spmesh_base::error::Result<(Box<dyn Read + Send>, String)> {
     let name = name_of(path);
     let reading = |e| Error::io("reading", e).of_input(&name);
     if path.as_os_str() == "-" {
@@ -201,7 +201,7 @@ fn open_as(
 ///
 /// # Errors
 /// If the list cannot be read, or is no list of at most [`LIST_FILES_MAX`] files; usage, if it lists no file.
-pub fn read_list(list: &Path) -> spmesh_core::error::Result<Vec<PathBuf>> {
+pub fn read_list(list: &Path) -> spmesh_base::error::Result<Vec<PathBuf>> {
     let (input, name) = open_held(list)?;
     let files = listed(BufReader::new(input)).map_err(|e| e.of_input(&name))?;
     if files.is_empty() {
@@ -210,7 +210,7 @@ pub fn read_list(list: &Path) -> spmesh_core::error::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-fn listed(mut input: impl BufRead) -> spmesh_core::error::Result<Vec<PathBuf>> {
+fn listed(mut input: impl BufRead) -> spmesh_base::error::Result<Vec<PathBuf>> {
     let (mut files, mut line) = (Vec::new(), Vec::new());
     for number in 1.. {
         line.clear();
@@ -238,7 +238,7 @@ fn listed(mut input: impl BufRead) -> spmesh_core::error::Result<Vec<PathBuf>> {
 ///
 /// # Errors
 /// Usage, if stdin is one.
-pub fn refuse_terminal() -> spmesh_core::error::Result<()> {
+pub fn refuse_terminal() -> spmesh_base::error::Result<()> {
     if std::io::stdin().is_terminal() {
         return Err(Error::usage("stdin is a terminal: give a file or pipe a stream in (see --help)"));
     }

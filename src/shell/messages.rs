@@ -8,9 +8,9 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use super::Common;
-use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_core::output::open_stdout;
-use spmesh_core::upstream;
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::output::open_stdout;
+use spmesh_base::upstream;
 
 /// Tools whose output is a stream, in whatever way they are called.
 const STREAM_WRITERS: [&str; 4] = ["spfinalize", "spdelaunay2d", "spdelaunay3d", "configgen"];

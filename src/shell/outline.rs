@@ -6,8 +6,8 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::open_held;
-use spmesh_core::error::{Error, Result};
-use spmesh_io::source::{Mask, read_mask};
+use spmesh_base::error::{Error, Result};
+use spmesh_formats::source::{Mask, read_mask};
 
 /// Flags about the outline of a surface.
 #[derive(Debug, Clone, Args)]

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Common;
-use spmesh_core::parallel::Ticker;
-use spmesh_core::upstream;
+use spmesh_base::parallel::Ticker;
+use spmesh_base::upstream;
 
 /// How often a pass shows that it goes on.
 const TICK: Duration = Duration::from_millis(100);

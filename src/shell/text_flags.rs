@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use spmesh_io::source::{Column, Separator, TextOptions};
+use spmesh_formats::source::{Column, Separator, TextOptions};
 
 /// How lines of text are laid out.
 #[derive(Debug, Clone, Args)]

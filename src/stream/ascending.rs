@@ -221,7 +221,7 @@ mod tests {
     use std::collections::HashMap;
 
     use super::*;
-    use spmesh_core::random::Random;
+    use spmesh_base::random::Random;
 
     /// Ids in runs, with gaps of up to `gap` between runs.
     struct Ids {

@@ -2,7 +2,7 @@
 
 use super::header::Header;
 use super::header_code::Fault;
-use spmesh_model::attributes::{Attribute, Attributes, NumberType};
+use crate::model::attributes::{Attribute, Attributes, NumberType};
 
 const FLAG_SCALE: u8 = 1;
 const FLAG_UNKNOWN: u8 = 2;

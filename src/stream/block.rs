@@ -3,7 +3,7 @@
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::tag_rules::{TagBytes, check_tag, may_be_skipped, needs_newer};
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Length of the frame before the payload, in bytes.
 pub(super) const FRAME_LEN: usize = 16;

@@ -5,9 +5,9 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::whole_records;
 use super::rules4::{check_cell, check_neighbour_count, check_vertex_count};
-use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::CELL_WORDS_MAX;
-use spmesh_model::cells4::{Cell4, Cells4};
+use crate::model::cells4::{Cell4, Cells4};
+use spmesh_base::error::{Error, Result};
+use spmesh_base::limits::CELL_WORDS_MAX;
 
 /// Marks a cell as infinite, in the word that counts its vertices.
 pub(super) const INFINITE: u32 = 1 << 31;

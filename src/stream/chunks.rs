@@ -1,9 +1,9 @@
 //! The promise of a chunked points stream: one tag of the run after some points has a cell that holds all of
 //! them. Blocks without records neither start nor end a run.
 
-use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::Bounds;
-use spmesh_model::cells::{CellCode, CellTree};
+use crate::model::bounds::Bounds;
+use crate::model::cells::{CellCode, CellTree};
+use spmesh_base::error::{Error, Result};
 
 /// Checks the promise with the bounding box of the points since the last tag.
 #[derive(Debug)]

@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 
 use super::configurations::{ConfigurationBlock, check_degree};
 use super::kind::Kind;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::configurations::{Claim, FARAWAY};
+use crate::model::configurations::{Claim, FARAWAY};
+use spmesh_base::error::{Error, Result};
 
 /// State against which later blocks are checked.
 #[derive(Debug, Default)]

@@ -2,11 +2,11 @@
 
 use std::io::Read;
 
+use crate::model::configurations::Configurations;
+use crate::model::functions::Function;
+use crate::model::points::Point2;
 use crate::{Event, Header, StreamReader};
-use spmesh_core::error::{Error, Result};
-use spmesh_model::configurations::Configurations;
-use spmesh_model::functions::Function;
-use spmesh_model::points::Point2;
+use spmesh_base::error::{Error, Result};
 
 /// Knots and their configurations, as read from a stream.
 #[derive(Debug, Clone, Default)]

@@ -2,9 +2,9 @@
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
-use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::CONFIGURATION_DEGREE_MAX;
-use spmesh_model::configurations::Claim;
+use crate::model::configurations::Claim;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::limits::CONFIGURATION_DEGREE_MAX;
 
 /// Length of degree, claim and number of groups, in bytes.
 const FIXED_LEN: usize = 12;
@@ -37,7 +37,7 @@ pub struct ConfigurationBlock {
     /// Number of configurations of each group.
     pub counts: Vec<u32>,
     /// Boundaries, group by group; those of infinite configurations have
-    /// [`spmesh_model::configurations::FARAWAY`] in the last place.
+    /// [`crate::model::configurations::FARAWAY`] in the last place.
     pub boundaries: Vec<[u32; 3]>,
 }
 

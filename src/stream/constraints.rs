@@ -8,9 +8,9 @@ use super::coordinates::Coordinates;
 use super::event::Patch;
 use super::header::Header;
 use super::kind::Kind;
-use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::SEGMENTS_MAX;
-use spmesh_model::points::Point2;
+use crate::model::points::Point2;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::limits::SEGMENTS_MAX;
 
 /// Bytes of a side in a stream.
 pub(super) const SIDE_LEN: usize = 12;
@@ -140,7 +140,7 @@ pub(super) fn segment_len(header: &Header) -> usize {
 /// Appends the stored form of a segment.
 ///
 /// # Errors
-/// [`spmesh_core::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
+/// [`spmesh_base::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
 pub(super) fn encode_segment(header: &Header, segment: &Segment, bytes: &mut Vec<u8>) -> Result<()> {
     bytes.extend_from_slice(&segment.line.to_le_bytes());
     for &value in segment.ends.as_flattened() {

@@ -1,7 +1,7 @@
 //! How stored coordinates are encoded, and how they map to the world.
 
 use super::decimals::Axis;
-use spmesh_model::bounds::Point;
+use crate::model::bounds::Point;
 
 /// How stored coordinates are encoded, and how they map to the world.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,9 +5,9 @@ use std::io::Read;
 use super::event::Event;
 use super::kind::Kind;
 use super::reader::StreamReader;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::cells4::Cell4;
-use spmesh_model::diagram4::Diagram4;
+use crate::model::cells4::Cell4;
+use crate::model::diagram4::Diagram4;
+use spmesh_base::error::{Error, Result};
 
 /// Collects the blocks of a stream of points or cells of four dimensions.
 ///

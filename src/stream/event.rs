@@ -4,11 +4,11 @@ use super::configurations::ConfigurationBlock;
 use super::constraints::Segment;
 use super::part::Origin;
 use super::points4::Points4;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::Point;
-use spmesh_model::cells::CellCode;
-use spmesh_model::cells4::Cells4;
-use spmesh_model::functions::Function;
+use crate::model::bounds::Point;
+use crate::model::cells::CellCode;
+use crate::model::cells4::Cells4;
+use crate::model::functions::Function;
+use spmesh_base::error::{Error, Result};
 
 /// One block of a stream, decoded and checked.
 #[derive(Debug, Clone, PartialEq)]

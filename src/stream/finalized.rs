@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::{Bounds, Point};
-use spmesh_model::cells::{CellCode, CellTree};
+use crate::model::bounds::{Bounds, Point};
+use crate::model::cells::{CellCode, CellTree};
+use spmesh_base::error::{Error, Result};
 
 /// The part of a finalization tree that is final.
 ///
@@ -71,7 +71,7 @@ impl FinalizedCells {
     /// Makes `cell` final. Parts of it, but not all of it, may be final already.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if `cell` is not a cell of the tree, or is final already:
+    /// [`spmesh_base::error::ErrorKind::Malformed`] if `cell` is not a cell of the tree, or is final already:
     /// by itself, through an ancestor, or through all of its parts.
     pub fn finalize(&mut self, cell: CellCode) -> Result<()> {
         if !self.tree.is_valid(cell) {
@@ -129,7 +129,7 @@ impl FinalizedCells {
     /// Checks that a point may still arrive.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if it lies in the final part, or outside of the tree's
+    /// [`spmesh_base::error::ErrorKind::Malformed`] if it lies in the final part, or outside of the tree's
     /// cube.
     #[inline]
     pub fn check_point(&mut self, point: Point) -> Result<()> {

@@ -3,8 +3,8 @@
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::event::Totals;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::functions::{Function, FunctionKind};
+use crate::model::functions::{Function, FunctionKind};
+use spmesh_base::error::{Error, Result};
 
 /// Length of the shortest function in bytes: kind, number of terms, one knot, one term.
 const LEAST_LEN: usize = 4 + 4 + 4 + TERM_LEN;

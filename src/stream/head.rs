@@ -6,7 +6,7 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::header::Header;
 use super::header_code::{MAGIC, PREAMBLE_LEN, decode_preamble};
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Reads the header; returns it with its length.
 pub(super) fn read_header(input: &mut impl Read) -> Result<(Header, u64)> {

@@ -7,10 +7,10 @@ use super::coordinates::{Coordinates, is_grid};
 use super::kind::Kind;
 use super::part::PartName;
 use super::weights::Weighted;
-use spmesh_core::limits::PRODUCER_LEN_MAX;
-use spmesh_model::attributes::Attributes;
-use spmesh_model::bounds::{Bounds, Region};
-use spmesh_model::cells::CellTree;
+use crate::model::attributes::Attributes;
+use crate::model::bounds::{Bounds, Region};
+use crate::model::cells::CellTree;
+use spmesh_base::limits::PRODUCER_LEN_MAX;
 
 /// The number of points in the header when it is unknown.
 pub(super) const COUNT_UNKNOWN: u64 = u64::MAX;

@@ -12,10 +12,10 @@ use super::kind::Kind;
 use super::part::PartName;
 use super::tag_rules::{TagBytes, check_tag, may_be_skipped, needs_newer};
 use super::weights::Weighted;
-use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::HEADER_BODY_MAX;
-use spmesh_model::bounds::{Bounds, Region};
-use spmesh_model::cells::CellTree;
+use crate::model::bounds::{Bounds, Region};
+use crate::model::cells::CellTree;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::limits::HEADER_BODY_MAX;
 
 /// First bytes of every stream. The first byte is not ASCII, and the line ends reveal damage by text-mode
 /// transfer.
@@ -71,7 +71,7 @@ impl Header {
     /// The header as bytes, checksum included.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Usage`] if it breaks a rule of the format or is too long.
+    /// [`spmesh_base::error::ErrorKind::Usage`] if it breaks a rule of the format or is too long.
     pub(super) fn encode(&self) -> Result<Vec<u8>> {
         let refused = |reason: String| Error::usage(format!("cannot write the header: {reason}"));
         self.check().map_err(refused)?;
@@ -115,8 +115,8 @@ impl Header {
     /// preamble. What this version does not know is reported before rules that a newer version may change.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Unsupported`] if the stream needs what this version does not know;
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if the header breaks a rule.
+    /// [`spmesh_base::error::ErrorKind::Unsupported`] if the stream needs what this version does not know;
+    /// [`spmesh_base::error::ErrorKind::Malformed`] if the header breaks a rule.
     pub(super) fn decode(kind: u16, body: &[u8]) -> Result<Header> {
         let kind = Kind::from_code(kind).ok_or_else(|| needs_newer(format_args!("kind {kind}")))?;
         let (fixed, records) = body.split_first_chunk().expect("the preamble states a sufficient length");
@@ -155,7 +155,7 @@ impl Header {
 /// Checks the version of a stream or of a text twin.
 ///
 /// # Errors
-/// [`spmesh_core::error::ErrorKind::Unsupported`] if it is not [`VERSION`].
+/// [`spmesh_base::error::ErrorKind::Unsupported`] if it is not [`VERSION`].
 pub fn check_version(version: u64) -> Result<()> {
     match version.cmp(&u64::from(VERSION)) {
         Ordering::Equal => Ok(()),

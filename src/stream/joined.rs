@@ -10,7 +10,7 @@ use super::live::LiveVertices;
 use super::part::GlobalId;
 use super::reader::StreamReader;
 use super::writer::StreamWriter;
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// The bytes of a part, with the name that messages use.
 pub type OpenedPart = (Box<dyn Read + Send>, String);

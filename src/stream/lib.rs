@@ -9,7 +9,7 @@
 //!   length and checksum before it decodes, and totals at the end. Its memory is independent of the length of
 //!   the stream. It decompresses blocks where a writer compressed them, which [`Header::compressed`] allows.
 //!   It skips header records and blocks that it does not know if their tags allow that, and refuses others as
-//!   [`spmesh_core::error::ErrorKind::Unsupported`].
+//!   [`spmesh_base::error::ErrorKind::Unsupported`].
 //! - [`LiveVertices`] and [`FinalizedCells`] keep what a consumer needs between events: vertices that later
 //!   patches may still use, and cells that no later point lies in. [`MemoryRules`] checks with both what the
 //!   reader alone cannot check.
@@ -18,6 +18,7 @@
 //! - Points of space may be [`Weighted`]: a mesh of them is a regular tetrahedralization.
 //! - [`ConfigurationSet`] and [`read_diagram4`] hold whole streams in memory, for consumers that need all at
 //!   once.
+//! - [`model`] has the data themselves: points, boxes, cells, configurations, attributes.
 //!
 //! `formats/spmesh.md` specifies every byte. Tools exchange data through this crate only.
 //!
@@ -26,7 +27,7 @@
 //! ```
 //! use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader, StreamWriter};
 //!
-//! # fn main() -> spmesh_core::error::Result<()> {
+//! # fn main() -> spmesh_base::error::Result<()> {
 //! // Three points of space, written to memory.
 //! let points = vec![[0.0, 0.0, 0.5], [1.0, 0.0, 0.25], [0.0, 1.0, -2.0]];
 //! let header = Header::new(Kind::Points, Coordinates::F64, 3, false);
@@ -78,6 +79,7 @@ mod joined;
 mod kind;
 mod live;
 mod memory_rules;
+pub mod model;
 mod part;
 mod patch_blocks;
 mod payload;
@@ -95,6 +97,7 @@ mod writer;
 
 pub use ascending::{Ascending, Place};
 pub use cell_words::check_word_count;
+#[cfg(feature = "zstd")]
 pub use compression::zstd_frame;
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;

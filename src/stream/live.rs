@@ -2,8 +2,8 @@
 
 use super::ascending::{Ascending, Place};
 use super::event::Patch;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::Point;
+use crate::model::bounds::Point;
+use spmesh_base::error::{Error, Result};
 
 /// Vertices between their patch and their finalization, with a value `T` that the consumer keeps for each.
 ///
@@ -35,7 +35,7 @@ impl<T: Copy> LiveVertices<T> {
     /// stream.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if the patch uses a vertex that is finalized or unknown.
+    /// [`spmesh_base::error::ErrorKind::Malformed`] if the patch uses a vertex that is finalized or unknown.
     pub fn enter(&mut self, patch: &Patch, mut value_of: impl FnMut(u64, Point) -> T) -> Result<&[(u64, T)]> {
         self.local.clear();
         for (&point, id) in patch.new.iter().zip(patch.first_id..) {
@@ -77,7 +77,7 @@ impl<T: Copy> LiveVertices<T> {
     /// Forgets a live vertex that a residual point names, and returns its value: no later patch uses it.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if the vertex is finalized or unknown, or was named
+    /// [`spmesh_base::error::ErrorKind::Malformed`] if the vertex is finalized or unknown, or was named
     /// before.
     pub fn retire(&mut self, id: u64) -> Result<T> {
         let place = self.live.find(id, Place::default());

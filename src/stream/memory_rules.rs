@@ -4,8 +4,8 @@ use super::event::Event;
 use super::finalized::FinalizedCells;
 use super::header::Header;
 use super::live::LiveVertices;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::Point;
+use crate::model::bounds::Point;
+use spmesh_base::error::{Error, Result};
 
 /// Checks what [`super::StreamReader`] leaves to programs that keep memory: no point lies in a final cell, each
 /// tag adds information, no vertex is used after its finalization, and residual points are live vertices.
@@ -44,7 +44,7 @@ impl MemoryRules {
     /// Checks the next event of the stream.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`], if it breaks a rule.
+    /// [`spmesh_base::error::ErrorKind::Malformed`], if it breaks a rule.
     pub fn check(&mut self, event: &Event) -> Result<()> {
         match (event, &mut self.cells, &mut self.live) {
             (Event::Points(points), Some(cells), _) => cells.check_points(points),

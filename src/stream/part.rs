@@ -7,7 +7,7 @@ use super::block::whole_records;
 use super::event::Patch;
 use super::header::Header;
 use super::kind::Kind;
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Bits of a [`GlobalId`] for the number of the vertex.
 const NUMBER_BITS: u32 = 40;

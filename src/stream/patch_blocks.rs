@@ -9,8 +9,8 @@ use super::coordinates::Coordinates;
 use super::header::Header;
 use super::part::{GlobalId, Origin};
 use super::payload::PATCH_FIXED_LEN;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::Point;
+use crate::model::bounds::Point;
+use spmesh_base::error::{Error, Result};
 
 /// How points and simplices are encoded: the part of a mesh header that [`PatchBlocks`] needs.
 #[derive(Debug, Clone, Copy)]

@@ -7,9 +7,9 @@ use super::coordinates::Coordinates;
 use super::event::{Patch, Totals};
 use super::header::Header;
 use super::part::check_residual_id;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::{Bounds, Point};
-use spmesh_model::cells::CellCode;
+use crate::model::bounds::{Bounds, Point};
+use crate::model::cells::CellCode;
+use spmesh_base::error::{Error, Result};
 
 /// The id of a residual point that is not yet a vertex.
 const NO_VERTEX: u64 = u64::MAX;

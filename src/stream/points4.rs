@@ -4,8 +4,8 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::whole_records;
 use super::header::Header;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::cells4::Point4;
+use crate::model::cells4::Point4;
+use spmesh_base::error::{Error, Result};
 
 /// Points of four dimensions; either all have a value, or none has.
 #[derive(Debug, Clone, Default)]

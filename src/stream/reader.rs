@@ -17,9 +17,9 @@ use super::payload;
 use super::points4::{self, Points4};
 use super::tally::Tally;
 use super::weights::Weights;
-use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
-use spmesh_model::bounds::{Bounds, Point};
+use crate::model::bounds::{Bounds, Point};
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::limits::BLOCK_PAYLOAD_MAX;
 
 /// The block that must come next.
 #[derive(Debug, Clone, Copy)]

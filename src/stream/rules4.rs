@@ -4,8 +4,8 @@
 use super::event::Totals;
 use super::kind::Kind;
 use super::points4::Points4;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::cells4::{Cell4, Cells4, Point4};
+use crate::model::cells4::{Cell4, Cells4, Point4};
+use spmesh_base::error::{Error, Result};
 
 /// State against which later blocks are checked; only streams of four dimensions are checked.
 #[derive(Debug)]

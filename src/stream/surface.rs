@@ -2,7 +2,7 @@
 
 use super::header::Header;
 use super::kind::Kind;
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Checks that a stream is a triangle mesh; it must have elevations if they are needed.
 ///

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Four characters that name a record of the header or a block.
 pub(super) type TagBytes = [u8; 4];

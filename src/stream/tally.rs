@@ -9,8 +9,8 @@ use super::header::Header;
 use super::kind::Kind;
 use super::part::{PartName, check_shared};
 use super::rules4::Rules4;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::Bounds;
+use crate::model::bounds::Bounds;
+use spmesh_base::error::{Error, Result};
 
 /// Counts of the events so far, and the rules that span events. Binary streams and their text twins share
 /// them.

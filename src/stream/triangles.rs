@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use super::{Header, Patch, StreamWriter};
-use spmesh_core::error::Result;
-use spmesh_model::bounds::Point;
+use crate::model::bounds::Point;
+use spmesh_base::error::Result;
 
 /// Triangles per patch. A triangle with three new vertices takes at most 3 * (4 + 24 + 4) bytes, so a patch
 /// stays below the maximum length of a block.

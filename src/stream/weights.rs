@@ -4,8 +4,8 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::header::Header;
 use super::kind::Kind;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::attributes::{Attribute, Attributes, NumberType};
+use crate::model::attributes::{Attribute, Attributes, NumberType};
+use spmesh_base::error::{Error, Result};
 
 /// What the header says of the weights of points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,7 +85,7 @@ impl Weights {
     /// Checks the weights in `rows`.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if one is not finite, or greater than the header says.
+    /// [`spmesh_base::error::ErrorKind::Malformed`] if one is not finite, or greater than the header says.
     pub fn check(&self, rows: &[u8]) -> Result<()> {
         // A NaN is no number up to the limit.
         match self.read(rows).find(|&weight| !(weight.is_finite() && weight <= self.greatest)) {

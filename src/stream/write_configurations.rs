@@ -2,13 +2,13 @@
 
 use std::io::Write;
 
+use crate::model::bounds::{Bounds, Point};
+use crate::model::configurations::Configurations;
+use crate::model::functions::Function;
+use crate::model::points::Point2;
 use crate::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamWriter};
-use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::CONFIGURATION_DEGREE_MAX;
-use spmesh_model::bounds::{Bounds, Point};
-use spmesh_model::configurations::Configurations;
-use spmesh_model::functions::Function;
-use spmesh_model::points::Point2;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::limits::CONFIGURATION_DEGREE_MAX;
 
 /// Boundaries that are passed to the writer at a time.
 const BATCH: usize = 1 << 12;

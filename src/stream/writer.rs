@@ -21,12 +21,12 @@ use super::header::Header;
 use super::kind::Kind;
 use super::patch_blocks::PatchBlocks;
 use super::rules4::Rules4;
+use crate::model::bounds::Point;
+use crate::model::cells::CellCode;
 use encode::encode_point;
 pub use encode::encode_points;
-use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
-use spmesh_model::bounds::Point;
-use spmesh_model::cells::CellCode;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::limits::BLOCK_PAYLOAD_MAX;
 
 /// Payload at which a block of points is closed, in bytes: far below the maximum, so that a consumer can
 /// start early, and large enough that the frame is negligible.

@@ -2,9 +2,9 @@
 
 use tiny_skia::{ColorU8, Pixmap};
 
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::Point2;
-use spmesh_io::raster::colour_map::{Colour, mix};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point2;
+use spmesh_formats::raster::colour_map::{Colour, mix};
 
 /// Samples of a pixel along each side.
 const SAMPLES: usize = 2;

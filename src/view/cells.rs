@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::scene::Scene;
 use super::style::Colours;
 use super::svg;
-use spmesh_core::error::Result;
-use spmesh_io::raster::colour_map::hex;
-use spmesh_model::bounds::Point;
-use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_base::error::Result;
+use spmesh_formats::raster::colour_map::hex;
+use spmesh_stream::model::bounds::Point;
+use spmesh_stream::model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, FinalizedCells};
 
 /// The least side of a cell that is drawn. Units: lengths of the picture.

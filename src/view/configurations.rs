@@ -10,10 +10,10 @@ use super::sheet::{Furniture, Mark, Shape};
 use super::svg::{self, Anchor};
 use super::ticks;
 use super::units::Units;
+use spmesh_base::error::{Error, Result};
 use spmesh_configurations::{CentroidMesh, Configurations, FARAWAY, Knots};
-use spmesh_core::error::{Error, Result};
-use spmesh_io::raster::colour_map::{Colour, hex};
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_formats::raster::colour_map::{Colour, hex};
+use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{ConfigurationSet, Header};
 
 /// Triangles of the lower degree, the link, its inside, the chosen set, the knots, and triangles of the upper

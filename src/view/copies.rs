@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use spmesh_configurations::Configurations;
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::bounds::Point;
 
 /// How far copies move: this share of the distance from their place to the nearest neighbour.
 const SHARE: f64 = 0.22;

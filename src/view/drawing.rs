@@ -18,13 +18,13 @@ use super::style::{Colours, Style};
 use super::triangles::{self, Triangle};
 use super::units::Units;
 use super::{configurations, svg, ticks};
+use spmesh_base::error::Result;
 use spmesh_configurations::Knots;
-use spmesh_core::error::Result;
-use spmesh_geometry::predicates::Point2;
-use spmesh_io::outline::{ConcaveOutline, EdgeLimit, Waiting};
-use spmesh_io::raster::colour_map::Colour;
-use spmesh_model::bounds::{Bounds, Point};
-use spmesh_model::cells::CellCode;
+use spmesh_delaunay::predicates::Point2;
+use spmesh_formats::outline::{ConcaveOutline, EdgeLimit, Waiting};
+use spmesh_formats::raster::colour_map::Colour;
+use spmesh_stream::model::bounds::{Bounds, Point};
+use spmesh_stream::model::cells::CellCode;
 use spmesh_stream::{
     ConfigurationSet, ConstraintEdges, Coordinates, Event, Header, Kind, Patch, StreamReader,
 };

@@ -7,7 +7,7 @@ use std::str::FromStr;
 use quick_xml::XmlVersion;
 use quick_xml::events::BytesStart;
 
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Attributes that change no pixel. Names and roles are for pages. Strokes keep their width with
 /// `vector-effect`, but nothing is scaled here. All text is in the embedded font.

@@ -2,8 +2,8 @@
 
 use std::io::Read;
 
-use spmesh_core::error::Result;
-use spmesh_model::bounds::Bounds;
+use spmesh_base::error::Result;
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Event, StreamReader, Totals};
 
 /// The box and the length of a stream that has been read once.

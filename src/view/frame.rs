@@ -1,6 +1,6 @@
 //! The place of a picture in the world.
 
-use spmesh_geometry::predicates::Point2;
+use spmesh_delaunay::predicates::Point2;
 
 /// The map from a picture to world coordinates: `x = left + unit * across`, `y = top - unit * down`.
 #[derive(Debug, Clone, Copy, PartialEq)]

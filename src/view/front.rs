@@ -4,9 +4,9 @@
 use foldhash::{HashMap, HashMapExt};
 
 use super::triangles::Triangle;
-use spmesh_core::error::Result;
-use spmesh_geometry::predicates::Point2;
-use spmesh_model::bounds::Point;
+use spmesh_base::error::Result;
+use spmesh_delaunay::predicates::Point2;
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{LiveVertices, Patch};
 
 /// A vertex, with its place in stored coordinates.

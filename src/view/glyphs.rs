@@ -5,7 +5,7 @@ use tiny_skia::{Path, PathBuilder};
 use super::element::failed;
 use super::font::{Dot, Font};
 use super::svg::Anchor;
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 
 /// A line of text at a place.
 pub(super) struct Words<'a> {

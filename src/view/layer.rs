@@ -5,8 +5,8 @@ use super::canvas::Canvas;
 use super::options::Form;
 use super::scene::Scene;
 use super::style::Style;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::error::{Error, Result};
+use spmesh_stream::model::bounds::{Bounds, Point};
 
 /// Above this many triangles or points, they are painted by default. An SVG of this many triangles has 2 MB.
 const VECTORS_MAX: usize = 20_000;

@@ -13,6 +13,8 @@
 //! `render` turns the SVG of pictures alone into pixels: `element` refuses what it does not know, `pen` is
 //! what elements inherit, `outlines` are the shapes, `glyphs` text in the `font`, and `clip` clips.
 //!
+//! `flags`, with the feature of this name, has the command line.
+//!
 //! `solid` draws surfaces of files in space from any side.
 //!
 //! Memory: triangles or points, as long as they are drawn one by one; for more of them, the pixels of the
@@ -28,6 +30,8 @@ mod depth_sort;
 mod drawing;
 mod element;
 mod extent;
+#[cfg(feature = "flags")]
+pub mod flags;
 mod font;
 pub mod frame;
 mod front;

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use spmesh_io::raster::{Light, Window};
-use spmesh_io::source::Mask;
-use spmesh_model::bounds::Bounds;
+use spmesh_formats::raster::{Light, Window};
+use spmesh_formats::source::Mask;
 use spmesh_stream::Crs;
+use spmesh_stream::model::bounds::Bounds;
 
 /// What triangles and points show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,7 +55,7 @@ pub struct Options {
     pub name: String,
     /// What triangles and points show; depends on the stream if `None`.
     pub fill: Option<Fill>,
-    /// The attribute that they show instead, as `spmesh_model::attributes::Attributes::column` takes it, or the
+    /// The attribute that they show instead, as `spmesh_stream::model::attributes::Attributes::column` takes it, or the
     /// name of one with three components, which is a colour.
     pub colour_by: Option<String>,
     /// Edges of triangles.

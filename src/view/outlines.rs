@@ -3,7 +3,7 @@
 use tiny_skia::{Path, PathBuilder, Rect};
 
 use super::element::{Element, failed};
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 
 /// How far the arms of a cubic curve reach along the tangents of a quarter of a circle of radius 1.
 const ARM: f32 = 0.552_284_8;

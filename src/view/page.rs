@@ -5,7 +5,7 @@ use std::io::Write;
 use quick_xml::escape::escape;
 
 use super::frame::Frame;
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// A picture, and the text of its page.
 pub(super) struct Page<'a> {
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
     use data_encoding::BASE64;
     use sha2::{Digest, Sha256};
-    use spmesh_core::error::ErrorKind;
+    use spmesh_base::error::ErrorKind;
 
     const SVG: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10"><g id="map"></g></svg>"#;
 

@@ -3,8 +3,8 @@
 use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, Pixmap, Stroke, Transform};
 
 use super::element::Element;
-use spmesh_core::error::Result;
-use spmesh_io::raster::colour_map::Colour;
+use spmesh_base::error::Result;
+use spmesh_formats::raster::colour_map::Colour;
 
 /// What an area is filled with.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,7 @@ use super::element::failed;
 use super::frame::Frame;
 use super::page::{self, Page};
 use super::render::render;
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 
 /// A picture.
 #[derive(Debug)]

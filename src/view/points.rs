@@ -8,8 +8,8 @@ use super::options::Fill;
 use super::scene::Scene;
 use super::style::{Colours, Style};
 use super::svg;
-use spmesh_io::raster::colour_map::{Colour, hex};
-use spmesh_model::bounds::Point;
+use spmesh_formats::raster::colour_map::{Colour, hex};
+use spmesh_stream::model::bounds::Point;
 
 /// Marked places that are nearer to each other share a dot. Units: lengths of the picture.
 const APART: f64 = 2.0;

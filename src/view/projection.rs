@@ -2,9 +2,9 @@
 
 use super::frame::Frame;
 use super::sheet::Sheet;
-use spmesh_core::error::Result;
-use spmesh_geometry::predicates::Point2;
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::error::Result;
+use spmesh_delaunay::predicates::Point2;
+use spmesh_stream::model::bounds::{Bounds, Point};
 
 /// The rotation of an oblique view, and the height of the eye above the horizon. Units: radians.
 const TURN: f64 = 0.5;

@@ -17,7 +17,7 @@ use super::glyphs::Words;
 use super::outlines::outline;
 use super::pen::Pen;
 use super::svg::Anchor;
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 
 /// The pixels of a picture, on white.
 ///

@@ -1,7 +1,7 @@
 //! Which options suit which stream.
 
 use super::options::{Fill, Moments, Options};
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 use spmesh_stream::{Header, Kind};
 
 /// Checks that a stream can be drawn as the options ask.

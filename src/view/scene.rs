@@ -2,9 +2,9 @@
 
 use super::projection::{PAD, View};
 use super::sheet::Sheet;
-use spmesh_core::error::Result;
-use spmesh_io::raster::Window;
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::error::Result;
+use spmesh_formats::raster::Window;
+use spmesh_stream::model::bounds::{Bounds, Point};
 
 /// A sheet, and the view of the world on it.
 #[derive(Debug, Clone, Copy)]

@@ -3,9 +3,9 @@
 use super::frame::Frame;
 use super::svg::{self, Anchor};
 use super::ticks;
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::Point2;
-use spmesh_io::raster::colour_map::{Colour, ColourMap, hex};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point2;
+use spmesh_formats::raster::colour_map::{Colour, ColourMap, hex};
 
 /// The margin of the sheet. Units: lengths of the picture, as all lengths here.
 const MARGIN: f64 = 16.0;

@@ -2,9 +2,9 @@
 
 use super::options::{Fill, Options};
 use super::units::Units;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::attributes::{Attributes, Column};
-use spmesh_model::bounds::Point;
+use spmesh_base::error::{Error, Result};
+use spmesh_stream::model::attributes::{Attributes, Column};
+use spmesh_stream::model::bounds::Point;
 
 /// Colours have 8 bits per component in a picture.
 const LEVELS: f64 = 256.0;

@@ -6,10 +6,10 @@ use super::projection::PAD;
 use super::sheet::{Furniture, Sheet};
 use super::shown::{pack, unpack};
 use super::svg;
-use spmesh_core::error::{Error, Result};
-use spmesh_io::raster::colour_map::{Colour, lit, mix};
-use spmesh_io::source::Surface;
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::error::{Error, Result};
+use spmesh_formats::raster::colour_map::{Colour, lit, mix};
+use spmesh_formats::source::Surface;
+use spmesh_stream::model::bounds::{Bounds, Point};
 
 /// The colour of triangles without one.
 const PLAIN: Colour = [190, 195, 205];

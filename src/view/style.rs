@@ -5,9 +5,9 @@ use super::options::{Fill, Options, When};
 use super::sheet::Legend;
 use super::shown::{self, Shown};
 use super::units::Units;
-use spmesh_io::raster::Light;
-use spmesh_io::raster::colour_map::{self, BATLOW, Colour, ColourMap, VIK, VIRIDIS};
-use spmesh_model::bounds::Point;
+use spmesh_formats::raster::Light;
+use spmesh_formats::raster::colour_map::{self, BATLOW, Colour, ColourMap, VIK, VIRIDIS};
+use spmesh_stream::model::bounds::Point;
 
 /// The colour of triangles that show nothing.
 const BARE: Colour = [255; 3];

@@ -2,7 +2,7 @@
 
 use super::canvas::Pixels;
 use data_encoding::BASE64;
-use spmesh_geometry::predicates::Point2;
+use spmesh_delaunay::predicates::Point2;
 
 /// Text escaped for XML, without the characters that XML forbids.
 pub(super) fn escape(text: &str) -> String {

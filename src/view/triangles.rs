@@ -9,8 +9,8 @@ use super::options::Fill;
 use super::scene::Scene;
 use super::style::{Colours, Style};
 use super::svg;
-use spmesh_io::raster::colour_map::hex;
-use spmesh_model::bounds::Point;
+use spmesh_formats::raster::colour_map::hex;
+use spmesh_stream::model::bounds::Point;
 
 /// A triangle of a stream.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,6 @@
 //! Names of the units of a picture.
 
-use spmesh_crs::System;
+use spmesh_formats::crs::System;
 use spmesh_stream::Crs;
 
 /// The units of a stream.

@@ -1,7 +1,7 @@
 //! The audit of 4D diagrams: it passes the diagrams that brute force finds, at every size of coordinates.
 
 use spmesh_audit::diagram::{Claim, Proof, Violation, check, check_simplices};
-use spmesh_model::cells4::Point4;
+use spmesh_stream::model::cells4::Point4;
 
 use spmesh_reference::diagram4::{Cell, Point, diagram, orientation};
 use spmesh_reference::sets::Random;

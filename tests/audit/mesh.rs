@@ -1,8 +1,8 @@
 //! Whole meshes by hand: each kind of fault is found and named.
 
 use spmesh_audit::{Audit, Check, PointSet, Standard};
-use spmesh_core::error::ErrorKind;
-use spmesh_model::bounds::Bounds;
+use spmesh_base::error::ErrorKind;
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamWriter, Totals};
 
 use super::reference::Random;

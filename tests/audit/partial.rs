@@ -1,7 +1,7 @@
 //! Partial meshes: the final triangles or tetrahedra of a region, its walls and its residual.
 
 use spmesh_audit::{Audit, Check, PointSet, Report, Standard};
-use spmesh_model::bounds::{Point, Region};
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Event, Header, Kind, Patch, StreamWriter, Totals};
 
 use super::reference::canonical_triangulation;

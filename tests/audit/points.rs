@@ -1,8 +1,8 @@
 //! Points streams: tags, chunks and boxes.
 
 use spmesh_audit::{Audit, Check, Report, Standard, Violation};
-use spmesh_model::bounds::{Bounds, Point};
-use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_stream::model::bounds::{Bounds, Point};
+use spmesh_stream::model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, Event, Header, Kind, StreamWriter, Totals};
 
 use super::{Verdict, assert_violates, audit};

@@ -1,7 +1,7 @@
 //! Tetrahedral meshes to be audited, and the ways to make them.
 
 use spmesh_audit::{PointSet, Report, Standard};
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind, Patch, StreamWriter};
 
 use super::{Verdict, audit};

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use spmesh_audit::{Report, Standard};
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Header, Patch, StreamWriter};
 
 use super::reference::canonical_triangulation;

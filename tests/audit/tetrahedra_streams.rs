@@ -1,7 +1,7 @@
 //! The rules of a stream of tetrahedra besides its geometry: finalization, points, labels, counts, memory.
 
 use spmesh_audit::{Audit, Check, PointSet, Standard};
-use spmesh_model::bounds::Bounds;
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamWriter, Totals};
 
 use super::solid::{BIPYRAMID, Solid, TWO, cubic, grid, position, solid_header};

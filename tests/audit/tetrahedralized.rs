@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use spmesh_audit::Standard;
-use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
 
 use super::reference::Random;
 use super::solid::{Solid, cubic, position};

@@ -1,8 +1,8 @@
 //! The rule `delaunay` and the definition of Delaunay configurations.
 
 use super::{check_circles, delaunay, knots, listed};
+use spmesh_base::error::ErrorKind;
 use spmesh_configurations::{self as configurations, Rule};
-use spmesh_core::error::ErrorKind;
 use spmesh_reference::configurations::{by_definition, lines};
 use spmesh_reference::sets::{self, Random};
 

@@ -13,8 +13,8 @@ mod special_features;
 mod spline;
 
 use spmesh_audit::configurations::{self as audit, FacetCounts};
+use spmesh_base::error::Result;
 use spmesh_configurations::{self as configurations, Configurations, Knots, Rule};
-use spmesh_core::error::Result;
 
 use spmesh_reference::configurations::Configuration;
 use spmesh_reference::normalised;

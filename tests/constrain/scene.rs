@@ -1,13 +1,13 @@
 //! Random points with lines between them, as streams in any order.
 
-use spmesh_constrain::{Options, Stats, constrain};
-use spmesh_geometry::delaunay2::triangulate;
-use spmesh_lines::Areas;
-use spmesh_model::network::{Network, NetworkSegment, NetworkVertex};
+use spmesh_delaunay::delaunay2::triangulate;
+use spmesh_delaunay::network::{Network, NetworkSegment, NetworkVertex};
+use spmesh_pipeline::lines::Areas;
 use spmesh_reference::peer::Peer;
 use spmesh_reference::segments::{is_on, random_segments};
 use spmesh_reference::sets::{Random, as_floats};
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, StreamWriter};
+use spmesh_terrain::constrain::{Options, Stats, constrain};
 use std::collections::BTreeMap;
 
 /// Points, segments between them that do not cross, and how many of the points are in the mesh at first.

@@ -1,6 +1,6 @@
 //! Memory: complete lines are written while triangles arrive, and pieces join in any order.
 
-use spmesh_core::error::ErrorKind;
+use spmesh_base::error::ErrorKind;
 use spmesh_terrain::contours::Options;
 
 use super::{WHOLE, options, try_lines};

@@ -9,7 +9,7 @@ mod pipelines;
 mod smooth;
 
 use serde_json::Value;
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 use spmesh_stream::{Coordinates, StreamReader};
 use spmesh_terrain::contours::{Levels, LineFormat, Options, Stats, contour};
 

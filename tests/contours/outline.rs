@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use spmesh_io::source::Mask;
+use spmesh_formats::source::Mask;
 use spmesh_terrain::contours::{LineFormat, Options, contour};
 
 use super::{Line, WHOLE, lines, options, try_lines};

@@ -1,7 +1,7 @@
 //! SPA, SPB, SMA and SMB.
 
+use spmesh_base::error::ErrorKind;
 use spmesh_convert::Format;
-use spmesh_core::error::ErrorKind;
 
 use super::independent::{obj, sma};
 use super::{converted, samples, text_of, with_notices};

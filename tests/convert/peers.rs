@@ -2,9 +2,9 @@
 
 use std::io::Cursor;
 
+use spmesh_base::error::ErrorKind;
 use spmesh_convert::{Format, Options, convert};
-use spmesh_core::error::ErrorKind;
-use spmesh_model::bounds::Bounds;
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Header, Kind, write_triangles};
 
 use super::independent::{obj, ply};

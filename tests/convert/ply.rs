@@ -1,7 +1,7 @@
 //! PLY as other programs write it: three encodings, properties of any type and order, polygons, points.
 
+use spmesh_base::error::ErrorKind;
 use spmesh_convert::Format;
-use spmesh_core::error::ErrorKind;
 
 use super::independent::obj;
 use super::{converted, samples, text_of};

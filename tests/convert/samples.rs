@@ -1,7 +1,7 @@
 //! Small streams of every kind.
 
-use spmesh_model::bounds::{Bounds, Point, Region};
-use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_stream::model::bounds::{Bounds, Point, Region};
+use spmesh_stream::model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, Crs, Header, Kind, Patch, StreamWriter};
 
 pub const SIDE: u64 = 12;

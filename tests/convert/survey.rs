@@ -1,7 +1,7 @@
 //! What surveyors exchange: DXF, LandXML, and GeoJSON of the edges on lines.
 
+use spmesh_base::error::ErrorKind;
 use spmesh_convert::Format;
-use spmesh_core::error::ErrorKind;
 use spmesh_stream::Coordinates;
 
 use super::{converted, samples, text_of};

@@ -1,10 +1,10 @@
 //! Tetrahedral meshes in other formats: VTU, Medit, and the hull as OBJ and PLY.
 
+use spmesh_base::error::ErrorKind;
 use spmesh_convert::Format;
-use spmesh_core::error::ErrorKind;
-use spmesh_io::source::{Input, SourceOptions};
-use spmesh_model::bounds::Point;
+use spmesh_formats::source::{Input, SourceOptions};
 use spmesh_stream::Coordinates;
+use spmesh_stream::model::bounds::Point;
 
 use super::independent::{self, Volume};
 use super::{converted, samples, text_of, with_notices};

@@ -1,6 +1,6 @@
 //! Each cell against all triangles, in integers: which triangle contains its centre, and the value there.
 
-use spmesh_io::raster::{Cells, Grid, RasterFormat, Window};
+use spmesh_formats::raster::{Cells, Grid, RasterFormat, Window};
 use spmesh_stream::Coordinates;
 use spmesh_terrain::dem::{Options, Quantity};
 

@@ -1,6 +1,6 @@
 //! Wrong usage, streams that are not meshes in the plane, damaged input, and outputs that cannot be written.
 
-use spmesh_io::raster::{Grid, RasterFormat};
+use spmesh_formats::raster::{Grid, RasterFormat};
 use spmesh_stream::Coordinates;
 use spmesh_terrain::dem::Quantity;
 

@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use spmesh_io::raster::{NoData, RasterFormat, RasterOptions, TILE};
+use spmesh_formats::raster::{NoData, RasterFormat, RasterOptions, TILE};
 use spmesh_terrain::dem::{Options, Quantity};
 use tiff::decoder::Decoder;
 
@@ -71,7 +71,7 @@ fn complete_tiles_are_sources_for_their_neighbours() {
     let triangles = vec![[0, 1, 4], [0, 4, 5], [1, 6, 4], [1, 2, 6], [4, 6, 3]];
     let mesh = super::Mesh { points, triangles };
     let stream = mesh.stream(spmesh_stream::Coordinates::F64);
-    let grid = spmesh_io::raster::Grid { left: 0.0, top: 256.0, step: 1.0, columns: 512, rows: 256 };
+    let grid = spmesh_formats::raster::Grid { left: 0.0, top: 256.0, step: 1.0, columns: 512, rows: 256 };
     let options = Options { fill: Some(100), kill: Some(500.0), ..options(Quantity::Elevation) };
     let (bytes, stats) = file(&stream, RasterFormat::GeoTiff, &grid, &options).unwrap();
     let found = tiff_values(&bytes, &grid);
@@ -114,7 +114,7 @@ fn grids_fit_those_of_other_files() {
         let path = folder.path(name);
         let (code, message) = outcome(&run("spdem", &[arguments, &["-o", &path]].concat(), &mesh));
         assert_eq!(code, Some(0), "{message}");
-        (spmesh_io::raster::Grid::of_file(path.as_ref()).unwrap(), std::fs::read(&path).unwrap())
+        (spmesh_formats::raster::Grid::of_file(path.as_ref()).unwrap(), std::fs::read(&path).unwrap())
     };
     let (grid, bytes) = raster("a.tif", &["--step", "1000", "--align", "17,-5"]);
     assert_eq!([(grid.left - 17.0) % 1000.0, (grid.top + 5.0) % 1000.0], [0.0, 0.0]);

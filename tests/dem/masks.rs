@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use spmesh_io::raster::{Grid, RasterFormat};
-use spmesh_io::source::{Mask, Polygon, read_mask};
+use spmesh_formats::raster::{Grid, RasterFormat};
+use spmesh_formats::source::{Mask, Polygon, read_mask};
 use spmesh_stream::Coordinates;
 use spmesh_terrain::dem::{Options, Quantity};
 

@@ -14,9 +14,9 @@ mod tiles;
 
 use std::io::Cursor;
 
-use spmesh_core::error::Result;
-use spmesh_io::raster::{Grid, RasterFormat, RasterOptions};
-use spmesh_model::bounds::Bounds;
+use spmesh_base::error::Result;
+use spmesh_formats::raster::{Grid, RasterFormat, RasterOptions};
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Header, Kind, StreamReader, write_triangles};
 use spmesh_terrain::dem::{Method, Options, Quantity, Sample, Stats, rasterize};
 use spmesh_terrain::files::Destination;

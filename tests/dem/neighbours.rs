@@ -2,8 +2,8 @@
 
 use std::io::Cursor;
 
-use spmesh_io::raster::colour_map::{BATLOW, lit};
-use spmesh_io::raster::{Differences, Grid, Light, RasterFormat, RasterOptions, Shading, TILE};
+use spmesh_formats::raster::colour_map::{BATLOW, lit};
+use spmesh_formats::raster::{Differences, Grid, Light, RasterFormat, RasterOptions, Shading, TILE};
 use spmesh_reference::sets::Random;
 use spmesh_stream::{Coordinates, StreamReader};
 use spmesh_terrain::dem::{Method, Options, Quantity};

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet, VecDeque};
 
-use spmesh_io::raster::{Grid, RasterFormat};
+use spmesh_formats::raster::{Grid, RasterFormat};
 use spmesh_stream::Coordinates;
 use spmesh_terrain::dem::{Options, Quantity};
 

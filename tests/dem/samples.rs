@@ -1,6 +1,6 @@
 //! Mean, least and greatest elevations over cells, against clipping each triangle to each cell.
 
-use spmesh_io::raster::{Grid, RasterFormat};
+use spmesh_formats::raster::{Grid, RasterFormat};
 use spmesh_reference::sets::Random;
 use spmesh_stream::Coordinates;
 use spmesh_terrain::dem::{Method, Options, Quantity, Sample};
@@ -148,7 +148,7 @@ fn planes_keep_their_slope() {
     shift(Sample::Max, 6.0);
     let slopes = Options {
         quantity: Quantity::Slope,
-        method: Method::Cells(spmesh_io::raster::Differences::Horn),
+        method: Method::Cells(spmesh_formats::raster::Differences::Horn),
         ..sampled(Sample::Max)
     };
     let expected = 5f64.sqrt().atan().to_degrees() as f32;

@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use spmesh_io::raster::{Cells, Grid, RasterFormat, TILE, Window};
+use spmesh_formats::raster::{Cells, Grid, RasterFormat, TILE, Window};
 use spmesh_stream::Coordinates;
 use spmesh_terrain::dem::{Options, Quantity};
 use tiff::decoder::{Decoder, DecodingResult};

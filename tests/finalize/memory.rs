@@ -2,12 +2,12 @@
 
 use std::cell::Cell;
 
-use spmesh_core::error::Result;
-use spmesh_finalize::{Observer, Passes};
-use spmesh_io::source::{Description, PointReader};
-use spmesh_model::attributes::Attributes;
-use spmesh_model::bounds::Point;
+use spmesh_base::error::Result;
+use spmesh_formats::source::{Description, PointReader};
+use spmesh_pipeline::finalize::{Observer, Passes};
 use spmesh_stream::Crs;
+use spmesh_stream::model::attributes::Attributes;
+use spmesh_stream::model::bounds::Point;
 
 use super::sets::Set;
 

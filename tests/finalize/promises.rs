@@ -1,8 +1,8 @@
 //! Checks every promise of a finalized stream. Boxes of cells are computed from location codes and the header
 //! alone; no code is shared with the engine.
 
-use spmesh_finalize::{Options, Order};
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_pipeline::finalize::{Options, Order};
+use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{Crs, Event, Header, StreamReader};
 
 use super::sets::Set;

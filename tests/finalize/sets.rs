@@ -1,7 +1,7 @@
 //! Point sets to finalize: seeded, of every sort.
 
-use spmesh_model::bounds::Point;
 use spmesh_stream::Coordinates;
+use spmesh_stream::model::bounds::Point;
 
 /// A seeded random number generator (xorshift64*).
 pub(super) struct Random(pub(super) u64);

@@ -3,8 +3,8 @@
 
 use std::process::{Command, Output};
 
-use spmesh_core::error::ErrorKind;
-use spmesh_finalize::{Options, Order, Spooling, run};
+use spmesh_base::error::ErrorKind;
+use spmesh_pipeline::finalize::{Options, Order, Spooling, run};
 
 use super::*;
 

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use spmesh_core::error::ErrorKind;
-use spmesh_finalize::{Options, Order, Thin, run};
+use spmesh_base::error::ErrorKind;
+use spmesh_pipeline::finalize::{Options, Order, Thin, run};
 
 use super::*;
 use crate::programs::{Folder, assert_outcome};

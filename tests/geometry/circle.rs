@@ -1,7 +1,7 @@
 //! The circle test is conservative: checked against exact integers, at the tightest boxes there are.
 
-use spmesh_geometry::predicates::circle::CircleBounds;
-use spmesh_model::bounds::Region;
+use spmesh_delaunay::predicates::circle::CircleBounds;
+use spmesh_stream::model::bounds::Region;
 
 use spmesh_reference::sets::Random;
 
@@ -47,7 +47,7 @@ fn check(a: [i64; 2], b: [i64; 2], c: [i64; 2], bounds: CircleBounds) -> (u32, u
                 _ => region.min[1] = a[1] as f64 - s,
             }
             // Clockwise turns bring the top, left and bottom side to the right, in this order.
-            let claim = bounds.disk_inside(float(a), float(b), float(c), &region);
+            let claim = bounds.disk_inside(float(a), float(b), float(c), region.sides());
             assert!(!claim || side >= high, "{a:?} {b:?} {c:?}: turn {turn}, side {side} of {high}");
             claimed += u32::from(claim);
             inside += u32::from(side >= high);
@@ -89,6 +89,6 @@ fn extreme_triangles_are_never_claimed_by_mistake() {
         [[0.0, 0.0], [5e-324, 0.0], [0.0, 5e-324]],
     ];
     for [a, b, c] in triangles {
-        assert!(!CircleBounds::FLOAT.disk_inside(a, b, c, &finite), "{a:?} {b:?} {c:?}");
+        assert!(!CircleBounds::FLOAT.disk_inside(a, b, c, finite.sides()), "{a:?} {b:?} {c:?}");
     }
 }

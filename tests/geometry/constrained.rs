@@ -1,8 +1,8 @@
 //! The constrained Delaunay triangulation of a region against its definition.
 
-use spmesh_geometry::constrained2::Region;
-use spmesh_geometry::delaunay2::triangulate;
-use spmesh_geometry::predicates::FiniteFloatPredicates;
+use spmesh_delaunay::constrained2::Region;
+use spmesh_delaunay::delaunay2::triangulate;
+use spmesh_delaunay::predicates::FiniteFloatPredicates;
 use spmesh_reference::as_set;
 use spmesh_reference::constrained::Scene;
 use spmesh_reference::segments::{in_square, is_in, is_on, random_segments};

@@ -1,6 +1,6 @@
 //! The 2D kernel against independent triangulations, and its output against its own promises.
 
-use spmesh_geometry::delaunay2::{Corner, Kernel, NONE, Triangles, distinct, triangulate};
+use spmesh_delaunay::delaunay2::{Corner, Kernel, NONE, Triangles, distinct, triangulate};
 use spmesh_reference::sets::{self, Random};
 use spmesh_reference::{as_set, exhaustive, incremental};
 use std::collections::HashSet;
@@ -193,7 +193,7 @@ fn many_points_in_a_tiny_extent_and_too_many() {
     checked(&points, &mesh);
 
     // The memory is never touched: the kernel refuses the number of points alone.
-    let too_many = vec![[0.0; 2]; spmesh_geometry::delaunay2::MAX_POINTS + 1];
+    let too_many = vec![[0.0; 2]; spmesh_delaunay::delaunay2::MAX_POINTS + 1];
     let error = kernel.triangulate(&too_many, &mut Triangles::default()).expect_err("too many");
     assert!(error.to_string().contains("at most"), "{error}");
 }

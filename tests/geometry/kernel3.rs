@@ -7,7 +7,7 @@ mod threads;
 mod weighted;
 
 use promises::prove;
-use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
 use spmesh_reference::space::Point;
 use std::borrow::Cow;
 

@@ -1,6 +1,6 @@
 //! Every arithmetic of the predicates against arbitrary precision, inside its domain and at its limits.
 
-use spmesh_geometry::predicates::{Arithmetic, Extent, PredicateCounts, Predicates2, Sign, WithPredicates2};
+use spmesh_delaunay::predicates::{Arithmetic, Extent, PredicateCounts, Predicates2, Sign, WithPredicates2};
 use spmesh_reference::exact;
 use spmesh_reference::sets::Random;
 
@@ -185,7 +185,7 @@ fn floats_of_wildly_different_magnitude() {
 fn perturbation_takes_the_lexicographically_largest_point() {
     // The unit square: raising [1, 1] keeps it off every circle, so that the diagonal avoids it.
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    let mesh = spmesh_geometry::delaunay2::triangulate(&square).expect("finite points");
+    let mesh = spmesh_delaunay::delaunay2::triangulate(&square).expect("finite points");
     assert_eq!(mesh.triangles().len(), 2);
     assert!(mesh.left_of(1, 3).is_some() && mesh.left_of(3, 1).is_some(), "{:?}", mesh.triangles());
 }

@@ -1,6 +1,6 @@
 //! Every arithmetic of the 3D predicates against arbitrary precision, inside its domain and at its limits.
 
-use spmesh_geometry::predicates::{Arithmetic3, Extent, PredicateCounts, Predicates3, Sign, WithPredicates3};
+use spmesh_delaunay::predicates::{Arithmetic3, Extent, PredicateCounts, Predicates3, Sign, WithPredicates3};
 use spmesh_reference::exact3;
 use spmesh_reference::sets::Random;
 

@@ -1,6 +1,5 @@
 //! Predicates, orders and kernels against slow and plain references.
 
-mod balls;
 mod circle;
 mod constrained;
 #[cfg(feature = "experiments")]
@@ -12,9 +11,5 @@ mod kernel_predicates;
 mod kernel_predicates3;
 mod noding;
 mod order;
-mod pockets;
 mod queries;
 mod sphere;
-mod surface;
-mod surfaces;
-mod vectors;

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
-use spmesh_core::random::Random;
-use spmesh_geometry::noding::{COORDINATE_MAX, LineVertex, Noded, NodingChange, NodingOptions, node_lines};
+use spmesh_base::random::Random;
+use spmesh_delaunay::noding::{COORDINATE_MAX, LineVertex, Noded, NodingChange, NodingOptions, node_lines};
 use spmesh_reference::noding::{Place, are_noded, snap_round};
 
 const OPTIONS: NodingOptions = NodingOptions { round_elevations: false, crossings_max: 1 << 20 };

@@ -1,7 +1,7 @@
 //! Orders of points along curves, and insertion sequences.
 
-use spmesh_geometry::order::{BIT_LEVEL_MAX, BitLevels, Curve, Sequence, SpatialOrder, Suffixes};
-use spmesh_geometry::predicates::Extent;
+use spmesh_delaunay::order::{BIT_LEVEL_MAX, BitLevels, Curve, Sequence, SpatialOrder, Suffixes};
+use spmesh_delaunay::predicates::Extent;
 use spmesh_reference::sets::Random;
 use std::collections::HashMap;
 

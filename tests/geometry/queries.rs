@@ -1,7 +1,7 @@
 //! Queries to triangulations, answered again by a search of all simplices.
 
-use spmesh_geometry::Location;
-use spmesh_geometry::{delaunay2, delaunay3};
+use spmesh_delaunay::Location;
+use spmesh_delaunay::{delaunay2, delaunay3};
 use spmesh_reference::sets::Random;
 use std::collections::{BTreeMap, BTreeSet};
 

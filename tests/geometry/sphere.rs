@@ -2,8 +2,8 @@
 
 use num_bigint::BigInt;
 use num_traits::Signed;
-use spmesh_geometry::predicates::sphere::SphereBounds;
-use spmesh_model::bounds::Region;
+use spmesh_delaunay::predicates::sphere::SphereBounds;
+use spmesh_stream::model::bounds::Region;
 
 use spmesh_reference::sets::Random;
 
@@ -26,11 +26,11 @@ impl Weighted {
     fn is_inside(&self, bounds: SphereBounds, region: &Region<3>) -> bool {
         let corners = self.corners.map(|p| p.map(|c| c as f64));
         let weights = self.weights.map(|weight| weight as f64);
-        let claim = bounds.power_ball_inside(corners, weights, self.greatest as f64, region);
+        let claim = bounds.power_ball_inside(corners, weights, self.greatest as f64, region.sides());
         if self.weights != [self.greatest; 4] {
             return claim;
         }
-        let plain = bounds.ball_inside(corners, region);
+        let plain = bounds.ball_inside(corners, region.sides());
         assert!(plain || !claim, "weights that are equal make no claim easier");
         plain
     }
@@ -181,17 +181,17 @@ fn extreme_tetrahedra_are_never_claimed() {
     let finite = Region { min: [-1e300; 3], max: [1e300; 3] };
     let corner = |size: f64| [[0.0; 3], [size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size]];
     for size in [0.0, 5e-324, 1e-200, 1e-60, 1e60, 1e120, 1e308] {
-        assert!(!SphereBounds::FLOAT.ball_inside(corner(size), &finite), "{size}");
+        assert!(!SphereBounds::FLOAT.ball_inside(corner(size), finite.sides()), "{size}");
     }
     let flat = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
-    assert!(!SphereBounds::FLOAT.ball_inside(flat, &finite));
-    assert!(!SphereBounds::FLOAT.ball_inside([[f64::NAN; 3]; 4], &Region::EVERYTHING));
-    assert!(SphereBounds::FLOAT.ball_inside(corner(1.0), &finite));
+    assert!(!SphereBounds::FLOAT.ball_inside(flat, finite.sides()));
+    assert!(!SphereBounds::FLOAT.ball_inside([[f64::NAN; 3]; 4], Region::EVERYTHING.sides()));
+    assert!(SphereBounds::FLOAT.ball_inside(corner(1.0), finite.sides()));
     let tiny = [[0.0; 3], [1.0, 1e-310, 0.0], [0.0, 1.0, 1e-310], [1e-310, 0.0, 1.0]];
-    assert!(SphereBounds::FLOAT.ball_inside(tiny, &finite));
+    assert!(SphereBounds::FLOAT.ball_inside(tiny, finite.sides()));
     for greatest in [f64::NAN, f64::INFINITY, 1e300] {
-        assert!(!SphereBounds::FLOAT.power_ball_inside(corner(1.0), [0.0; 4], greatest, &Region::EVERYTHING));
+        assert!(!SphereBounds::FLOAT.power_ball_inside(corner(1.0), [0.0; 4], greatest, Region::EVERYTHING.sides()));
     }
-    assert!(!SphereBounds::FLOAT.power_ball_inside(corner(1.0), [0.0, 1e300, 0.0, 0.0], 1e300, &finite));
-    assert!(SphereBounds::FLOAT.power_ball_inside(corner(1.0), [1.0, 2.0, 3.0, -7.0], 3.0, &finite));
+    assert!(!SphereBounds::FLOAT.power_ball_inside(corner(1.0), [0.0, 1e300, 0.0, 0.0], 1e300, finite.sides()));
+    assert!(SphereBounds::FLOAT.power_ball_inside(corner(1.0), [1.0, 2.0, 3.0, -7.0], 3.0, finite.sides()));
 }

@@ -1,10 +1,10 @@
 //! The 4D diagram engine against brute force and the audit, at every size of coordinates.
 
 use spmesh_audit::diagram::check;
-use spmesh_core::error::ErrorKind;
-use spmesh_geometry4::diagram4::{Route, diagram, diagram_by};
-use spmesh_model::cells4::Point4;
-use spmesh_model::diagram4::Diagram4;
+use spmesh_base::error::ErrorKind;
+use spmesh_spacetime::diagram4::{Route, diagram, diagram_by};
+use spmesh_stream::model::cells4::Point4;
+use spmesh_stream::model::diagram4::Diagram4;
 use std::num::NonZeroUsize;
 
 use spmesh_reference::diagram4::{self as reference, Cell, Point};

@@ -1,8 +1,8 @@
 //! Sweeps of the 4D engine give the cells of the whole diagram, whatever the room.
 
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_geometry4::diagram4::{CellSink, Room, diagram, sweep};
-use spmesh_model::cells4::{Cell4, Cells4, Point4};
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_spacetime::diagram4::{CellSink, Room, diagram, sweep};
+use spmesh_stream::model::cells4::{Cell4, Cells4, Point4};
 use std::num::NonZeroUsize;
 
 use spmesh_reference::sets::Random;

@@ -102,7 +102,7 @@ fn damage_is_an_error_and_leaves_no_file() {
         let (code, message) = refused(&folder, &["--ground", &ground, &damaged, "-o", &out]);
         assert_eq!(code, Some(3), "{message}");
     }
-    let mut random = spmesh_core::random::Random::new(5);
+    let mut random = spmesh_base::random::Random::new(5);
     for _ in 0..60 {
         let mut flipped = laz.clone();
         // The header, and the records before the points.

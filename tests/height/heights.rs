@@ -1,6 +1,6 @@
 //! Heights against exact arithmetic.
 
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::bounds::Point;
 
 use super::{Parts, heights_in, mesh_of, scattered, triangles_of};
 use crate::programs::{Folder, run};

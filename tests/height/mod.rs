@@ -5,7 +5,7 @@ mod files;
 mod heights;
 
 use laz::record::{RecordDecompressor, SequentialPointRecordDecompressor};
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, StreamReader};
 
 use crate::programs::{Folder, outcome, run};
@@ -136,7 +136,7 @@ fn heights_in(folder: &Folder, mesh: &[u8], file: &[u8], output: &str, flags: &[
 
 /// A file of random points in a square of `size` steps.
 fn scattered(count: usize, size: u64, seed: u64) -> LasFile {
-    let mut random = spmesh_core::random::Random::new(seed);
+    let mut random = spmesh_base::random::Random::new(seed);
     let mut axis = |size| random.below(size) as i32;
     let positions: Vec<[i32; 3]> = (0..count).map(|_| [axis(size), axis(size), axis(1000)]).collect();
     LasFile::of(&positions)

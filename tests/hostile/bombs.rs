@@ -4,7 +4,7 @@ use std::io::Write;
 
 use flate2::write::GzEncoder;
 use flate2::{Compression, GzBuilder};
-use spmesh_core::limits::EXPANSION_MAX;
+use spmesh_base::limits::EXPANSION_MAX;
 
 use crate::INPUT_MAX;
 use crate::cases::{Case, accepted, malformed};

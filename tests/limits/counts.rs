@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use spmesh_core::limits::{
+use spmesh_base::limits::{
     ASSEMBLY_CHAINS_MAX, ASSEMBLY_COPIES_MAX, CONTOURS_PER_TRIANGLE_MAX, CONTOURS_PER_TRIANGLE_MEAN_MAX,
     LINK_VERTICES_MAX,
 };

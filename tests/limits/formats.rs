@@ -4,11 +4,11 @@ use std::io::Write;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use spmesh_core::limits::{
+use spmesh_base::limits::{
     CONFIGURATION_DEGREE_MAX, CRS_DEPTH_MAX, EXPANSION_FREE, PLY_ITEMS_MAX, PLY_LIST_MAX, RADII_LEN_MAX,
     SPA_COMMENTS_MAX, TEXT_HEADER_LINE_MAX,
 };
-use spmesh_io::source::{SpReader, SpaReader};
+use spmesh_formats::source::{SpReader, SpaReader};
 use spmesh_stream::check_degree;
 
 use super::sides::{assert_sides, padded};

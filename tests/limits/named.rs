@@ -31,7 +31,7 @@ fn has_word(text: &str, name: &str) -> bool {
 #[test]
 fn each_limit_is_named_in_a_test() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let limits = fs::read_to_string(root.join("src/core/limits.rs")).unwrap();
+    let limits = fs::read_to_string(root.join("src/base/limits.rs")).unwrap();
     let names: Vec<&str> = limits
         .lines()
         .filter_map(|line| line.strip_prefix("pub const "))

@@ -1,12 +1,12 @@
 //! Limits of inputs at both sides: the last that is taken, and the first that is refused.
 
-use spmesh_core::limits::{
+use spmesh_base::limits::{
     BREAKLINE_VERTICES_MAX, CONDITION_DEPTH_MAX, CONDITION_LEN_MAX, CONTOURS_PER_TRIANGLE_MAX,
     GEOJSON_LEN_MAX, LIST_FILES_MAX, NPY_HEADER_MAX, NRRD_FILES_MAX, NRRD_HEADER_MAX, NUMBER_LEN_MAX,
     STRUCTURE_LINE_MAX, TEXT_LINE_MAX, XML_DEPTH_MAX, XML_TAG_MAX,
 };
-use spmesh_io::source::points4::Condition;
-use spmesh_io::source::{read_mask, read_polylines};
+use spmesh_formats::source::points4::Condition;
+use spmesh_formats::source::{read_mask, read_polylines};
 
 use crate::programs::{Folder, outcome, run};
 

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use spmesh_model::attributes::{Attribute, Attributes, NumberType};
-use spmesh_model::bounds::{Point, Region};
-use spmesh_reduce::{Duplicates, Options, Part};
+use spmesh_pipeline::reduce::{Duplicates, Options, Part};
+use spmesh_stream::model::attributes::{Attribute, Attributes, NumberType};
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Coordinates, Event, Header, StreamReader, StreamWriter};
 
 use super::solids::tetrahedralize;
@@ -175,7 +175,7 @@ fn parts_hand_rows_over() {
     }
     let readers = || parts.iter().map(|part| StreamReader::new(&part[..], "part").unwrap()).collect();
     let (merged, _) =
-        spmesh_reduce::merge_triangles(readers(), Vec::new(), &Options::default(), |_| ()).unwrap();
+        spmesh_pipeline::reduce::merge_triangles(readers(), Vec::new(), &Options::default(), |_| ()).unwrap();
     let rows = rows_of(&merged);
     assert_eq!(rows.len(), points.len());
     assert!(rows.iter().all(|&(at, _, of_row)| at == of_row));
@@ -196,7 +196,8 @@ fn parts_of_other_attributes_are_refused() {
     };
     let parts = [part(&plain, f64::NEG_INFINITY, 3.0), part(&with_rows(&plain, 0), 3.0, f64::INFINITY)];
     let readers = parts.iter().map(|part| StreamReader::new(&part[..], "part").unwrap()).collect();
-    let error = spmesh_reduce::merge_triangles(readers, Vec::new(), &Options::default(), |_| ()).unwrap_err();
+    let error = spmesh_pipeline::reduce::merge_triangles(readers, Vec::new(), &Options::default(), |_| ())
+        .unwrap_err();
     assert!(error.to_string().contains("differ in their attributes"), "{error}");
 }
 

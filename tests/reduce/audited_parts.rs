@@ -1,9 +1,9 @@
 //! A partial mesh that passes the audit can be merged.
 
 use spmesh_audit::{Audit, Standard};
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_model::bounds::{Point, Region};
-use spmesh_reduce::{Options, Part, merge_tetrahedra, merge_triangles};
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_pipeline::reduce::{Options, Part, merge_tetrahedra, merge_triangles};
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Event, Header, StreamReader, StreamWriter};
 
 use super::solids::tetrahedralize;

@@ -1,10 +1,10 @@
 //! Weighted points in streams, and what becomes of them.
 
 use spmesh_audit::{Audit, Standard};
-use spmesh_geometry::delaunay3::triangulate_weighted;
-use spmesh_model::attributes::{Attribute, Attributes, NumberType};
-use spmesh_model::bounds::Point;
-use spmesh_reduce::Options;
+use spmesh_delaunay::delaunay3::triangulate_weighted;
+use spmesh_pipeline::reduce::Options;
+use spmesh_stream::model::attributes::{Attribute, Attributes, NumberType};
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, Header, StreamReader, StreamWriter, Weighted};
 
 use super::solids::{Corners, bits, every_node};

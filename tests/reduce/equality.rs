@@ -1,7 +1,7 @@
 //! The set of triangles is the same however the input comes.
 
-use spmesh_model::bounds::{Point, Region};
-use spmesh_reduce::{Options, Part};
+use spmesh_pipeline::reduce::{Options, Part};
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Coordinates, StreamReader};
 
 use super::streams::{GRID, Mesh, Tagging, read_mesh, stream, threads, triangulate};
@@ -110,7 +110,7 @@ fn tiled(points: &[Point], input: &[u8], borders: &[Vec<f64>; 2], in_rows: bool)
     };
     let merge = |parts: &[Vec<u8>], region: Option<Region>| {
         let readers = parts.iter().map(|bytes| StreamReader::new(&bytes[..], "part").unwrap()).collect();
-        spmesh_reduce::merge_triangles(
+        spmesh_pipeline::reduce::merge_triangles(
             readers,
             Vec::new(),
             &Options { part: region.map(Part::Region), ..Options::default() },
@@ -176,7 +176,7 @@ fn cells_of_the_tree_are_tiles_too() {
         .collect();
     let readers = parts.iter().map(|bytes| StreamReader::new(&bytes[..], "part").unwrap()).collect();
     let (bytes, stats) =
-        spmesh_reduce::merge_triangles(readers, Vec::new(), &Default::default(), |_| ()).unwrap();
+        spmesh_pipeline::reduce::merge_triangles(readers, Vec::new(), &Default::default(), |_| ()).unwrap();
     assert_eq!(read_mesh(&bytes).triangles, expected(&points));
     assert_eq!(stats.points, points.len() as u64);
 }

@@ -3,10 +3,10 @@
 use std::io::{self, Cursor, Read, Write};
 use std::sync::mpsc::{Receiver, channel};
 
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_model::bounds::Point;
-use spmesh_reduce::{Duplicates, Options, Stats};
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_pipeline::reduce::{Duplicates, Options, Stats};
 use spmesh_stream::StreamReader;
+use spmesh_stream::model::bounds::Point;
 
 use super::streams::{GRID, Tagging, stream, threads, triangulate};
 use spmesh_reference::sets::{Random, uniform};
@@ -56,7 +56,7 @@ impl Read for Silent {
 
 fn write_to(input: impl Read + Send + 'static, output: Failing, threads: usize) -> Result<Stats> {
     let options = Options { threads, ..Options::default() };
-    spmesh_reduce::triangulate(StreamReader::new(input, "points")?, output, &options, |_| ())
+    spmesh_pipeline::reduce::triangulate(StreamReader::new(input, "points")?, output, &options, |_| ())
         .map(|(_, stats)| stats)
 }
 

@@ -5,15 +5,15 @@ use std::io::{Cursor, Read};
 use std::sync::Arc;
 
 use spmesh_audit::{Audit, Standard};
-use spmesh_model::bounds::{Point, Region};
-use spmesh_reduce::{
+use spmesh_pipeline::reduce::{
     Options, Outputs, Part, Stats, join_tetrahedra, join_triangles, tetrahedralize_part, triangulate_part,
 };
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Coordinates, JoinedMesh, PartName, PartSize, StreamReader, Totals};
 
 use super::solids::{self, fits_a_grid};
 use super::streams::{GRID, Tagging, read_mesh, stream_of, triangulate};
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 use spmesh_reference::clouds::{FAMILIES, mixture, of};
 use spmesh_reference::sets::{DEGENERATE_FAMILIES, Random, degenerate};
 

@@ -1,9 +1,9 @@
 //! Duplicates, and inputs that the reduction must refuse.
 
-use spmesh_core::error::ErrorKind;
-use spmesh_model::bounds::{Bounds, Point, Region};
-use spmesh_model::cells::{CellCode, CellTree};
-use spmesh_reduce::{Duplicates, Options, Part};
+use spmesh_base::error::ErrorKind;
+use spmesh_pipeline::reduce::{Duplicates, Options, Part};
+use spmesh_stream::model::bounds::{Bounds, Point, Region};
+use spmesh_stream::model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, Header, Kind, Patch, StreamReader, StreamWriter};
 
 use super::streams::{GRID, Tagging, read_mesh, stream, threads, triangulate};
@@ -161,9 +161,10 @@ fn tile(points: &[Point], region: Region) -> Vec<u8> {
     triangulate(&input, &options).unwrap().0
 }
 
-fn merge(parts: &[&[u8]]) -> spmesh_core::error::Result<Vec<u8>> {
+fn merge(parts: &[&[u8]]) -> spmesh_base::error::Result<Vec<u8>> {
     let readers = parts.iter().map(|part| StreamReader::new(*part, "part")).collect::<Result<_, _>>()?;
-    spmesh_reduce::merge_triangles(readers, Vec::new(), &Default::default(), |_| ()).map(|(bytes, _)| bytes)
+    spmesh_pipeline::reduce::merge_triangles(readers, Vec::new(), &Default::default(), |_| ())
+        .map(|(bytes, _)| bytes)
 }
 
 #[test]

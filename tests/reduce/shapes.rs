@@ -1,9 +1,9 @@
 //! Shapes that a grid or a curve resolves badly take no more work than others, and little memory.
 
-use spmesh_core::error::ErrorKind;
-use spmesh_model::bounds::Point;
-use spmesh_reduce::{Options, Stats};
+use spmesh_base::error::ErrorKind;
+use spmesh_pipeline::reduce::{Options, Stats};
 use spmesh_stream::Coordinates;
+use spmesh_stream::model::bounds::Point;
 
 use super::solids;
 use super::streams::{Mesh, Tagging, read_mesh, stream, stream_of, threads, triangulate};
@@ -75,7 +75,7 @@ fn rows_on_the_sides_do_not_wait_for_the_end() {
 /// The triangles of the kernel over all points at once.
 fn of_kernel(points: &[Point]) -> Vec<[[i64; 2]; 3]> {
     let at: Vec<[f64; 2]> = points.iter().map(|p| [p[0], p[1]]).collect();
-    let mesh = spmesh_geometry::delaunay2::triangulate(&at).expect("triangles");
+    let mesh = spmesh_delaunay::delaunay2::triangulate(&at).expect("triangles");
     let corner = |v: u32| at[v as usize].map(|c| c as i64);
     let least_first =
         |t: [[i64; 2]; 3]| [[t[0], t[1], t[2]], [t[1], t[2], t[0]], [t[2], t[0], t[1]]].into_iter().min();

@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 use std::io::Cursor;
 
-use spmesh_core::error::Result;
-use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
-use spmesh_model::bounds::Point;
-use spmesh_reduce::{Options, Stats};
+use spmesh_base::error::Result;
+use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_pipeline::reduce::{Options, Stats};
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, LiveVertices, StreamReader};
 
 /// The corners of a tetrahedron, sorted, as bits of their coordinates.
@@ -19,7 +19,7 @@ pub fn every_node(threads: usize) -> Options<3> {
 
 pub fn tetrahedralize(points: &[u8], options: &Options<3>) -> Result<(Vec<u8>, Stats)> {
     let reader = StreamReader::new(Cursor::new(points.to_vec()), "points")?;
-    spmesh_reduce::tetrahedralize(reader, Vec::new(), options, |_| ())
+    spmesh_pipeline::reduce::tetrahedralize(reader, Vec::new(), options, |_| ())
 }
 
 pub fn bits(point: Point) -> [u64; 3] {

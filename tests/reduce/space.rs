@@ -1,9 +1,9 @@
 //! The set of tetrahedra is that of the kernel over all points at once, however the input comes.
 
 use spmesh_audit::{Audit, PointSet, Standard};
-use spmesh_core::error::ErrorKind;
-use spmesh_model::bounds::Point;
-use spmesh_reduce::{Duplicates, Options};
+use spmesh_base::error::ErrorKind;
+use spmesh_pipeline::reduce::{Duplicates, Options};
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, StreamReader};
 
 use super::solids::{bits, every_node, expected, fits_a_grid, read_mesh, tetrahedralize};

@@ -1,8 +1,8 @@
 //! Merging refuses partial meshes of space that are damaged or do not fit together.
 
-use spmesh_core::error::ErrorKind;
-use spmesh_model::bounds::{Point, Region};
-use spmesh_reduce::{Options, Part};
+use spmesh_base::error::ErrorKind;
+use spmesh_pipeline::reduce::{Options, Part};
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, StreamWriter};
 
 use super::solids::{expected, read_mesh, tetrahedralize};
@@ -219,7 +219,7 @@ fn parts_that_do_not_go_together_are_refused() {
     let (plane, _) = super::streams::triangulate(&plane, &options).unwrap();
     usage(std::slice::from_ref(&plane), None, "merge it with spdelaunay2d");
     let readers = vec![StreamReader::new(&left[..], "part").unwrap()];
-    let error = spmesh_reduce::merge_triangles(readers, Vec::new(), &Default::default(), |_| ())
+    let error = spmesh_pipeline::reduce::merge_triangles(readers, Vec::new(), &Default::default(), |_| ())
         .map(drop)
         .unwrap_err();
     assert!(error.to_string().contains("merge it with spdelaunay3d"), "{error}");

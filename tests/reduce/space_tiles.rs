@@ -2,9 +2,9 @@
 //! it.
 
 use spmesh_audit::{Audit, PointSet, Standard};
-use spmesh_core::error::Result;
-use spmesh_model::bounds::{Point, Region};
-use spmesh_reduce::{Options, Part, Stats};
+use spmesh_base::error::Result;
+use spmesh_pipeline::reduce::{Options, Part, Stats};
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Coordinates, Header, StreamReader};
 
 use super::solids::{bits, expected, fits_a_grid, read_mesh, tetrahedralize};
@@ -42,7 +42,7 @@ fn assert_proven(bytes: &[u8], points: Option<&[Point]>) {
 
 pub fn merge(parts: &[Vec<u8>], region: Option<Region<3>>) -> Result<(Vec<u8>, Stats)> {
     let readers = parts.iter().map(|part| StreamReader::new(&part[..], "part")).collect::<Result<_>>()?;
-    spmesh_reduce::merge_tetrahedra(
+    spmesh_pipeline::reduce::merge_tetrahedra(
         readers,
         Vec::new(),
         &Options { part: region.map(Part::Region), ..Options::default() },

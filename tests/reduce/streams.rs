@@ -2,10 +2,10 @@
 
 use std::io::Cursor;
 
-use spmesh_core::error::Result;
-use spmesh_model::bounds::{Bounds, Point};
-use spmesh_model::cells::{CellCode, CellTree};
-use spmesh_reduce::{Options, Stats};
+use spmesh_base::error::Result;
+use spmesh_pipeline::reduce::{Options, Stats};
+use spmesh_stream::model::bounds::{Bounds, Point};
+use spmesh_stream::model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, Event, Header, Kind, LiveVertices, StreamReader, StreamWriter};
 
 use spmesh_reference::sets::Random;
@@ -169,7 +169,7 @@ pub fn read_mesh(bytes: &[u8]) -> Mesh {
 /// Triangulates a stream of points into a mesh stream.
 pub fn triangulate(points: &[u8], options: &Options) -> Result<(Vec<u8>, Stats)> {
     let reader = StreamReader::new(Cursor::new(points.to_vec()), "points")?;
-    spmesh_reduce::triangulate(reader, Vec::new(), options, |_| ())
+    spmesh_pipeline::reduce::triangulate(reader, Vec::new(), options, |_| ())
 }
 
 /// Options of a plain run.

@@ -1,8 +1,8 @@
 //! Weighted points: the set of tetrahedra is the regular one of all points, however the input comes.
 
-use spmesh_core::error::ErrorKind;
-use spmesh_model::bounds::{Point, Region};
-use spmesh_reduce::{Duplicates, Options, Part};
+use spmesh_base::error::ErrorKind;
+use spmesh_pipeline::reduce::{Duplicates, Options, Part};
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Coordinates, Event, Header, StreamReader, StreamWriter, Weighted};
 
 use super::balls::{Balls, audit, expected, options, weighted};

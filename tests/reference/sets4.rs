@@ -1,6 +1,6 @@
 //! Sets of points in four dimensions, and reference diagrams in the library's types.
 
-use spmesh_model::cells4::{Cell4, Cells4, Point4};
+use spmesh_stream::model::cells4::{Cell4, Cells4, Point4};
 
 use crate::diagram4::{Cell, Point, sorted};
 use crate::sets::Random;

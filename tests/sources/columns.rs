@@ -1,8 +1,8 @@
 //! Columns of tables: chosen by the user, named in comments, and refused where they would be wrong in silence.
 
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_io::source::{Input, SourceOptions, TextOptions};
-use spmesh_model::bounds::Point;
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_formats::source::{Input, SourceOptions, TextOptions};
+use spmesh_stream::model::bounds::Point;
 
 use super::{assert_fails, flat, pass};
 use crate::programs::{Folder, assert_outcome, outcome, run};

@@ -3,8 +3,8 @@
 use super::{flat, sample};
 use crate::allocation::largest_during;
 use crate::programs::Folder;
-use spmesh_core::error::ErrorKind;
-use spmesh_io::source::Input;
+use spmesh_base::error::ErrorKind;
+use spmesh_formats::source::Input;
 
 /// Largest single allocation that a damaged small file may cause: a group of chunks.
 const ALLOCATION_MAX: usize = 65 << 20;
@@ -13,7 +13,7 @@ const ALLOCATION_MAX: usize = 65 << 20;
 /// content.
 fn try_read(folder: &Folder, content: &[u8]) {
     let path = folder.file("damaged", content);
-    let read = || -> spmesh_core::error::Result<()> {
+    let read = || -> spmesh_base::error::Result<()> {
         let input = Input::open(&[path], &flat())?;
         let mut reader = input.read()?;
         let mut batch = Vec::new();

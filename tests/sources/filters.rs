@@ -1,7 +1,7 @@
 //! Filters keep the points that a count over the raw fields says, and count the others by their reason.
 
-use spmesh_core::error::ErrorKind;
-use spmesh_io::source::{DropReason, Filters, Input, SourceOptions};
+use spmesh_base::error::ErrorKind;
+use spmesh_formats::source::{DropReason, Filters, Input, SourceOptions};
 
 use super::las_file::{LasFile, Record};
 use super::{assert_fails, flat, pass, points, sample};

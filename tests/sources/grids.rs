@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_io::source::{Input, SourceOptions};
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_formats::source::{Input, SourceOptions};
+use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 
 use super::las_file::LasFile;

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use super::{assert_fails, decoded, flat, sample};
 use crate::allocation::largest_during;
 use crate::programs::Folder;
-use spmesh_core::error::ErrorKind;
-use spmesh_core::random::Random;
-use spmesh_io::source::{Filters, Input, SourceOptions};
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::error::ErrorKind;
+use spmesh_base::random::Random;
+use spmesh_formats::source::{Filters, Input, SourceOptions};
+use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Crs};
 
 const SAMPLE: &str = "simple_with_page.copc.laz";
@@ -223,7 +223,7 @@ fn damage_to_the_index_loses_no_points_in_silence() {
 }
 
 /// Reads the sample with a change, in a box around the whole.
-fn read_changed(change: impl FnOnce(&mut Vec<u8>)) -> spmesh_core::error::Result<u64> {
+fn read_changed(change: impl FnOnce(&mut Vec<u8>)) -> spmesh_base::error::Result<u64> {
     let mut bytes = std::fs::read(sample(SAMPLE)).unwrap();
     change(&mut bytes);
     let folder = Folder::new();

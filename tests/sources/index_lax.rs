@@ -8,10 +8,10 @@ use super::las_file::LasFile;
 use super::lax_writer::{Layout, appended, embedded, index};
 use super::{assert_fails, decoded, flat};
 use crate::programs::Folder;
-use spmesh_core::error::ErrorKind;
-use spmesh_core::random::Random;
-use spmesh_io::source::SourceOptions;
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::error::ErrorKind;
+use spmesh_base::random::Random;
+use spmesh_formats::source::SourceOptions;
+use spmesh_stream::model::bounds::{Bounds, Point};
 
 const POINTS: usize = 6_000;
 const CHUNK: u32 = 150;

@@ -1,11 +1,11 @@
 //! LAS, LAZ and COPC.
 
 use rustix::fs::Mode;
-use spmesh_core::error::ErrorKind;
-use spmesh_core::limits::{CRS_LEN_MAX, HEADER_BODY_MAX};
-use spmesh_crs::name as crs_name;
-use spmesh_io::source::{Filters, Input, SourceOptions};
-use spmesh_model::bounds::Bounds;
+use spmesh_base::error::ErrorKind;
+use spmesh_base::limits::{CRS_LEN_MAX, HEADER_BODY_MAX};
+use spmesh_formats::crs::name as crs_name;
+use spmesh_formats::source::{Filters, Input, SourceOptions};
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Crs};
 
 use super::las_file::{LasFile, Record, geo_keys};

@@ -1,8 +1,8 @@
 //! Points of raw numbers.
 
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_io::source::{Input, RawType, SourceOptions};
-use spmesh_model::bounds::Point;
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_formats::source::{Input, RawType, SourceOptions};
+use spmesh_stream::model::bounds::Point;
 
 use super::structure::gzip;
 use super::{assert_fails, bits, flat, pass, points};

@@ -1,7 +1,7 @@
 //! SPA and SPB, from bytes assembled by hand according to `formats/historical.md`.
 
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_io::source::{SpDatatype, SpEvent, SpFinalization, SpReader, SpaReader, SpbReader};
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_formats::source::{SpDatatype, SpEvent, SpFinalization, SpReader, SpaReader, SpbReader};
 
 use super::{assert_fails, points_of};
 

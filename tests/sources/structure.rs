@@ -4,8 +4,8 @@
 use std::io::{Cursor, Write};
 use std::path::Path;
 
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_io::source::structure::{
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_formats::source::structure::{
     Altlocs, Atom, Format, Models, Selection, Structure, read_structure, read_structure_from,
 };
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};

@@ -1,6 +1,6 @@
 //! mmCIF: the syntax of CIF, and which items of `_atom_site` are taken.
 
-use spmesh_core::error::ErrorKind;
+use spmesh_base::error::ErrorKind;
 
 use super::assert_fails;
 use super::structure::{atoms, read};

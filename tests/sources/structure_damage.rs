@@ -4,8 +4,8 @@ use super::sample;
 use super::structure::{atoms, gzip, read};
 use crate::allocation::largest_during;
 use crate::programs::Folder;
-use spmesh_core::error::ErrorKind;
-use spmesh_io::source::structure::read_structure;
+use spmesh_base::error::ErrorKind;
+use spmesh_formats::source::structure::read_structure;
 
 /// Largest single allocation that a damaged small file may cause: buffers for reading.
 const ALLOCATION_MAX: usize = 1 << 18;

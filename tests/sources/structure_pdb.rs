@@ -1,6 +1,6 @@
 //! PDB: what programs write, and what is refused.
 
-use spmesh_core::error::ErrorKind;
+use spmesh_base::error::ErrorKind;
 
 use super::structure::{atoms, read};
 use super::{assert_fails, sample};

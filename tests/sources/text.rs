@@ -1,7 +1,7 @@
 //! Text: xyz, csv and similar formats.
 
-use spmesh_core::error::ErrorKind;
-use spmesh_io::source::{Input, SourceOptions};
+use spmesh_base::error::ErrorKind;
+use spmesh_formats::source::{Input, SourceOptions};
 
 use super::{assert_fails, flat, pass, points_of};
 use crate::programs::Folder;

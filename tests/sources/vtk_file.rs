@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::bounds::Point;
 
 /// How an array is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

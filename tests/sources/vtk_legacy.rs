@@ -1,7 +1,7 @@
 //! Points of the legacy format of VTK.
 
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_model::bounds::Point;
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_stream::model::bounds::Point;
 
 use super::{assert_fails, damage, points_of};
 

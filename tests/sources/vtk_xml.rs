@@ -1,8 +1,8 @@
 //! Points of the XML formats of VTK.
 
-use spmesh_core::error::ErrorKind;
-use spmesh_io::source::{Input, SourceOptions};
-use spmesh_model::bounds::{Bounds, Point};
+use spmesh_base::error::ErrorKind;
+use spmesh_formats::source::{Input, SourceOptions};
+use spmesh_stream::model::bounds::{Bounds, Point};
 
 use super::vtk_file::{Form, Packing, VtkXml};
 use super::{assert_fails, bits, damage, flat, points, points_of, sample};

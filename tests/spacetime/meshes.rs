@@ -2,10 +2,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use spmesh_core::error::{Error, ErrorKind};
-use spmesh_dd4::{Form, Placement, Product};
-use spmesh_geometry4::spacetime::{Slice, Surface, isosurface, slice};
-use spmesh_model::cells4::Point4;
+use spmesh_base::error::{Error, ErrorKind};
+use spmesh_spacetime::dd4::{Form, Placement, Product};
+use spmesh_spacetime::slices::{Slice, Surface, isosurface, slice};
+use spmesh_stream::model::cells4::Point4;
 
 use super::{sampled, scattered, volume, with_values};
 use spmesh_reference::sets::Random;
@@ -192,7 +192,7 @@ fn the_appended_data_of_a_slice_are_as_long_as_they_say() {
     let diagram = with_values(sampled(&mut Random::new(37), [2, 2, 2, 2], 1.0), |p| p[0]);
     let slice = slice(&diagram, 0.5).unwrap();
     let mut bytes = Vec::new();
-    spmesh_dd4::write_slice(&slice, Form::Vtu, &mut bytes).unwrap();
+    spmesh_spacetime::dd4::write_slice(&slice, Form::Vtu, &mut bytes).unwrap();
     let mark = b"encoding=\"raw\">\n_";
     let start = bytes.windows(mark.len()).position(|window| window == mark).unwrap() + mark.len();
     let (points, cells) = (slice.points.len(), slice.tetrahedra.len());

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use spmesh_audit::diagram::check_simplices;
-use spmesh_geometry4::diagram4::diagram;
-use spmesh_geometry4::spacetime::{Rule, Subdivision, subdivide};
-use spmesh_model::diagram4::Diagram4;
+use spmesh_spacetime::diagram4::diagram;
+use spmesh_spacetime::slices::{Rule, Subdivision, subdivide};
+use spmesh_stream::model::diagram4::Diagram4;
 use spmesh_stream::{Event, StreamReader};
 
 use super::{sampled, scattered, volume};
@@ -99,7 +99,7 @@ fn simplices_go_into_a_stream() {
     let diagram = super::with_values(sampled(&mut Random::new(15), [2, 2, 2, 3], 1.0), |p| p[0] + 3.0 * p[3]);
     let parts = parts(&diagram, Rule::Barycentric);
     let mut bytes = Vec::new();
-    spmesh_dd4::write_simplices(&parts, 7, false, &mut bytes).unwrap();
+    spmesh_spacetime::dd4::write_simplices(&parts, 7, false, &mut bytes).unwrap();
     let mut reader = StreamReader::new(&bytes[..], "memory").unwrap();
     let (mut points, mut simplices) = (0, Vec::new());
     while let Some(event) = reader.next_event().unwrap() {

@@ -1,9 +1,9 @@
 //! Values between points.
 
-use spmesh_core::error::ErrorKind;
-use spmesh_geometry4::diagram4::diagram;
-use spmesh_geometry4::spacetime::{Interpolator, Locator};
-use spmesh_model::cells4::Point4;
+use spmesh_base::error::ErrorKind;
+use spmesh_spacetime::diagram4::diagram;
+use spmesh_spacetime::slices::{Interpolator, Locator};
+use spmesh_stream::model::cells4::Point4;
 
 use super::{sampled, scattered, with_values};
 use spmesh_reference::sets::Random;

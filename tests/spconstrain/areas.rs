@@ -2,7 +2,7 @@
 
 use super::{Mesh, audit, mesh, output};
 use crate::programs::{Folder, outcome, run};
-use spmesh_core::random::Random;
+use spmesh_base::random::Random;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Scattered points, and polygons among them: two that overlap, one with a hole.

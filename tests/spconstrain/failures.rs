@@ -5,7 +5,7 @@ use crate::programs::{
     Folder, assert_damage_leaves_no_file, assert_outcome, mesh_of_cloud, outcome, run, sample,
 };
 use rustix::fs::Mode;
-use spmesh_model::bounds::Bounds;
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Header, Kind, write_triangles};
 
 #[test]

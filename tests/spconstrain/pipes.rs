@@ -2,7 +2,7 @@
 
 use super::{audit, mesh, output};
 use crate::programs::{Folder, sample};
-use spmesh_core::random::Random;
+use spmesh_base::random::Random;
 
 const TILE: &str = "lareunion.laz";
 

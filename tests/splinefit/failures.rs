@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use spmesh_core::error::ErrorKind;
+use spmesh_base::error::ErrorKind;
 
 use super::{knots, output, plane, points};
 use crate::programs::{Folder, assert_silent_without_reader, kind_of_damage, outcome, run, skip};

@@ -1,9 +1,9 @@
 //! Attributes of points: written and read as they are, and every fault is found.
 
+use spmesh_base::error::ErrorKind;
 use spmesh_convert::Format;
-use spmesh_core::error::ErrorKind;
-use spmesh_model::attributes::{Attribute, Attributes, NumberType};
-use spmesh_model::bounds::Point;
+use spmesh_stream::model::attributes::{Attribute, Attributes, NumberType};
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, StreamWriter};
 
 use super::{Random, frames, random_stream, seal, write_rows};

@@ -1,7 +1,7 @@
 //! Compressed streams hold what plain ones hold, and damage in them is found.
 
-use spmesh_core::error::ErrorKind;
-use spmesh_model::bounds::Point;
+use spmesh_base::error::ErrorKind;
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Event, Header, Kind, write_triangles};
 
 use super::{

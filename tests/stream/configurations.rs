@@ -1,9 +1,9 @@
 //! Streams of configurations.
 
+use spmesh_base::error::ErrorKind;
 use spmesh_configurations::special::{Function, FunctionKind};
 use spmesh_configurations::{self as configurations, Claim, Configurations, FARAWAY, Knots, Rule, Start};
 use spmesh_convert::Format;
-use spmesh_core::error::ErrorKind;
 use spmesh_stream::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamReader, StreamWriter};
 use spmesh_stream::{ConfigurationSet, Content, configurations_header, write_configurations, write_content};
 

@@ -1,9 +1,9 @@
 //! Streams of four dimensions.
 
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_base::limits::TEXT_NUMBERS_MAX;
 use spmesh_convert::Format;
-use spmesh_core::error::{ErrorKind, Result};
-use spmesh_core::limits::TEXT_NUMBERS_MAX;
-use spmesh_model::cells4::{Cell4, Cells4, Point4};
+use spmesh_stream::model::cells4::{Cell4, Cells4, Point4};
 use spmesh_stream::{
     Coordinates, Event, Header, Kind, Points4, StreamReader, StreamWriter, Totals, read_diagram4,
 };

@@ -1,7 +1,7 @@
 //! Streams and text twins of other versions: every program says what it lacks.
 
+use spmesh_base::error::ErrorKind;
 use spmesh_convert::Format;
-use spmesh_core::error::ErrorKind;
 
 use crate::convert::{converted, text_of};
 use crate::programs::{Folder, assert_outcome};

@@ -1,7 +1,7 @@
 //! Streams with random content.
 
-use spmesh_model::bounds::{Bounds, Point, Region};
-use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_stream::model::bounds::{Bounds, Point, Region};
+use spmesh_stream::model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, Crs, Event, Header, Kind, Patch};
 
 use super::{Random, attributes, write_rows};

@@ -1,7 +1,7 @@
 //! Records and blocks that readers skip, and the records of headers in general.
 
-use spmesh_core::error::ErrorKind;
-use spmesh_core::limits::{BLOCK_PAYLOAD_MAX, HEADER_BODY_MAX, PRODUCER_LEN_MAX};
+use spmesh_base::error::ErrorKind;
+use spmesh_base::limits::{BLOCK_PAYLOAD_MAX, HEADER_BODY_MAX, PRODUCER_LEN_MAX};
 use spmesh_stream::{Coordinates, Crs, Event, Header, Kind, StreamReader, StreamWriter, Totals};
 
 use super::{Random, assert_malformed, frames, random_stream, read_all, seal, write};

@@ -4,9 +4,9 @@
 use super::molecules::{Record, cloud, pdb};
 use crate::programs::{outcome, run};
 use num_bigint::BigInt;
-use spmesh_geometry::delaunay3::{triangulate, triangulate_weighted};
+use spmesh_delaunay::delaunay3::{triangulate, triangulate_weighted};
+use spmesh_molecules::tess3::filtration::Filtration;
 use spmesh_reference::sets::Random;
-use spmesh_tess3::filtration::Filtration;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -107,7 +107,7 @@ fn long_meshes_come_in_patches() {
 
 #[test]
 fn the_bytes_of_a_mesh_do_not_depend_on_the_number_of_threads() {
-    let mut random = spmesh_core::random::Random::new(4);
+    let mut random = spmesh_base::random::Random::new(4);
     // Multiples of a tenth, so that many points are cospherical, and some coincide.
     let mut line = || {
         let [x, tenths, y, z] = [60, 10, 60, 60].map(|bound| random.below(bound));

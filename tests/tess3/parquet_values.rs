@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use spmesh_core::output::Output;
-use spmesh_io::sink::{Column, ColumnKind, TableFormat, TableSink};
+use spmesh_base::output::Output;
+use spmesh_formats::sink::{Column, ColumnKind, TableFormat, TableSink};
 
 use super::parquet_reader::{Field, Table, Value, read};
 use crate::programs::Folder;

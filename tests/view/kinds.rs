@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use spmesh_io::source::{Mask, Surface};
+use spmesh_formats::source::{Mask, Surface};
 use spmesh_view::{Fill, Form, Moments, Options, Picture, SolidOptions, When, draw_solid};
 
 use super::svg::parse;

@@ -9,7 +9,7 @@ mod pixels;
 mod shapes;
 mod svg;
 
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 use spmesh_stream::StreamReader;
 use spmesh_view::{Moments, Options, Picture, draw};
 

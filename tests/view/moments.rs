@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use spmesh_core::upstream::mark;
+use spmesh_base::upstream::mark;
 use spmesh_stream::{Event, StreamReader};
 use spmesh_view::{Moments, Options};
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use spmesh_io::source::Mask;
+use spmesh_formats::source::Mask;
 use spmesh_stream::Coordinates;
 use spmesh_view::{Fill, Form, Moments, Options};
 

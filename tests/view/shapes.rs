@@ -105,7 +105,7 @@ fn every_edge_is_drawn_once() {
 #[test]
 fn windows_leave_out_what_cannot_be_seen() {
     let mesh = random_mesh(400, 1_000);
-    let window = spmesh_io::raster::Window { min: [200.0, 300.0], max: [500.0, 450.0] };
+    let window = spmesh_formats::raster::Window { min: [200.0, 300.0], max: [500.0, 450.0] };
     let options = Options { bounds: Some(window), ..options(Fill::Elevation) };
     let elements = parse(&picture(&mesh.stream(Coordinates::F64), &options).svg);
     let meets = |triangle: &&[u32; 3]| {
@@ -153,7 +153,7 @@ fn cells_have_the_times_of_their_points() {
             _ => {}
         }
     }
-    let holds = |cell: &&spmesh_model::cells::CellCode| {
+    let holds = |cell: &&spmesh_stream::model::cells::CellCode| {
         let (min, max) = tree.corners(**cell);
         points.iter().any(|at| (0..2).all(|axis| min[axis] <= at[axis] && at[axis] < max[axis]))
     };

@@ -1,7 +1,7 @@
 //! Configurations as the audit holds them: flat arrays, as they came.
 
 use super::{Claim, FARAWAY};
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result};
 
 /// The configurations (B, I) of one degree, grouped by I. In infinite ones, the last knot of B is
 /// [`FARAWAY`].

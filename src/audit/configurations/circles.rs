@@ -9,7 +9,7 @@ use super::tree::Tree;
 use super::{Configurations, Knots};
 use crate::exact::dyadic::integers;
 use crate::exact::plane::{in_circle, in_raised_circle, orientation};
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result};
 
 /// Checks that the circle of every boundary has its interior set inside, and no other knot; ties are broken
 /// as the canonical triangulation does, and the j-th knot at a place is taken to be at `p + e (j, j * j)` for

@@ -1,7 +1,7 @@
 //! Facet matching between the configurations of two degrees.
 
 use super::{Configurations, FARAWAY};
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result};
 
 /// Facets (F, J) by the three cases of proposition 6.2.1; the number of edge configurations is their sum.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

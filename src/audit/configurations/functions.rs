@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use foldhash::fast::RandomState;
 
 use super::{Configurations, FARAWAY};
-use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_model::functions::Function;
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_stream::model::functions::Function;
 
 /// Checks that the pair of each term has a link: that a configuration (B, I) of degree 1 has I and a knot of B
 /// in it. `pairs` are the configurations of degree 1, if there are any.

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::exact::plane::{Xy, lexicographic};
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Most knots of one stream: as many as the programs make configurations of.
 const KNOTS_MAX: usize = 268_000_000;

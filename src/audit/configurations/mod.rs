@@ -27,4 +27,4 @@ pub use set::ConfigurationSet;
 pub use stream::{DegreeProof, Proof, StreamAudit, Violation, check};
 
 // Two terms of the stream format: data, not code.
-pub(super) use spmesh_model::configurations::{Claim, FARAWAY};
+pub(super) use spmesh_stream::model::configurations::{Claim, FARAWAY};

@@ -15,7 +15,7 @@ use num_bigint::BigInt;
 
 use super::circles::{moved, turn};
 use super::{Configurations, Knots};
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result};
 
 /// A directed edge of the border, from the set `interior` + `from` to `interior` + `to`.
 #[derive(Debug)]

@@ -2,9 +2,9 @@
 
 use super::{Configurations, Knots};
 use crate::exact::plane::Xy;
-use spmesh_core::error::Result;
-use spmesh_model::functions::Function;
+use spmesh_base::error::Result;
 use spmesh_stream::Event;
+use spmesh_stream::model::functions::Function;
 
 /// Knots and their configurations, to be proved by [`super::check`].
 #[derive(Debug, Clone, Default)]

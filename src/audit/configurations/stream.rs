@@ -3,7 +3,7 @@
 use super::set::Collector;
 use super::{Claim, ConfigurationSet, Configurations, FacetCounts, Knots};
 use super::{check_centroids, check_circles, check_facets, check_functions, check_start};
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_stream::Event;
 
 /// Audit of one stream of configurations: start with the default, pass it every event, then call

@@ -10,7 +10,7 @@ use super::faces::{Faces, common, without};
 use super::sites::Sites;
 use super::space::{Facet, Roundness, Separation, Sphere};
 use super::violation::{Claim, Violation};
-use spmesh_model::cells4::{Cell4, Cells4, Point4};
+use spmesh_stream::model::cells4::{Cell4, Cells4, Point4};
 
 /// The audit of cells whose lists are well formed.
 pub(super) struct CellsAudit<'a> {

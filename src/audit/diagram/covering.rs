@@ -3,7 +3,7 @@
 use super::sites::Sites;
 use super::space::Independent;
 use super::violation::{Claim, Violation};
-use spmesh_model::cells4::Point4;
+use spmesh_stream::model::cells4::Point4;
 
 /// A point `o` inside of a cell, and the cells that do not contain it.
 ///

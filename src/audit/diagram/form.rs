@@ -1,7 +1,7 @@
 //! Checks without geometry: the order of points and cells, ranges of numbers, mutual neighbours.
 
 use super::violation::{Claim, Violation};
-use spmesh_model::cells4::{Cell4, Cells4, Point4};
+use spmesh_stream::model::cells4::{Cell4, Cells4, Point4};
 
 /// Proves that points are finite and in strictly increasing order.
 pub(super) fn check_points(points: &[Point4]) -> Result<(), Violation> {

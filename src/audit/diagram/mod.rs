@@ -68,7 +68,7 @@ pub use stream::StreamAudit;
 pub use violation::{Claim, Violation};
 
 use cells::CellsAudit;
-use spmesh_model::cells4::{Cells4, Point4};
+use spmesh_stream::model::cells4::{Cells4, Point4};
 
 /// Counts of what was proved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

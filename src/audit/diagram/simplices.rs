@@ -11,7 +11,7 @@ use super::form::{check_finite, check_vertices};
 use super::sites::Sites;
 use super::space::{Facet, Roundness, Separation, Sphere};
 use super::violation::{Claim, Violation};
-use spmesh_model::cells4::Point4;
+use spmesh_stream::model::cells4::Point4;
 
 /// Proves that simplices tile the convex hull of points, all of which are vertices, and that their spheres
 /// are empty.

@@ -4,7 +4,7 @@ use num_bigint::BigInt;
 
 use super::number::{Ball, Number};
 use crate::exact::dyadic::Dyadic;
-use spmesh_model::cells4::Point4;
+use spmesh_stream::model::cells4::Point4;
 
 /// A geometric test of points relative to one of them.
 pub(super) trait Question {

@@ -1,8 +1,8 @@
 //! The audit of a stream of four dimensions: everything in it is held, and proved when it is complete.
 
 use super::{Proof, Violation, check, check_simplices};
-use spmesh_core::error::{Error, Result};
-use spmesh_model::diagram4::Diagram4;
+use spmesh_base::error::{Error, Result};
+use spmesh_stream::model::diagram4::Diagram4;
 use spmesh_stream::{Diagram4Collector, Event, Kind};
 
 /// Audit of one stream of cells or simplices: pass it every event, then call [`StreamAudit::prove`].

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use spmesh_model::cells4::Point4;
+use spmesh_stream::model::cells4::Point4;
 
 /// One kind of claim that the audit proves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

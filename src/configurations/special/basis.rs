@@ -2,10 +2,10 @@
 
 use crate::knots::Knots;
 use foldhash::{HashMap, HashSet};
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2::distinct;
-use spmesh_model::configurations::{FARAWAY, Link, Links};
-use spmesh_model::functions::{Function, FunctionKind};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::delaunay2::distinct;
+use spmesh_stream::model::configurations::{FARAWAY, Link, Links};
+use spmesh_stream::model::functions::{Function, FunctionKind};
 use std::collections::BTreeMap;
 
 /// The special functions that B-splines are collected into.

@@ -18,9 +18,9 @@ use crate::diagonals::Diagonals;
 use crate::knots::Knots;
 use crate::surface::Start;
 use foldhash::{HashMap, HashSet};
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2::{MAX_POINTS, distinct};
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::delaunay2::{MAX_POINTS, distinct};
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 
 /// The directions in which cells, and the diamonds in links, are split.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -8,10 +8,10 @@ use crate::knots::Knots;
 use crate::plane::Plane;
 use crate::surface::{Around, Corner, Start};
 use foldhash::{HashSet, HashSetExt};
-use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_geometry::delaunay2::distinct;
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Sign};
-use spmesh_model::configurations::FARAWAY;
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_delaunay::delaunay2::distinct;
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Sign};
+use spmesh_stream::model::configurations::FARAWAY;
 use std::collections::VecDeque;
 
 /// A triangulation with fixed edges, which are never flipped.

@@ -6,9 +6,9 @@ use super::constrained::{Constrained, segment, through};
 use crate::diagonals::Diagonals;
 use crate::knots::Knots;
 use crate::surface::Start;
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2::distinct;
-use spmesh_geometry::predicates::FiniteFloatPredicates;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::delaunay2::distinct;
+use spmesh_delaunay::predicates::FiniteFloatPredicates;
 
 /// A polyline of knots along which splines have a crease.
 #[derive(Debug, Clone, PartialEq, Eq)]

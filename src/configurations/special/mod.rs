@@ -14,14 +14,14 @@ mod features;
 pub use super::diagonals::Diagonals;
 pub use boxes::{Patch, ZpSplit, patches, zp};
 pub use features::{Crease, Features, features};
-pub use spmesh_model::functions::{Function, FunctionKind};
+pub use spmesh_stream::model::functions::{Function, FunctionKind};
 
 use super::knots::Knots;
 use super::rule::Rule;
 use super::surface::Start;
 use basis::Collection;
-use spmesh_core::error::Result;
-use spmesh_model::configurations::{Configurations, Links};
+use spmesh_base::error::Result;
+use spmesh_stream::model::configurations::{Configurations, Links};
 
 /// Knots with a start and required diagonals for special configurations of degree 1.
 #[derive(Debug, Clone)]

@@ -13,9 +13,9 @@ use super::jet::Jet;
 use super::linear_simplex::{self, Found, Line, LinearSimplex};
 use super::simplex;
 use super::tree::Tree;
-use spmesh_core::error::{Error, Result};
-use spmesh_core::prefetch::prefetch;
-use spmesh_geometry::predicates::{Point2, area};
+use spmesh_base::error::{Error, Result};
+use spmesh_base::prefetch::prefetch;
+use spmesh_delaunay::predicates::{Point2, area};
 
 /// Functions of one degree over configurations of knots.
 ///

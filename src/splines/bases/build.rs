@@ -8,10 +8,10 @@ use super::function_sets::FunctionSets;
 use super::linear_simplex::LinearSimplex;
 use super::simplex::MAX_DEGREE;
 use super::tree::{Hull, Tree};
+use spmesh_base::error::{Error, Result};
 use spmesh_configurations::{self as configurations, Configurations, FARAWAY, Knots};
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::{BoundedFloatPredicates, Extent, Point2};
-use spmesh_model::functions::Function;
+use spmesh_delaunay::predicates::{BoundedFloatPredicates, Extent, Point2};
+use spmesh_stream::model::functions::Function;
 
 impl Basis {
     /// The B-splines of degree k that belong to the links of configurations of degree k - 1, in the order of

@@ -6,7 +6,7 @@
 //! turned left. No line contains these points for all small e, so all functions take the limit from the same
 //! side. If the fixed point is inside a convex domain, d points inward on the border.
 
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 
 /// A point, and the direction along which functions take their limit there.
 #[derive(Debug, Clone, Copy, PartialEq)]

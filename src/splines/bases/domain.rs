@@ -30,7 +30,7 @@
 
 use super::directional_limit::DirectionalLimit;
 use spmesh_configurations::{Configurations, Knots};
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// The intersection of the closed half-planes to the right of directed lines.
 #[derive(Debug, Clone)]

@@ -9,9 +9,9 @@
 
 use foldhash::HashMap;
 use spmesh_configurations::{Configurations, Knots};
-use spmesh_geometry::delaunay2::distinct;
-use spmesh_geometry::order::{Curve, SpatialOrder};
-use spmesh_geometry::predicates::{Extent, FiniteFloatPredicates, Point2, Predicates2, Sign, area};
+use spmesh_delaunay::delaunay2::distinct;
+use spmesh_delaunay::order::{Curve, SpatialOrder};
+use spmesh_delaunay::predicates::{Extent, FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// The linear factor of a function in an element: `factor * area(x, a, b)`, for an edge ab.
 #[derive(Debug, Clone, Copy, PartialEq)]

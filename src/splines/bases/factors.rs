@@ -2,7 +2,7 @@
 
 use super::elements::Elements;
 use super::linear_simplex::{Line, LinearSimplex, line_of, scaled};
-use spmesh_geometry::predicates::Point2;
+use spmesh_delaunay::predicates::Point2;
 
 /// Linear factors of functions in elements, as functions of the offset from the origin of the closed form.
 #[derive(Debug, Clone, Default)]

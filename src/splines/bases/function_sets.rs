@@ -1,6 +1,6 @@
 //! Functions by their interior sets.
 
-use spmesh_geometry::predicates::Point2;
+use spmesh_delaunay::predicates::Point2;
 
 /// The interior sets of functions, with their factors.
 #[derive(Debug, Clone, Default)]

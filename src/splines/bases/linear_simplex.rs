@@ -14,7 +14,7 @@
 
 use super::directional_limit::DirectionalLimit;
 use super::elements::hull_edges;
-use spmesh_geometry::predicates::{Extent, Point2, Sign, area, exact_area};
+use spmesh_delaunay::predicates::{Extent, Point2, Sign, area, exact_area};
 
 /// The error relative to the greatest value from which on closed forms are not accurate enough. It is a
 /// bound: actual errors are at most a tenth of it.

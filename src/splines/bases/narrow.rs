@@ -5,7 +5,7 @@
 //! determines them.
 
 use super::basis::Basis;
-use spmesh_geometry::predicates::{Point2, area};
+use spmesh_delaunay::predicates::{Point2, area};
 
 /// The greatest width of a support on a line, as a part of its length...
 const WIDTH: f64 = 1e-9;

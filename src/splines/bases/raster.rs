@@ -8,8 +8,8 @@
 
 use super::basis::{Basis, Scratch};
 use super::linear_simplex::{Line, LinearSimplex, lesser, scaled, value};
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::Point2;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point2;
 use std::ops::Range;
 
 /// Points at `origin + [column * step[0], row * step[1]]`.

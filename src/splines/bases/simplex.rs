@@ -11,7 +11,7 @@
 use super::directional_limit::DirectionalLimit;
 use super::jet::Jet;
 use foldhash::{HashMap, HashMapExt};
-use spmesh_geometry::predicates::{Point2, Sign, area};
+use spmesh_delaunay::predicates::{Point2, Sign, area};
 
 /// Greatest degree of a simplex spline: sets of knots are held in 32 bits.
 pub const MAX_DEGREE: usize = 28;

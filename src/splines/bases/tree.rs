@@ -5,7 +5,7 @@
 //! node that a grid over the box yields; where knots are evenly spread, that node is near the leaves.
 
 use super::domain::{Domain, is_right_or_on};
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 
 /// Cells with at most this number of elements are not halved.
 const FEW: usize = 6;

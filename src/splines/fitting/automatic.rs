@@ -15,7 +15,7 @@ use super::robust::{LEFT_OUT, Loss, RobustStart, Rounds};
 use super::solve::Equations;
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 

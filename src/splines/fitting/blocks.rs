@@ -4,8 +4,8 @@
 //! results return in order. So no result depends on the number of threads.
 
 use super::observations::{Observation, Observations};
-use spmesh_core::error::Result;
-use spmesh_core::parallel;
+use spmesh_base::error::Result;
+use spmesh_delaunay::parallel;
 use std::num::NonZeroUsize;
 
 /// Observations in a block.

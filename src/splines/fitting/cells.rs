@@ -1,7 +1,7 @@
 //! The cells into which lines divide a convex polygon.
 
 use super::polygon::{self, Polygon, twice_area};
-use spmesh_geometry::predicates::Point2;
+use spmesh_delaunay::predicates::Point2;
 
 /// Parts smaller than this share of the whole polygon stay with their neighbour: where several lines meet in
 /// one point, rounding leaves such parts between them.

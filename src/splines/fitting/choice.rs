@@ -6,7 +6,7 @@
 //! minimum. It never goes below a floor.
 
 use super::solve::Equations;
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Steps of the search, in the logarithm of `lambda` to base 10. After the last step, a parabola through the
 /// three best trials gives the minimum.

@@ -20,7 +20,7 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result};
 
 /// Added to a diagonal of ones: a few hundred times the rounding error of a pivot.
 pub(super) const RIDGE: f64 = 1e-13;

@@ -10,9 +10,9 @@ use super::polygon;
 use super::rows::Rows;
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2::{self, Triangulation};
-use spmesh_geometry::predicates::{Point2, area};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::delaunay2::{self, Triangulation};
+use spmesh_delaunay::predicates::{Point2, area};
 
 /// The share of the control mesh in [`bending`], small enough that creases can fold where observations
 /// require it.
@@ -43,7 +43,7 @@ pub fn bending(basis: &Basis) -> Result<Symmetric> {
 /// Usage, if all Greville sites are on one line.
 pub fn control_bending(basis: &Basis) -> Result<Symmetric> {
     let sites: Vec<Point2> = (0..basis.len()).map(|function| basis.greville(function)).collect();
-    let mesh = delaunay2::triangulate(&sites)?;
+    let mesh = delaunay2::triangulate(&sites).map_err(Error::of_computation)?;
     if mesh.triangles().is_empty() {
         return Err(Error::usage("all Greville sites of the functions are on one line: use more knots"));
     }

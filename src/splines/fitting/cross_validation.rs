@@ -8,8 +8,8 @@ use super::selected_inverse::trace_of_quotient;
 use super::solve::Equations;
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
-use spmesh_core::error::{Error, Result};
-use spmesh_core::random::Random;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::random::Random;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 

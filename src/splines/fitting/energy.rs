@@ -20,9 +20,9 @@ use super::polygon::{self, Clipper, Polygon};
 use super::rows::Rows;
 use super::symmetric::Symmetric;
 use crate::bases::{Basis, Bend, Scratch};
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2::{self, Triangle};
-use spmesh_geometry::predicates::{Point2, lexicographic};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::delaunay2::{self, Triangle};
+use spmesh_delaunay::predicates::{Point2, lexicographic};
 
 /// The area of triangles is left out if it is less than this part of the square of their longest side. Three
 /// knots that are on a line except for rounding errors make second derivatives so great, on so little area,
@@ -67,7 +67,7 @@ pub fn thin_plate(basis: &Basis) -> Result<Symmetric> {
 /// The triangles of a Delaunay triangulation of the knots.
 fn triangles(basis: &Basis) -> Result<Vec<[Point2; 3]>> {
     check_domain(basis)?;
-    let mesh = delaunay2::triangulate(basis.knots())?;
+    let mesh = delaunay2::triangulate(basis.knots()).map_err(Error::of_computation)?;
     let corners = |triangle: &Triangle| triangle.vertices.map(|id| basis.knots()[id as usize]);
     Ok(mesh.triangles().iter().map(corners).collect())
 }

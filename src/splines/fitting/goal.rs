@@ -2,7 +2,7 @@
 
 use super::knot_placement::KNOTS_MIN;
 use super::robust::Loss;
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,8 +6,8 @@ use faer::linalg::solvers::SolveCore;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, MatMut};
-use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_geometry::predicates::Point2;
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_delaunay::predicates::Point2;
 
 /// The greatest condition that leaves correct digits: equations beyond are treated as singular.
 const CONDITION_MAX: f64 = 1e14;
@@ -246,7 +246,7 @@ fn check_sites(basis: &Basis, functions: &[usize], values: &[f64]) -> Result<()>
         .at(at(dead)));
     }
     let sites: Vec<Point2> = (0..basis.len()).map(|site| basis.greville(site)).collect();
-    let firsts = spmesh_geometry::delaunay2::distinct(&sites);
+    let firsts = spmesh_delaunay::delaunay2::distinct(&sites);
     match firsts.iter().enumerate().find(|&(site, &first)| site != first as usize) {
         Some((site, first)) => Err(Error::usage(format!(
             "functions {first} and {site} have one Greville site: collect the functions of knots at one place"

@@ -6,9 +6,9 @@
 
 use super::mesh::Mesh;
 use super::observations::Observations;
-use spmesh_core::error::{Error, Result};
-use spmesh_core::random::Random;
-use spmesh_geometry::predicates::Point2;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::random::Random;
+use spmesh_delaunay::predicates::Point2;
 
 /// Cells along the longer side of the box in the first round.
 const CELLS_FIRST: usize = 4;

@@ -11,7 +11,7 @@
 use super::choice::{Choice, Limits, search};
 use super::linear_part::Correction;
 use super::solve::Equations;
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 
 /// Number of linear functions, which have no energy.
 const LINEAR: f64 = 3.0;

@@ -7,7 +7,7 @@
 
 use super::polygon;
 use crate::bases::Basis;
-use spmesh_geometry::predicates::Point2;
+use spmesh_delaunay::predicates::Point2;
 
 /// The quantile of magnitudes that a local scale follows from...
 const QUANTILE: f64 = 0.9;

@@ -9,8 +9,8 @@ use super::polygon;
 use super::rows::Rows;
 use super::symmetric::Symmetric;
 use crate::bases::{Basis, Scratch};
-use spmesh_core::error::Result;
-use spmesh_geometry::predicates::Point2;
+use spmesh_base::error::Result;
+use spmesh_delaunay::predicates::Point2;
 
 /// Barycentric coordinates of the three nodes of a rule of degree 2 on triangles. Each has a third of the
 /// area as weight (Strang and Fix 1973).

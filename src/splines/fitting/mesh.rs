@@ -1,8 +1,8 @@
 //! Triangulated points: location, and linear interpolation.
 
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2::{self, Triangulation};
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::delaunay2::{self, Triangulation};
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// The Delaunay triangulation of points.
 #[derive(Debug)]
@@ -17,7 +17,7 @@ impl Mesh {
     /// # Errors
     /// Coordinates that are not finite; no triangle.
     pub fn of(points: Vec<Point2>) -> Result<Mesh> {
-        let triangulation = delaunay2::triangulate(&points)?;
+        let triangulation = delaunay2::triangulate(&points).map_err(Error::of_computation)?;
         if triangulation.triangles().is_empty() {
             let what = format!("{} points on one line: three that are not are needed", points.len());
             return Err(Error::usage(what));

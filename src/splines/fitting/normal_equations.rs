@@ -14,8 +14,8 @@ use super::polygon;
 use super::rows::Rows;
 use super::symmetric::Symmetric;
 use crate::bases::{Basis, Scratch};
-use spmesh_core::error::{Error, Result};
-use spmesh_core::parallel;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::parallel;
 use std::num::NonZeroUsize;
 
 /// Normal equations, with the sums that give the residuals.

@@ -1,7 +1,7 @@
 //! Scattered points with values, read as often as a fit needs them.
 
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::Point2;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point2;
 
 /// Observations per batch of a list in memory.
 const BATCH: usize = 1 << 13;

@@ -1,6 +1,6 @@
 //! All pairs of boxes that overlap.
 
-use spmesh_geometry::predicates::Point2;
+use spmesh_delaunay::predicates::Point2;
 
 /// Up to this number of boxes, all pairs are compared.
 const FEW: usize = 16;
@@ -79,7 +79,7 @@ impl<V: FnMut(u32, u32)> Search<'_, V> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spmesh_core::random::Random;
+    use spmesh_base::random::Random;
 
     #[test]
     fn every_pair_is_found_once() {

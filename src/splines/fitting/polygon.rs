@@ -1,6 +1,6 @@
 //! Convex polygons cut by half-planes, in plain arithmetic.
 
-use spmesh_geometry::predicates::Point2;
+use spmesh_delaunay::predicates::Point2;
 
 /// The corners of a convex polygon, counterclockwise.
 pub(super) type Polygon = Vec<Point2>;

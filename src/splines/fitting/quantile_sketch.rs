@@ -54,7 +54,7 @@ impl QuantileSketch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spmesh_core::random::Random;
+    use spmesh_base::random::Random;
 
     #[test]
     fn medians_are_half_a_percent_off_at_most() {

@@ -15,7 +15,7 @@ use super::robust::{ROUNDS_FEW, Rounds};
 use super::solve::Equations;
 use super::spline_space::SplineSpace;
 use super::triangle_residuals::TriangleResiduals;
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 use std::num::NonZeroUsize;
 
 /// A spline and the knots that were found for it.

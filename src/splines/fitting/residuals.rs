@@ -3,8 +3,8 @@
 use super::blocks::{self, Block};
 use super::observations::{Observation, Observations};
 use crate::bases::{Basis, Scratch};
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::Point2;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point2;
 use std::num::NonZeroUsize;
 
 /// A residual: the value of an observation minus the value of the spline.

@@ -9,8 +9,8 @@ use super::residuals::{self, Residual};
 use super::solve::{Equations, Solution};
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::Point2;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point2;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 

@@ -115,7 +115,7 @@ mod tests {
 
     /// The equations of a grid of squares, with random entries, and a part of them.
     fn matrices(side: usize) -> [Symmetric; 2] {
-        let mut random = spmesh_core::random::Random::new(side as u64);
+        let mut random = spmesh_base::random::Random::new(side as u64);
         let mut number = || random.bits() as f64 / u64::MAX as f64 - 0.5;
         let [mut whole, mut part] = [(); 2].map(|()| Rows::new(side * side, 1));
         for row in 0..side * side {

@@ -10,8 +10,8 @@ use super::observations::Observations;
 use super::symmetric::Symmetric;
 use super::trend::{Trend, trend};
 use crate::bases::Basis;
-use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::Point2;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point2;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 

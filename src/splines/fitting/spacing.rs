@@ -2,7 +2,7 @@
 
 use super::knot_placement::bounds;
 use super::observations::Observations;
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 
 /// Observations per cell of the box, on average.
 const PER_CELL: f64 = 4.0;

@@ -3,10 +3,10 @@
 
 use super::mesh::Mesh;
 use crate::bases::Basis;
+use spmesh_base::error::Result;
 use spmesh_configurations::special::{Features, Function, features};
 use spmesh_configurations::{self as configurations, Configurations, Knots, Rule};
-use spmesh_core::error::Result;
-use spmesh_geometry::predicates::Point2;
+use spmesh_delaunay::predicates::Point2;
 
 /// Places of knots with their triangulation, and the functions of degree 2 over them.
 #[derive(Debug)]

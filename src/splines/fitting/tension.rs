@@ -12,7 +12,7 @@ use super::normal_equations::NormalEquations;
 use super::solve::Equations;
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Tensions that suit terrain. Waves longer than six distances of observations have mainly the energy of a
 /// membrane with the second, and waves longer than three with the third.

@@ -9,9 +9,9 @@ use super::mesh::Mesh;
 use super::observations::Observations;
 use super::residuals::{self, Residual};
 use super::spline_space::SplineSpace;
-use spmesh_core::error::Result;
-use spmesh_core::random::Random;
-use spmesh_geometry::predicates::Point2;
+use spmesh_base::error::Result;
+use spmesh_base::random::Random;
+use spmesh_delaunay::predicates::Point2;
 use std::num::NonZeroUsize;
 
 /// Least number of observations in a triangle that gets a knot; a knot adds two or three functions.

@@ -7,6 +7,10 @@
 mod bytes;
 mod choice;
 mod columns;
+#[cfg(feature = "zstd")]
+mod frames;
+#[cfg(not(feature = "zstd"))]
+#[path = "frames_missing.rs"]
 mod frames;
 mod open_edges;
 mod operations;
@@ -23,7 +27,7 @@ use super::coordinates::Coordinates;
 use super::header::Header;
 use frames::{Packer, Unpacker};
 use shapes::Shapes;
-use spmesh_core::error::{Error, Result};
+use spmesh_base::error::{Error, Result};
 
 /// Shorter payloads stay as they are: heads of methods and frames would take what compression saves.
 const PAYLOAD_MIN: usize = 64;
@@ -50,6 +54,7 @@ impl Method {
 }
 
 /// A zstd frame (RFC 8878) of any bytes, for formats that hold such frames.
+#[cfg(feature = "zstd")]
 #[must_use]
 pub fn zstd_frame(bytes: &[u8]) -> Vec<u8> {
     Packer::default().records(bytes).to_vec()
@@ -66,7 +71,7 @@ pub(super) struct Compressor {
 impl Compressor {
     /// The compressed form of the payload of a block; `None` if it is not shorter.
     pub(super) fn compress(&mut self, header: &Header, tag: Tag, payload: &[u8]) -> Option<&[u8]> {
-        if payload.len() < PAYLOAD_MIN || tag == Tag::End {
+        if cfg!(not(feature = "zstd")) || payload.len() < PAYLOAD_MIN || tag == Tag::End {
             return None;
         }
         self.compressed.clear();
@@ -95,7 +100,7 @@ pub(super) struct Decompressor {
 
 impl Decompressor {
     /// Puts the payload that `compressed` stands for into `payload`, at most
-    /// [`spmesh_core::limits::BLOCK_PAYLOAD_MAX`] bytes.
+    /// [`spmesh_base::limits::BLOCK_PAYLOAD_MAX`] bytes.
     ///
     /// # Errors
     /// Malformed, if it stands for none.
@@ -120,5 +125,5 @@ fn has_three_integers(header: &Header) -> bool {
     matches!(header.coordinates, Coordinates::I32 { .. }) && header.coordinates_per_point() == 3
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "zstd"))]
 mod tests;

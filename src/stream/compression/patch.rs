@@ -11,7 +11,7 @@ use super::frames::{Packer, Unpacker};
 use super::operations::Operation;
 use super::patch_triangles::{self as coding, Triangle};
 use super::{Fault, Method};
-use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
+use spmesh_base::limits::BLOCK_PAYLOAD_MAX;
 
 const VERTEX_LEN: usize = 12;
 const TRIANGLE_LEN: usize = 12;

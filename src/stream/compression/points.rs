@@ -11,7 +11,7 @@ use super::frames::{Packer, Unpacker};
 use super::order::{by_keys, segment_ends};
 use super::predictors::Predictor;
 use super::{Fault, Method};
-use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
+use spmesh_base::limits::BLOCK_PAYLOAD_MAX;
 
 const AXES: usize = 3;
 const POINT_LEN: usize = 4 * AXES;

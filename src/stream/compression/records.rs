@@ -5,7 +5,7 @@
 use super::bytes::Bytes;
 use super::frames::{Packer, Unpacker};
 use super::{Fault, Method};
-use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
+use spmesh_base::limits::BLOCK_PAYLOAD_MAX;
 
 /// How a payload is taken as records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

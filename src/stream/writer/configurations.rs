@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::{POINTS_PAYLOAD, StreamWriter, Tag};
 use crate::ConfigurationBlock;
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 
 /// A block of this many words takes no further configuration.
 const WORDS: usize = POINTS_PAYLOAD / 4;

@@ -5,8 +5,8 @@ use std::io::Write;
 use super::{StreamWriter, Tag};
 use crate::constraints::{Segment, encode_segment, segment_len};
 use crate::event::Patch;
-use spmesh_core::error::Result;
-use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
+use spmesh_base::error::Result;
+use spmesh_base::limits::BLOCK_PAYLOAD_MAX;
 
 impl<W: Write> StreamWriter<W> {
     /// Appends segments to a constrained mesh. They are numbered from 0 in the order in which they are

@@ -2,14 +2,14 @@
 
 use crate::coordinates::Coordinates;
 use crate::header::Header;
-use spmesh_core::error::{Error, Result};
-use spmesh_core::wide::{Loop, run_wide};
-use spmesh_model::bounds::Point;
+use crate::model::bounds::Point;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::wide::{Loop, run_wide};
 
 /// Appends the stored form of `point`.
 ///
 /// # Errors
-/// [`spmesh_core::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
+/// [`spmesh_base::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
 pub(super) fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
     for &value in &point[..header.coordinates_per_point()] {
         if !header.coordinates.can_store(value) {
@@ -26,7 +26,7 @@ pub(super) fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -
 /// Appends the stored form of all `points`, each as by `encode_point`.
 ///
 /// # Errors
-/// [`spmesh_core::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
+/// [`spmesh_base::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
 pub fn encode_points(header: &Header, points: &[Point], bytes: &mut Vec<u8>) -> Result<()> {
     let all_fit = match (header.coordinates, header.coordinates_per_point()) {
         (Coordinates::I32 { .. }, 2) => append::<2, 4>(points, bytes, i32_bytes),

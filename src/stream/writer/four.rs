@@ -5,8 +5,8 @@ use std::io::Write;
 use super::{POINTS_PAYLOAD, StreamWriter, Tag};
 use crate::cell_words::INFINITE;
 use crate::check_value;
-use spmesh_core::error::{Error, Result};
-use spmesh_model::cells4::{Cell4, Point4};
+use crate::model::cells4::{Cell4, Point4};
+use spmesh_base::error::{Error, Result};
 
 impl<W: Write> StreamWriter<W> {
     /// Appends points of four dimensions, with a value for each if the header says that points have one. Any

@@ -4,8 +4,8 @@ use std::io::Write;
 
 use super::{POINTS_PAYLOAD, StreamWriter, Tag};
 use crate::functions;
-use spmesh_core::error::Result;
-use spmesh_model::functions::Function;
+use crate::model::functions::Function;
+use spmesh_base::error::Result;
 
 impl<W: Write> StreamWriter<W> {
     /// Appends functions as sums of B-splines; all configurations must have been written before.

@@ -5,7 +5,7 @@ use std::io::Write;
 use super::{StreamWriter, Tag};
 use crate::event::Patch;
 use crate::part::{Origin, check_shared, encode_origins};
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 
 impl<W: Write> StreamWriter<W> {
     /// Writes what a patch says about vertices of other parts, if anything, before the patch.

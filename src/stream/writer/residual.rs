@@ -3,9 +3,9 @@
 use std::io::Write;
 
 use super::{StreamWriter, Tag, encode_point};
-use spmesh_core::error::Result;
-use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
-use spmesh_model::bounds::Point;
+use crate::model::bounds::Point;
+use spmesh_base::error::Result;
+use spmesh_base::limits::BLOCK_PAYLOAD_MAX;
 
 impl<W: Write> StreamWriter<W> {
     /// Appends residual points of a stream without attributes, as

@@ -3,9 +3,9 @@
 use std::io::Write;
 
 use super::{POINTS_PAYLOAD, StreamWriter, Tag, check_len, encode_points};
-use spmesh_core::error::Result;
-use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
-use spmesh_model::bounds::Point;
+use crate::model::bounds::Point;
+use spmesh_base::error::Result;
+use spmesh_base::limits::BLOCK_PAYLOAD_MAX;
 
 impl<W: Write> StreamWriter<W> {
     /// Appends points to a points stream, with a row for each if the header lists attributes.

@@ -11,15 +11,15 @@ use std::time::{Duration, UNIX_EPOCH};
 
 use clap::Parser;
 use serde_json::Value;
-use spmesh_cli_convert::spconvert;
-use spmesh_cli_molecules::tess3;
-use spmesh_cli_pipeline::{spdelaunay2d, spdelaunay3d, spfinalize, spnode};
-use spmesh_cli_spacetime::dd4;
-use spmesh_cli_splines::{configgen, splinefit};
-use spmesh_cli_terrain::{spcanopy, spconstrain, spdem, spheight};
-use spmesh_cli_view::spview;
-use spmesh_io::source::{SourceOptions, Survey};
-use spmesh_plan::{NodeReport, Plan, Planning, hash_of_file, plan_of};
+use spmesh_convert::flags::spconvert;
+use spmesh_formats::source::{SourceOptions, Survey};
+use spmesh_molecules::flags::tess3;
+use spmesh_pipeline::flags::{spdelaunay2d, spdelaunay3d, spfinalize, spnode};
+use spmesh_pipeline::plan::{NodeReport, Plan, Planning, hash_of_file, plan_of};
+use spmesh_spacetime::flags::dd4;
+use spmesh_splines::flags::{configgen, splinefit};
+use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spheight};
+use spmesh_view::flags::spview;
 use tempfile::TempDir;
 
 use crate::streams::{prove, sealed};

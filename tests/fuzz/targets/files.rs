@@ -5,20 +5,20 @@ use std::io::{Cursor, Read};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use spmesh_dd4::{Quantum, TimeScale};
-use spmesh_finalize::Thin;
-use spmesh_io::las::{Changes, LasCopy, LasFile};
-use spmesh_io::source::points4::{
+use spmesh_formats::las::{Changes, LasCopy, LasFile};
+use spmesh_formats::source::points4::{
     Condition, From4, RawLayout, Request, Selection, Spacing, parse_sizes, read_points4,
 };
-use spmesh_io::source::structure::{Format, Radii, read_structure_from};
-use spmesh_io::source::{
+use spmesh_formats::source::structure::{Format, Radii, read_structure_from};
+use spmesh_formats::source::{
     AttributeChoice, Column, EventSource, Input, Interval, Plain, RawType, Separator, SourceOptions,
     open_obj, open_ply, open_sma, open_smb, read_ply_surface, read_polylines, read_values,
 };
-use spmesh_model::bounds::Bounds;
-use spmesh_splinefit::Smoothing;
-use spmesh_tess3::Radius;
+use spmesh_molecules::tess3::Radius;
+use spmesh_pipeline::finalize::Thin;
+use spmesh_spacetime::dd4::{Quantum, TimeScale};
+use spmesh_splines::splinefit::Smoothing;
+use spmesh_stream::model::bounds::Bounds;
 use tempfile::TempDir;
 
 use crate::samples::INDEXED_LAS;

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use spmesh_crs::{System, differences, geotiff_keys, name};
-use spmesh_io::source::{read_breaklines, read_mask, read_polygons};
+use spmesh_formats::crs::{System, differences, geotiff_keys, name};
+use spmesh_formats::source::{read_breaklines, read_mask, read_polygons};
 use spmesh_stream::Crs;
 
 use crate::files::{file, file_named};

@@ -4,15 +4,15 @@ use std::borrow::Cow;
 use std::num::NonZeroUsize;
 
 use spmesh_audit::{Audit, Standard, configurations::StreamAudit, diagram::check};
+use spmesh_base::error::ErrorKind;
 use spmesh_configurations::{Knots, Rule, delaunay, generate};
-use spmesh_core::error::ErrorKind;
-use spmesh_geometry::order::{Curve, Sequence};
-use spmesh_geometry::{delaunay2, delaunay3};
-use spmesh_geometry4::diagram4::{Route, diagram_by};
-use spmesh_model::cells4::Point4;
-use spmesh_model::diagram4::Diagram4;
+use spmesh_delaunay::order::{Curve, Sequence};
+use spmesh_delaunay::{delaunay2, delaunay3};
 use spmesh_reference::space::distinct;
 use spmesh_reference::tetrahedra::regular;
+use spmesh_spacetime::diagram4::{Route, diagram_by};
+use spmesh_stream::model::cells4::Point4;
+use spmesh_stream::model::diagram4::Diagram4;
 use spmesh_stream::{Coordinates, Header, Kind, StreamReader, write_configurations, write_triangles};
 
 use crate::points::{moderate, points};
@@ -104,7 +104,7 @@ pub fn diagram4(bytes: &[u8]) {
     }
 }
 
-fn prove4(points: &[Point4], cells: &spmesh_model::cells4::Cells4) {
+fn prove4(points: &[Point4], cells: &spmesh_stream::model::cells4::Cells4) {
     if let Err(violation) = check(points, cells) {
         panic!("{violation:?}\nlet points = {points:?};");
     }

@@ -4,8 +4,8 @@ use std::fs;
 use std::io::Cursor;
 
 use spmesh_convert::{Format, Options, convert};
-use spmesh_io::sink::{NPY_F64, npy_header};
-use spmesh_io::source::{Input, SourceOptions};
+use spmesh_formats::sink::{NPY_F64, npy_header};
+use spmesh_formats::source::{Input, SourceOptions};
 
 use crate::commands::made;
 use crate::samples::{INDEXED_LAS, LINES_GPKG, POLYGONS, SYSTEMS, Samples, blobs, data};

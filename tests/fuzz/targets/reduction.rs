@@ -12,10 +12,10 @@ mod solids;
 mod streams;
 
 use spmesh_audit::{Audit, Standard};
-use spmesh_geometry::delaunay2;
-use spmesh_model::bounds::{Point, Region};
-use spmesh_reduce::{Options, Part, merge_tetrahedra, merge_triangles};
+use spmesh_delaunay::delaunay2;
+use spmesh_pipeline::reduce::{Options, Part, merge_tetrahedra, merge_triangles};
 use spmesh_reference::sets::Random;
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Coordinates, StreamReader};
 
 use crate::points::points;

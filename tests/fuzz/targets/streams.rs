@@ -1,10 +1,10 @@
 //! Streams and their text twins.
 
 use spmesh_audit::{Audit, Inventory, Standard, configurations, diagram};
-use spmesh_core::error::Result;
-use spmesh_io::sink::{EventSink, SpmSink, TwinSink};
-use spmesh_io::source::{EventSource, TwinSource};
-use spmesh_model::bounds::Point;
+use spmesh_base::error::Result;
+use spmesh_formats::sink::{EventSink, SpmSink, TwinSink};
+use spmesh_formats::source::{EventSource, TwinSource};
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, FinalizedCells, Header, Kind, LiveVertices, MemoryRules, StreamReader, Totals};
 
 /// The first byte of a stream.

@@ -2,8 +2,8 @@
 
 use super::promises::tetrahedra;
 use super::proved;
-use spmesh_geometry::delaunay3::Kernel;
-use spmesh_geometry::order::{Curve, Sequence};
+use spmesh_delaunay::delaunay3::Kernel;
+use spmesh_delaunay::order::{Curve, Sequence};
 use spmesh_reference::clouds::{self, Family};
 use spmesh_reference::sets::Random;
 use spmesh_reference::space::Point;
@@ -165,8 +165,8 @@ fn symmetries_keep_the_tetrahedra_of_points_in_general_position() {
     assert!(as_set(inverted) == expected);
 }
 
-fn unproved(kernel: &mut Kernel, points: &[Point]) -> spmesh_geometry::delaunay3::Tetrahedralization {
-    let mut mesh = spmesh_geometry::delaunay3::Tetrahedralization::default();
+fn unproved(kernel: &mut Kernel, points: &[Point]) -> spmesh_delaunay::delaunay3::Tetrahedralization {
+    let mut mesh = spmesh_delaunay::delaunay3::Tetrahedralization::default();
     kernel.triangulate(points.into(), &mut mesh).expect("finite points");
     mesh
 }

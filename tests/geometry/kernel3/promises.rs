@@ -1,6 +1,6 @@
 //! Proofs of all promises of the 3D kernel, by code that shares nothing with it.
 
-use spmesh_geometry::delaunay3::Tetrahedralization;
+use spmesh_delaunay::delaunay3::Tetrahedralization;
 use spmesh_reference::space::{Claim, Point, Space, distinct};
 use spmesh_reference::tetrahedra::as_set;
 

@@ -2,7 +2,7 @@
 
 use super::promises::tetrahedra;
 use super::proved;
-use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
 use spmesh_reference::clouds::{self, FAMILIES, Family};
 use spmesh_reference::sets::Random;
 use spmesh_reference::space::{Point, Space, distinct};

@@ -3,8 +3,8 @@
 
 use super::promises::tetrahedra;
 use super::proved;
-use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
-use spmesh_geometry::order::Sequence;
+use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_delaunay::order::Sequence;
 use spmesh_reference::clouds::{self, FAMILIES, Family};
 use spmesh_reference::sets::Random;
 use spmesh_reference::space::Point;

@@ -1,7 +1,7 @@
 //! Regular tetrahedralizations against the definition.
 
 use super::promises::tetrahedra;
-use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
 use spmesh_reference::clouds::{self, FAMILIES, Family};
 use spmesh_reference::sets::Random;
 use spmesh_reference::space::{Point, distinct};

@@ -3,7 +3,7 @@
 
 use super::sets::{Case, cases};
 use spmesh_configurations::{self as configurations, FARAWAY};
-use spmesh_geometry::predicates::area;
+use spmesh_delaunay::predicates::area;
 use spmesh_splines::bases::{Basis, Scratch, simplex_spline};
 use std::collections::HashMap;
 
@@ -97,7 +97,7 @@ fn supports_and_greville_sites_are_where_functions_are() {
 #[test]
 fn configurations_that_do_not_fit_are_errors() {
     let case = cases(2).swap_remove(0);
-    let refused = |result: spmesh_core::error::Result<Basis>| result.expect_err("an error").to_string();
+    let refused = |result: spmesh_base::error::Result<Basis>| result.expect_err("an error").to_string();
     let fewer = configurations::Knots::new(case.knots.points()[..20].to_vec()).expect("finite points");
     assert!(refused(Basis::new(&fewer, &case.configurations)).contains("unknown knot"));
     assert!(refused(Basis::of_triangles(&case.knots, &case.configurations)).contains("degree 1"));

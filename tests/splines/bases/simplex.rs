@@ -2,7 +2,7 @@
 
 use super::rational;
 use num_traits::Zero;
-use spmesh_geometry::predicates::area;
+use spmesh_delaunay::predicates::area;
 use spmesh_reference::sets::Random;
 use spmesh_splines::bases::{DirectionalLimit, Jet, simplex_spline, simplex_spline_jet};
 

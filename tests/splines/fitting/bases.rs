@@ -2,7 +2,7 @@
 
 use spmesh_configurations::special::{Features, features};
 use spmesh_configurations::{self as configurations, Knots, Rule};
-use spmesh_geometry::delaunay2;
+use spmesh_delaunay::delaunay2;
 use spmesh_reference::sets::Random;
 use spmesh_splines::bases::{Basis, Scratch};
 use spmesh_splines::fitting::Observation;

@@ -1,9 +1,9 @@
 //! Observations from files.
 
 use super::bases::{ONE, deviation, pulled_apart};
-use spmesh_io::source::{Input, SourceOptions};
-use spmesh_splinefit::Elevations;
+use spmesh_formats::source::{Input, SourceOptions};
 use spmesh_splines::fitting::{NormalEquations, least_squares};
+use spmesh_splines::splinefit::Elevations;
 use std::fmt::Write;
 
 fn f([x, y]: [f64; 2]) -> f64 {

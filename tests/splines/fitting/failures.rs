@@ -10,7 +10,7 @@ use spmesh_splines::fitting::{
     generalised_cross_validation, interpolate, least_squares, restricted_likelihood, robust, thin_plate,
 };
 
-fn message<T>(result: spmesh_core::error::Result<T>) -> String {
+fn message<T>(result: spmesh_base::error::Result<T>) -> String {
     match result {
         Ok(_) => panic!("no error"),
         Err(error) => error.to_string(),

@@ -3,7 +3,7 @@
 use super::bases::{grid, pulled_apart, value};
 use spmesh_configurations::special::{Features, ZpSplit, features, zp};
 use spmesh_configurations::{self as configurations, Configurations, Knots, Rule};
-use spmesh_geometry::delaunay2;
+use spmesh_delaunay::delaunay2;
 use spmesh_splines::bases::Basis;
 use spmesh_splines::fitting::Interpolation;
 

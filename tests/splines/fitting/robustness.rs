@@ -1,7 +1,7 @@
 //! Fits that resist gross errors.
 
 use super::bases::{ONE, deviation, grid, pulled_apart, scattered};
-use spmesh_core::error::Result;
+use spmesh_base::error::Result;
 use spmesh_reference::sets::Random;
 use spmesh_splines::fitting::{
     Loss, Method, NormalEquations, Observation, ObservationReader, Observations, bending, choose_robustly,

@@ -10,7 +10,7 @@
 use super::Basis;
 use crate::bases::elements::{Share, hull_edges};
 use crate::bases::linear_simplex::slope;
-use spmesh_geometry::predicates::{Point2, area};
+use spmesh_delaunay::predicates::{Point2, area};
 
 /// The contributions of one element to the second derivatives of its functions, on a triangle.
 #[derive(Debug, Clone)]

@@ -1,0 +1,85 @@
+//! What a computation on points or lines refuses.
+
+use std::{fmt, io};
+
+use crate::points::Point2;
+
+/// Result of every fallible operation of this crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Why points or lines could not be computed with. Nothing of the output was changed then.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// There are more points than the kernel numbers.
+    TooManyPoints {
+        /// How many there are.
+        count: usize,
+        /// How many it takes.
+        most: usize,
+    },
+    /// More tetrahedra would arise than the kernel numbers.
+    TooManyTetrahedra(usize),
+    /// A coordinate or a weight is infinite or not a number.
+    NotFinite {
+        /// Index of the point.
+        point: usize,
+        /// What is wrong with it, with its numbers.
+        found: String,
+    },
+    /// A vertex of a line is too far from the origin of the grid, infinite, or not a number.
+    BeyondGrid {
+        /// Where it is.
+        place: [i64; 2],
+        /// The greatest magnitude of a coordinate.
+        most: i64,
+    },
+    /// Lines have more crossings or bends than allowed.
+    TooManyOfLines {
+        /// "crossings" or "bends".
+        what: &'static str,
+        /// How many may be.
+        most: usize,
+    },
+    /// Two segments cross between their ends; one of them is this one.
+    Crossing([Point2; 2]),
+}
+
+impl Error {
+    pub(crate) fn not_finite(point: usize, coordinates: &[f64]) -> Error {
+        Error::NotFinite { point, found: format!("coordinate is not finite: {coordinates:?}") }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::TooManyPoints { count, most } => {
+                write!(f, "{count} points in one piece, the kernel takes at most {most}")
+            }
+            Error::TooManyTetrahedra(most) => write!(f, "more than {most} tetrahedra, the kernel's maximum"),
+            Error::NotFinite { point, found } => write!(f, "point {point}: {found}"),
+            Error::BeyondGrid { place, most } => {
+                write!(f, "a vertex of a line at {place:?} on the grid, the most is {most}")
+            }
+            Error::TooManyOfLines { what, most } => {
+                write!(f, "the lines have more than {most} {what}: divide them, or leave lines out")
+            }
+            Error::Crossing([[x, y], [u, v]]) => write!(f, "segments cross between {x}, {y} and {u}, {v}"),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl From<Error> for io::Error {
+    /// The kind tells a request that asks for too much, invalid input, from data that are malformed.
+    fn from(error: Error) -> io::Error {
+        let kind = match error {
+            Error::TooManyPoints { .. } => io::ErrorKind::InvalidInput,
+            Error::TooManyTetrahedra(_) => io::ErrorKind::Other,
+            _ => io::ErrorKind::InvalidData,
+        };
+        io::Error::new(kind, error)
+    }
+}

@@ -1,0 +1,28 @@
+//! Exact predicates, orders of insertion, and the Delaunay kernels of the plane and of space.
+
+mod bits;
+pub mod cell_lists;
+pub mod cell_walk;
+pub mod constrained2;
+pub mod delaunay2;
+pub mod delaunay3;
+#[cfg(feature = "experiments")]
+pub mod delaunay3_float;
+mod error;
+mod location;
+pub mod network;
+pub mod noding;
+pub mod order;
+pub mod parallel;
+pub mod points;
+pub mod predicates;
+mod prefetch;
+#[cfg(target_arch = "x86_64")]
+#[doc(hidden)]
+pub mod processor;
+mod random;
+pub mod simplex;
+pub mod vector;
+
+pub use error::{Error, Result};
+pub use location::Location;

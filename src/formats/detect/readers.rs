@@ -1,0 +1,169 @@
+//! Which formats each tool reads, and its message for any other.
+
+use spmesh_base::error::{Error, Result};
+
+use super::{Format, HEAD_LEN, detect};
+
+/// A tool that reads inputs of several formats.
+#[derive(Debug)]
+pub struct Reader {
+    /// Name of the tool.
+    pub tool: &'static str,
+    /// The formats that it reads, in the order of its messages: lists, one after the other.
+    pub formats: &'static [&'static [Format]],
+    /// Whether `--raw` makes it read numbers without a header.
+    pub has_raw: bool,
+    /// Axes of its points.
+    pub axes: usize,
+}
+
+/// Formats of points in space. Every tool that takes points reads them.
+const POINTS: &[Format] = &[
+    Format::Las,
+    Format::Text,
+    Format::OtherText,
+    Format::Stream,
+    Format::Twin,
+    Format::Spa,
+    Format::Spb,
+    Format::Ply,
+    Format::Obj,
+    Format::Sma,
+    Format::VertexLines,
+    Format::VtkLegacy,
+    Format::VtkXml,
+    Format::Npy,
+];
+
+/// Molecular structures, whose atoms are points in space.
+const STRUCTURES: &[Format] = &[Format::Pdb, Format::Mmcif, Format::Xyz];
+
+/// `spfinalize`.
+pub const SPFINALIZE: Reader =
+    Reader { tool: "spfinalize", formats: &[POINTS, STRUCTURES], has_raw: true, axes: 3 };
+
+/// `configgen`.
+pub const CONFIGGEN: Reader = Reader { tool: "configgen", formats: &[POINTS], has_raw: false, axes: 3 };
+
+/// `splinefit`.
+pub const SPLINEFIT: Reader = Reader { tool: "splinefit", formats: &[POINTS], has_raw: false, axes: 3 };
+
+/// `spinfo`, for the points that an audit compares with.
+pub const SPINFO: Reader = Reader { tool: "spinfo", formats: &[POINTS, STRUCTURES], has_raw: false, axes: 3 };
+
+/// `spconvert`.
+pub const SPCONVERT: Reader = Reader {
+    tool: "spconvert",
+    formats: &[&[
+        Format::Stream,
+        Format::Twin,
+        Format::Obj,
+        Format::Ply,
+        Format::Spa,
+        Format::Spb,
+        Format::Sma,
+        Format::Smb,
+        Format::Las,
+        Format::VtkLegacy,
+        Format::VtkXml,
+        Format::Text,
+    ]],
+    has_raw: false,
+    axes: 3,
+};
+
+/// `tess3`.
+pub const TESS3: Reader =
+    Reader { tool: "tess3", formats: &[STRUCTURES, &[Format::Off], POINTS], has_raw: false, axes: 3 };
+
+/// `spcanopy`.
+pub const SPCANOPY: Reader = Reader { tool: "spcanopy", formats: &[&[Format::Las]], has_raw: false, axes: 3 };
+
+/// `spheight`, for the files whose points get heights.
+pub const SPHEIGHT: Reader = Reader { tool: "spheight", formats: &[&[Format::Las]], has_raw: false, axes: 3 };
+
+/// `dd4`.
+pub const DD4: Reader = Reader {
+    tool: "dd4",
+    formats: &[&[Format::Text, Format::OtherText, Format::Nrrd, Format::Nifti, Format::Stream, Format::Twin]],
+    has_raw: true,
+    axes: 4,
+};
+
+/// All of them.
+pub const READERS: [&Reader; 9] =
+    [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &SPCANOPY, &SPHEIGHT, &TESS3, &DD4];
+
+/// The reader of a caller that does not name its tool.
+static ANY: Reader = Reader { tool: "this program", formats: &[POINTS], has_raw: true, axes: 3 };
+
+impl Default for &'static Reader {
+    fn default() -> Self {
+        &ANY
+    }
+}
+
+impl Reader {
+    /// The format of an input that starts with `head`, if the tool reads it.
+    ///
+    /// # Errors
+    /// Malformed, if the input is empty, or of a format that the tool does not read.
+    pub fn detect(&self, head: &[u8]) -> Result<Format> {
+        let format = detect(head)?;
+        if !self.reads(format) {
+            return Err(Error::malformed(self.refusal(format, head)));
+        }
+        if format == Format::OtherText && head.len() as u64 == HEAD_LEN && !may_hold_points_later(head) {
+            return Err(Error::malformed(format!(
+                "no line of coordinates in the first {HEAD_LEN} bytes; {}",
+                self.list()
+            )));
+        }
+        Ok(format)
+    }
+
+    /// Whether the tool reads this format.
+    #[must_use]
+    pub fn reads(&self, format: Format) -> bool {
+        self.formats.iter().any(|list| list.contains(&format))
+    }
+
+    /// The formats that the tool reads, for messages.
+    fn list(&self) -> String {
+        let mut listed: Vec<&str> = Vec::new();
+        for format in self.formats.iter().copied().flatten() {
+            let name = format.row().listed;
+            if !listed.contains(&name) {
+                listed.push(name);
+            }
+        }
+        format!("{} reads {}", self.tool, listed.join(", "))
+    }
+
+    /// The tool's message for a file of this format, which starts with `head`.
+    #[must_use]
+    pub fn refusal(&self, format: Format, head: &[u8]) -> String {
+        let reads = self.list();
+        if format == Format::Binary {
+            let at = head.iter().position(|&byte| byte == 0).unwrap_or_default();
+            let raw = if self.has_raw { "; raw numbers need --raw" } else { "" };
+            return format!("zero byte at byte {at}: not text, and of no known format; {reads}{raw}");
+        }
+        let holds_space = READERS.iter().any(|reader| reader.axes == 3 && reader.reads(format));
+        let hint = match self.axes == 4 && holds_space {
+            true => "it has no times: write points as lines of x y z t",
+            false => format.row().hint,
+        };
+        let hint = if hint.is_empty() { String::new() } else { format!("; {hint}") };
+        format!("this is {}; {reads}{hint}", format.name())
+    }
+}
+
+/// Whether points may follow a head of text without coordinates: comments and at most one line of names come
+/// before them.
+fn may_hold_points_later(head: &[u8]) -> bool {
+    let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).filter(|line| !line.is_empty());
+    let (comments, others): (Vec<_>, Vec<_>) =
+        lines.partition(|line| line.starts_with(b"#") || line.starts_with(b"//"));
+    others.len() <= 2 && comments.len() + others.len() > 0
+}

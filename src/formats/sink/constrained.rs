@@ -1,0 +1,77 @@
+//! What formats of surveyors take from a mesh: triangles with coordinates, and the edges on lines.
+
+use super::world::world_of;
+use spmesh_base::error::Result;
+use spmesh_stream::model::bounds::Point;
+use spmesh_stream::{ConstraintEdges, Event, Header, LiveVertices, Patch};
+
+/// Vertices that are live, and the lines of segments.
+///
+/// Memory: the width of the stream, 4 bytes per segment, and the edges of the border on segments.
+pub(super) struct Surveyed {
+    header: Header,
+    live: LiveVertices<Point>,
+    edges: ConstraintEdges,
+    /// Number of the line of each segment.
+    lines: Vec<u32>,
+}
+
+/// An edge on a line.
+pub(super) struct LineEdge {
+    /// The number of the line in its file.
+    pub(super) line: u32,
+    /// Local indices.
+    pub(super) ends: [u32; 2],
+}
+
+/// A patch with world coordinates.
+pub(super) struct SurveyedPatch<'a> {
+    pub(super) patch: &'a Patch,
+    /// World coordinates of the local vertices.
+    pub(super) places: Vec<Point>,
+    /// Edges on lines that no earlier triangle stated.
+    pub(super) edges: Vec<LineEdge>,
+}
+
+impl SurveyedPatch<'_> {
+    /// The places of the ends of an edge.
+    pub(super) fn ends(&self, edge: &LineEdge) -> [Point; 2] {
+        edge.ends.map(|local| self.places[local as usize])
+    }
+}
+
+impl Surveyed {
+    pub(super) fn new(header: &Header) -> Self {
+        Surveyed {
+            header: header.clone(),
+            live: LiveVertices::new(),
+            edges: ConstraintEdges::default(),
+            lines: Vec::new(),
+        }
+    }
+
+    pub(super) fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// Takes an event; a patch comes back with its coordinates.
+    ///
+    /// # Errors
+    /// Malformed, if a patch uses a vertex that is final.
+    pub(super) fn event<'a>(&mut self, event: &'a Event) -> Result<Option<SurveyedPatch<'a>>> {
+        match event {
+            Event::Segments(segments) => self.lines.extend(segments.iter().map(|segment| segment.line)),
+            Event::Patch(patch) => {
+                let header = &self.header;
+                let local = self.live.enter(patch, |_, point| world_of(header, point))?;
+                let places = local.iter().map(|&(_, place)| place).collect();
+                let edges = self.edges.enter(patch).into_iter();
+                let edges =
+                    edges.map(|(ends, segment)| LineEdge { line: self.lines[segment as usize], ends });
+                return Ok(Some(SurveyedPatch { patch, places, edges: edges.collect() }));
+            }
+            _ => {}
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,84 @@
+//! Cuts balls into tiles that fit into little memory, each with the balls around it.
+
+use super::Balls;
+use spmesh_stream::model::bounds::Bounds;
+
+/// Greatest number of balls of a tile, without those around it. Larger tiles have fewer of these, but need
+/// more memory.
+pub(super) const TILE_MAX: usize = 6_000;
+
+/// The balls of a tile, as indices of all balls.
+#[derive(Debug, Default)]
+pub(super) struct Members {
+    /// Those of the tile.
+    pub(super) core: Vec<u32>,
+    /// Others that reach the box of these.
+    pub(super) around: Vec<u32>,
+}
+
+impl Members {
+    /// All balls as one tile.
+    pub(super) fn all(balls: Balls<'_>) -> Members {
+        Members { core: (0..balls.centres.len() as u32).collect(), around: Vec::new() }
+    }
+}
+
+/// Halves the balls at the median, along the longest side of their box, until tiles have at most `most`.
+/// Tiles depend on the balls only.
+pub(super) fn cut(balls: Balls<'_>, most: usize) -> Vec<Members> {
+    let mut tiles = Vec::new();
+    let mut open = vec![Members::all(balls)];
+    while let Some(members) = open.pop() {
+        if members.core.is_empty() {
+            continue;
+        }
+        if members.core.len() <= most {
+            tiles.push(members);
+        } else {
+            open.extend(halve(balls, members));
+        }
+    }
+    tiles
+}
+
+fn halve(balls: Balls<'_>, members: Members) -> [Members; 2] {
+    let Members { mut core, around } = members;
+    let axis = longest_axis(&bounds(balls, &core));
+    let key = |&ball: &u32| (balls.centres[ball as usize][axis], ball);
+    let middle = core.len() / 2;
+    core.select_nth_unstable_by(middle, |p, q| {
+        let ((x, i), (y, j)) = (key(p), key(q));
+        x.total_cmp(&y).then(i.cmp(&j))
+    });
+    let mut upper = core.split_off(middle);
+    // The order of the input is that of the contacts.
+    core.sort_unstable();
+    upper.sort_unstable();
+    let reaching = |half: &[u32], other: &[u32]| -> Vec<u32> {
+        let bounds = bounds(balls, half);
+        other.iter().chain(&around).copied().filter(|&ball| is_reached(&bounds, balls, ball)).collect()
+    };
+    let (around_lower, around_upper) = (reaching(&core, &upper), reaching(&upper, &core));
+    [Members { core, around: around_lower }, Members { core: upper, around: around_upper }]
+}
+
+/// The box of some balls, at least one.
+fn bounds(balls: Balls<'_>, members: &[u32]) -> Bounds {
+    let ball = |&ball: &u32| {
+        let (centre, radius) = (balls.centres[ball as usize], balls.radii[ball as usize]);
+        Bounds { min: centre.map(|c| c - radius), max: centre.map(|c| c + radius) }
+    };
+    members.iter().map(ball).reduce(Bounds::union).expect("a tile has balls")
+}
+
+fn longest_axis(bounds: &Bounds) -> usize {
+    let side = |axis: usize| bounds.max[axis] - bounds.min[axis];
+    (1..3).fold(0, |longest, axis| if side(axis) > side(longest) { axis } else { longest })
+}
+
+fn is_reached(bounds: &Bounds, balls: Balls<'_>, ball: u32) -> bool {
+    let (centre, radius) = (balls.centres[ball as usize], balls.radii[ball as usize]);
+    // Rounding must not lose a ball that touches; 1e-9 is far more, and costs nothing.
+    let reach = radius * (1.0 + 1e-9);
+    (0..3).all(|axis| centre[axis] + reach >= bounds.min[axis] && centre[axis] - reach <= bounds.max[axis])
+}

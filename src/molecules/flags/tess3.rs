@@ -1,0 +1,431 @@
+//! `tess3`: flags.
+
+mod balls;
+mod method;
+mod picture;
+mod report;
+mod selection;
+mod tables;
+
+pub use crate::tess3::heap::CountingHeap;
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{Parser, ValueEnum};
+
+use crate::tess3::sweep::{News, Outcome, Sweep, sweep};
+use crate::tess3::{Arithmetic, Options, Product, Radius, Stats};
+use balls::BallFlags;
+use method::MethodFlags;
+use picture::PictureFlags;
+use selection::SelectionFlags;
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::output::Output;
+use spmesh_base::parallel::available_threads;
+use spmesh_base::places::check_apart;
+use spmesh_base::system;
+use spmesh_formats::sink::TableFormat;
+use spmesh_formats::source::structure::{Format, Structure, read_structure};
+use spmesh_shell::compression::Compression;
+use spmesh_shell::endings;
+use spmesh_shell::{Common, StatsFormat, notice, progress::Progress, read_list, refuse_terminal};
+use tables::TableFlag;
+
+const SUMMARY_NAME: &str = "summary.tsv";
+
+const EXAMPLES: &str = "\
+Examples:
+  The mesh of all atoms, and an exact proof that it is right:
+    tess3 1abc.cif.gz -o 1abc.spm
+    spinfo --audit 1abc.spm
+  Contacts between residues: edges of the triangulation of the alpha carbons of two chains:
+    tess3 1abc.pdb --chain A,B --atoms ca --contacts -o contacts.tsv
+  Proteins, nucleic acids and ligands of a biological assembly, without water and ions:
+    tess3 1abc.cif --assembly 1 --classes polymer,ligand -o 1abc.spm
+  Tetrahedra with circumradius and volume; only those of the alpha complex of radius 4 Å:
+    tess3 1abc.pdb --hetatm off --alpha 4 --table | sort -gk10
+  Accessible area of each residue, molecular surface, areas of contacts between chains, and pockets:
+    tess3 1abc.cif.gz --classes polymer --sasa --per residue -o sasa.tsv
+    tess3 1abc.cif.gz --classes polymer --ses --per molecule
+    tess3 1abc.cif.gz --classes polymer --contact-areas --between chains -o interface.tsv
+    tess3 1abc.cif.gz --classes polymer --pockets -o pockets.tsv
+  The same areas for pandas, Polars or DuckDB:
+    tess3 1abc.cif.gz --classes polymer --sasa -o sasa.parquet
+  Persistent homology, with GUDHI or another program that reads lists of simplices:
+    tess3 1abc.pdb --filtration -o 1abc.txt
+  Many structures, two at a time; later only what is new or changed:
+    find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2
+    find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2 --resume
+
+Defaults: what the file shows of one molecule. That is its first model; all atoms, hydrogen too; HETATM \
+records, with ligands, ions and water; and of alternate locations, for each residue, those of the conformer \
+that is occupied most.
+
+Exit codes: 0 success, 1 I/O or runtime failure, or a file of a sweep failed, 2 usage, 3 malformed or \
+truncated input, 5 not enough memory, 6 input of another version of spmesh, 141 output closed by its reader.";
+
+/// The message after a failed allocation.
+const OUT_OF_MEMORY: &str = "tess3: not enough memory: take fewer points, or fewer --threads in a sweep\n";
+
+/// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
+///
+/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF, VTK and
+/// LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table, also of areas, volumes,
+/// contacts and pockets of atoms as balls. The triangulation is exact and canonical: it depends on the set of
+/// points only.
+#[derive(Debug, Parser)]
+#[command(name = "tess3", version, after_help = EXAMPLES)]
+pub struct Flags {
+    /// Structure or points; - is stdin. Several only with --out-dir
+    #[arg(value_name = "FILE")]
+    inputs: Vec<PathBuf>,
+
+    /// Where the mesh or the table goes; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-", conflicts_with = "out_dir")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    selection: SelectionFlags,
+
+    /// Write a table of the tetrahedra: atoms, circumradius and volume (Å, Å³), instead of the mesh
+    #[arg(long, conflicts_with = "contacts")]
+    table: bool,
+
+    /// Write a table of the edges, neighbours of any distance: pairs of atoms, distance (Å), and the number
+    /// of tetrahedra around
+    #[arg(long)]
+    contacts: bool,
+
+    /// Write the filtration of the alpha complex: each simplex with the square of the radius (Å²) from which
+    /// on it belongs to the complex, in an order that programs for persistent homology take. A line has the
+    /// dimension, the vertices, counted from 0 in the selection, the value, and a bound on its error
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha"])]
+    filtration: bool,
+
+    /// Format of tables, also in a sweep: text with tabs, JSON Lines, or Parquet [default: that of the ending
+    /// of --output, else tsv]
+    #[arg(long, value_enum, value_name = "tsv|jsonl|parquet", hide_possible_values = true)]
+    format: Option<TableFlag>,
+
+    /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere
+    /// of at most that radius
+    #[arg(long, value_name = "RADIUS")]
+    alpha: Option<Radius>,
+
+    /// Format of the input, if its content does not tell
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    from: Option<FormatFlag>,
+
+    /// Sweep: write an output for each file to this folder, and a summary
+    #[arg(long, value_name = "FOLDER")]
+    out_dir: Option<PathBuf>,
+
+    /// File with names of input files, one per line; - is stdin
+    #[arg(long, value_name = "FILE", requires = "out_dir")]
+    lof: Option<PathBuf>,
+
+    /// Number of files of a sweep in parallel, or of threads for one structure [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Where the summary of a sweep goes, a line per mesh: a table, JSON Lines if the name ends in .jsonl, or
+    /// Parquet if it ends in .parquet; - is stdout [default: summary.tsv in the folder]
+    #[arg(long, value_name = "FILE", requires = "out_dir")]
+    summary: Option<PathBuf>,
+
+    /// Skip the files that an earlier sweep to the same folder has done with the same flags, and that are the
+    /// same still by size, and by time or content
+    #[arg(long, requires = "out_dir")]
+    resume: bool,
+
+    /// Go on with the other files when one fails; this is the default
+    #[arg(long, requires = "out_dir", conflicts_with = "strict")]
+    keep_going: bool,
+
+    /// Stop a sweep at the first file that fails
+    #[arg(long, requires = "out_dir")]
+    strict: bool,
+
+    #[command(flatten)]
+    compression: Compression,
+
+    /// Print statistics on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+
+    #[command(flatten)]
+    balls: BallFlags,
+
+    #[command(flatten)]
+    picture: PictureFlags,
+
+    // The last, as its heading holds for all flags after it.
+    #[command(flatten)]
+    method: MethodFlags,
+}
+
+/// Values of `--from`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FormatFlag {
+    /// PDB
+    Pdb,
+    /// PDBx/mmCIF
+    Mmcif,
+    /// XYZ of chemistry: number of atoms, comment, and lines of element x y z
+    Xyz,
+    /// Points as spfinalize reads them: lines of x y z, streams, LAS, VTK
+    Points,
+    /// Vertices of a PLY file
+    Ply,
+    /// Vertices of an OBJ file
+    Obj,
+    /// Vertices of an OFF file
+    Off,
+}
+
+impl From<FormatFlag> for Format {
+    fn from(flag: FormatFlag) -> Self {
+        match flag {
+            FormatFlag::Pdb => Format::Pdb,
+            FormatFlag::Mmcif => Format::Mmcif,
+            FormatFlag::Xyz => Format::Xyz,
+            FormatFlag::Points => Format::Points,
+            FormatFlag::Ply => Format::Ply,
+            FormatFlag::Obj => Format::Obj,
+            FormatFlag::Off => Format::Off,
+        }
+    }
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// As [`crate::tess3::run`] and [`sweep`]; and if files of a sweep failed.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    let started = Instant::now();
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    let stats = match &flags.out_dir {
+        Some(folder) => run_sweep(&flags, folder)?,
+        None => run_one(&flags)?,
+    };
+    report::print(flags.stats, &stats.stats, &flags.method.method(NonZeroUsize::MIN)?, started.elapsed());
+    stats.failure.map_or(Ok(()), |failure| Err(failure.into()))
+}
+
+/// Sums of a run, and its failure, if any.
+struct Finished {
+    stats: Stats,
+    failure: Option<Error>,
+}
+
+fn run_one(flags: &Flags) -> Result<Finished> {
+    let [input] = &flags.inputs[..] else {
+        let message = match flags.inputs.len() {
+            0 => "no input: give a file, or - for stdin (see --help)",
+            _ => "several files need a folder for their outputs: --out-dir FOLDER",
+        };
+        return Err(Error::usage(message));
+    };
+    if input == Path::new("-") {
+        refuse_terminal()?;
+    }
+    let mut options = flags.options()?;
+    let picture = flags.picture.of_output(&flags.output, options.product, &flags.balls)?;
+    if let Some(balls) = &mut options.balls {
+        balls.picture = picture;
+    }
+    let is_table_of_bytes = options.format == TableFormat::Parquet;
+    let is_binary = options.product == Product::Mesh || is_table_of_bytes || picture.is_some();
+    let inputs = std::iter::once(input.as_path()).chain(flags.balls.file());
+    check_apart(inputs, &[("--output", &flags.output)])?;
+    let ending = match options.product {
+        Product::Mesh => endings::STREAM,
+        Product::Filtration => endings::NUMBERS,
+        _ => tables::ENDINGS,
+    };
+    if picture.is_none() {
+        endings::check(&flags.output, &[ending])?;
+    }
+    // Fail before the work if the output cannot be created.
+    let mut output = Some(Output::create(&flags.output, is_binary)?);
+    let started = Instant::now();
+    let structure = read_structure(input, flags.from.map(Into::into))?;
+    let missing = structure.missing_location(&options.selection);
+    let warnings = structure.warnings.iter().chain(&missing);
+    warnings.for_each(|warning| flags.notice(&format!("{}: {warning}", structure.name)));
+    check_models(&structure, &options, flags)?;
+    let read = started.elapsed();
+    let reports = crate::tess3::run(structure, &options, &mut |_| {
+        output.take().ok_or_else(|| Error::usage("several models need a folder for their meshes"))
+    })?;
+    let mut stats = Stats::default();
+    for report in &reports {
+        report::degeneracy(report, reports.len()).into_iter().for_each(|text| flags.notice(&text));
+        stats.add(report);
+    }
+    stats.sums.times.read = read;
+    Ok(Finished { stats, failure: None })
+}
+
+/// Refuses runs that need several outputs.
+fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Result<()> {
+    let models = structure.models.len();
+    if options.is_per_model() && flags.selection.wants_all_models() && models > 1 {
+        let has_picture = options.balls.as_ref().is_some_and(|balls| balls.picture.is_some());
+        let remedy = if has_picture { "choose one with --model N" } else { "--out-dir FOLDER" };
+        let message = format!("{models} models need a folder for their meshes: {remedy}");
+        return Err(Error::usage(message).of_input(&structure.name));
+    }
+    Ok(())
+}
+
+fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
+    let shown = flags.summary.clone().unwrap_or_else(|| folder.join(SUMMARY_NAME));
+    endings::check(&shown, &[tables::ENDINGS])?;
+    let is_parquet = TableFormat::of(&shown) == Some(TableFormat::Parquet);
+    // Parquet is written at the end. Until then, and for --resume, the summary is in its usual place.
+    let summary = if is_parquet { folder.join(SUMMARY_NAME) } else { shown.clone() };
+    if flags.resume && summary == Path::new("-") {
+        return Err(Error::usage(
+            "--resume reads the summary of the earlier run: give it a file with --summary",
+        ));
+    }
+    let options = flags.options()?;
+    flags.picture.refuse("does not go with sweeps, which write tables: give -o FILE.ply or FILE.vtu")?;
+    let wanted = Sweep {
+        files: flags.files()?,
+        list: flags.lof.clone(),
+        format: flags.from.map(Into::into),
+        options_text: flags.options_text(&options),
+        version: env!("CARGO_PKG_VERSION").to_string(),
+        options,
+        folder: folder.to_path_buf(),
+        summary,
+        parquet: is_parquet.then(|| shown.clone()),
+        threads: flags.threads(),
+        resume: flags.resume,
+        strict: flags.strict,
+    };
+    let mut progress = None;
+    let mut done = 0;
+    let outcome = sweep(&wanted, &mut |news| {
+        match news {
+            News::Files(files) => {
+                progress = Some(Progress::counting("files", &flags.common, "triangulating", Some(files)));
+            }
+            News::Done => done += 1,
+            News::Failed(error) => {
+                done += 1;
+                progress.iter().for_each(|bar| bar.say(&format!("tess3: {error}")));
+            }
+        }
+        progress.iter_mut().for_each(|bar| bar.set(done));
+    })?;
+    drop(progress);
+    let Outcome { done, skipped, failed, stats } = outcome;
+    let before = if skipped > 0 { format!(", {skipped} had been done before") } else { String::new() };
+    let summary = if shown == Path::new("-") { String::new() } else { format!("; see {}", shown.display()) };
+    if failed > 0 {
+        let files = done + skipped + failed;
+        let message = format!("{failed} of {files} files failed{before}{summary}");
+        return Ok(Finished { stats, failure: Some(Error::new(ErrorKind::Io, message)) });
+    }
+    flags.notice(&format!("{done} files done{before}{summary}"));
+    Ok(Finished { stats, failure: None })
+}
+
+impl Flags {
+    fn options(&self) -> Result<Options> {
+        let product = match (self.balls.product(), self.table, self.contacts, self.filtration) {
+            (Some(product), ..) => product,
+            (_, true, ..) => Product::Tetrahedra,
+            (_, _, true, _) => Product::Contacts,
+            (.., true) => Product::Filtration,
+            _ => Product::Mesh,
+        };
+        // A sweep has threads for its files.
+        let threads = if self.out_dir.is_some() { 1 } else { self.threads() };
+        let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
+        let method = self.method.method(threads)?;
+        let balls = self.balls.options(product, threads)?;
+        let has_weights = product == Product::Filtration || balls.is_some();
+        if has_weights && method.arithmetic != Arithmetic::Exact {
+            return Err(Error::usage("--filtration and --radii need --arithmetic exact"));
+        }
+        if product == Product::Mesh && balls.is_some() && self.alpha.is_some() {
+            return Err(Error::usage("--alpha does not go with --radii"));
+        }
+        Ok(Options {
+            selection: self.selection.selection(),
+            assembly: self.selection.assembly().map(str::to_string),
+            alpha: self.alpha.clone(),
+            method,
+            compress: self.compression.of_output(product == Product::Mesh)?,
+            format: tables::format(self.format, self.output_file(), product)?,
+            product,
+            balls,
+        })
+    }
+
+    /// The output of a run without a folder.
+    fn output_file(&self) -> Option<&Path> {
+        self.out_dir.is_none().then_some(&*self.output)
+    }
+
+    fn threads(&self) -> usize {
+        self.threads.map_or_else(|| available_threads().get(), usize::from)
+    }
+
+    /// The options that determine the content of the outputs, as text.
+    fn options_text(&self, options: &Options) -> String {
+        let mut text = self.selection.to_string();
+        if let Some(format) = self.from.and_then(|format| format.to_possible_value()) {
+            text += &format!(" --from {}", format.get_name());
+        }
+        if let Some(radius) = &self.alpha {
+            text += &format!(" --alpha {radius}");
+        }
+        text += &self.method.to_string();
+        let compress = self.compression.of_stream();
+        let names = [
+            (self.table, " --table"),
+            (self.contacts, " --contacts"),
+            (self.filtration, " --filtration"),
+            (compress, " --compress"),
+        ];
+        for (flag, name) in names {
+            text += if flag { name } else { "" };
+        }
+        if options.format != TableFormat::default() {
+            text += &format!(" --format {}", options.format.ending());
+        }
+        text + options.balls.as_ref().map_or("", |balls| &balls.text)
+    }
+
+    /// The files of the command line, then those of `--lof`.
+    fn files(&self) -> Result<Vec<PathBuf>> {
+        let mut files = self.inputs.clone();
+        if let Some(path) = &self.lof {
+            files.extend(read_list(path)?);
+        }
+        if self.lof.as_deref() == Some(Path::new("-")) && files.iter().any(|file| file == Path::new("-")) {
+            return Err(Error::usage("the list of files and a file cannot both come from stdin"));
+        }
+        if files.is_empty() {
+            return Err(Error::usage("no input: give files, or a list of them with --lof (see --help)"));
+        }
+        if files.iter().any(|file| file == Path::new("-")) {
+            refuse_terminal()?;
+        }
+        Ok(files)
+    }
+
+    fn notice(&self, message: &str) {
+        notice("tess3", &self.common, message);
+    }
+}

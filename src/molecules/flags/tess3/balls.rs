@@ -1,0 +1,280 @@
+//! Flags that make balls of atoms, and measure them.
+
+use std::fmt::Write;
+use std::num::NonZeroUsize;
+use std::path::Path;
+
+use clap::{Args, ValueEnum};
+
+use crate::tess3::{BallOptions, ContactFilter, Level, NamedRadii, Product};
+use spmesh_base::error::{Error, Result};
+use spmesh_formats::source::structure::Radii;
+
+/// Steps of a probe in 1 Å.
+const STEPS: f64 = 1000.0;
+
+/// Greatest radius of a probe, in Å.
+const PROBE_MAX: f64 = 100.0;
+
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Atoms as balls")]
+pub(super) struct BallFlags {
+    /// Write a table of areas: the part of each sphere that no other ball covers (Å²). By default this is the
+    /// solvent-accessible surface, with --probe 0 that of van der Waals
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration"])]
+    sasa: bool,
+
+    /// Write a table of volumes: the part of each ball that is nearest to its atom by power distance (Å³);
+    /// together they are the volume of the union. With --sasa, one table has both
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration"])]
+    volumes: bool,
+
+    /// Write a table of the molecular (solvent-excluded) surface, on which the probe rolls: its area (Å²),
+    /// and the volume inside it, into which the probe cannot reach (Å³)
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
+    ses: bool,
+
+    /// Write a table of contacts: the area of the flat face between two cells, inside both balls (Å²); not
+    /// the buried area
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes", "ses"])]
+    contact_areas: bool,
+
+    /// Write a table of pockets and voids, the largest first: spaces outside all balls whose exits narrow; a
+    /// void has no exit (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
+    #[arg(conflicts_with_all = ["ses", "contact_areas"])]
+    pockets: bool,
+
+    /// Rows of --pockets are the mouths, the largest of each pocket first; with --per, the atoms, residues or
+    /// chains at each mouth
+    #[arg(long)]
+    mouths: bool,
+
+    /// Radii of atoms, also for a mesh or a filtration with weights: protor (united atoms, Tsai et al. 1999),
+    /// bondi (by element), united (Chothia 1976), charmm (CHARMM36m, hydrogens too), or a file with lines
+    /// RESIDUE ATOM RADIUS or ELEMENT RADIUS [default: protor]
+    #[arg(long, value_name = "NAME|FILE")]
+    radii: Option<String>,
+
+    /// Radius of a probe that is added to each radius (Å), to three decimals; 0 for the van der Waals surface
+    /// [default: 1.4; of a mesh or --filtration 0]
+    #[arg(long, value_name = "RADIUS", value_parser = parse_probe)]
+    probe: Option<u32>,
+
+    /// Level of the rows; areas and volumes are summed [default: atom; of --pockets molecule]
+    #[arg(long, value_enum, value_name = "LEVEL")]
+    per: Option<LevelFlag>,
+
+    /// Only contacts of at least this area (Å²); with --per, the sum
+    #[arg(long, value_name = "AREA", value_parser = parse_positive)]
+    min_area: Option<f64>,
+
+    /// Only contacts of atoms whose centres are at most this far apart (Å)
+    #[arg(long, value_name = "DISTANCE", value_parser = parse_positive)]
+    within: Option<f64>,
+
+    /// Only contacts between different residues or chains
+    #[arg(
+        long,
+        value_enum,
+        value_name = "residues|chains",
+        requires = "contact_areas",
+        hide_possible_values = true
+    )]
+    between: Option<BetweenFlag>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum LevelFlag {
+    /// Each atom
+    Atom,
+    /// Each residue
+    Residue,
+    /// Each chain
+    Chain,
+    /// All atoms together
+    Molecule,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum BetweenFlag {
+    Residues,
+    Chains,
+}
+
+impl BallFlags {
+    /// The table that is asked for, if it is one of balls.
+    pub(super) fn product(&self) -> Option<Product> {
+        if self.contact_areas {
+            Some(Product::ContactAreas)
+        } else if self.pockets {
+            Some(Product::Pockets)
+        } else if self.ses {
+            Some(Product::Surface)
+        } else {
+            (self.sasa || self.volumes).then_some(Product::Cells)
+        }
+    }
+
+    /// The file of radii, if there is one.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.radii.as_deref().filter(|name| Radii::named(name).is_none()).map(Path::new)
+    }
+
+    /// The options.
+    ///
+    /// # Errors
+    /// Those of reading radii; usage, if there is nothing to measure.
+    pub(super) fn options(&self, product: Product, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
+        let takes_weights = matches!(product, Product::Filtration | Product::Mesh);
+        let has_weights = takes_weights && self.radii.is_some();
+        self.check_contacts_only()?;
+        if self.mouths && !self.pockets {
+            return Err(Error::usage("--mouths goes with --pockets"));
+        }
+        if self.per.is_some() && (product == Product::Filtration || has_weights) {
+            let what = if product == Product::Filtration { "--filtration" } else { "a mesh" };
+            return Err(Error::usage(format!("--per does not go with {what}")));
+        }
+        if self.product().is_none() && !has_weights {
+            return self.check_idle(product).map(|()| None);
+        }
+        let level = self.level();
+        if self.contact_areas && level == Level::Molecule {
+            return Err(Error::usage(
+                "--contact-areas needs --per atom, residue or chain: a molecule has no pairs",
+            ));
+        }
+        let NamedRadii { radii, text } = NamedRadii::load(self.radii.as_deref().unwrap_or("protor"))?;
+        let probe = self.probe.unwrap_or(if has_weights { 0 } else { 1_400 });
+        let mut options = BallOptions {
+            radii,
+            probe,
+            level,
+            areas: self.sasa || self.ses,
+            volumes: self.volumes || self.ses,
+            contacts: ContactFilter {
+                min_area: self.min_area.unwrap_or(0.0),
+                within: self.within,
+                between: self.between.map(|between| match between {
+                    BetweenFlag::Residues => Level::Residue,
+                    BetweenFlag::Chains => Level::Chain,
+                }),
+            },
+            threads,
+            mouths: self.mouths,
+            picture: None,
+            has_united_radii: matches!(&text[..], "protor" | "united"),
+            text: String::new(),
+        };
+        options.text = self.text(&options, &text);
+        Ok(Some(options))
+    }
+
+    /// Refuses flags of tables for a mesh.
+    ///
+    /// # Errors
+    /// Usage, if there is one.
+    pub(super) fn check_for_mesh(&self) -> Result<()> {
+        match (self.per, self.volumes) {
+            _ if self.mouths => Err(Error::usage("--mouths is a table: give a name that ends in .tsv")),
+            (Some(_), _) => {
+                Err(Error::usage("--per is for tables; a mesh states the serial numbers of atoms"))
+            }
+            (_, true) => {
+                Err(Error::usage("--volumes is a table: give a name that ends in .tsv, or --sasa alone"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses flags of balls where there are none.
+    fn check_idle(&self, product: Product) -> Result<()> {
+        let message = if self.radii.is_some() {
+            "--radii goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or --filtration"
+        } else if self.probe.is_some() {
+            match product {
+                Product::Filtration => "--probe needs --radii",
+                Product::Mesh => {
+                    "--probe needs --radii, or one of --sasa, --volumes, --ses, --contact-areas and --pockets"
+                }
+                _ => {
+                    "--probe goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or \
+                     --filtration"
+                }
+            }
+        } else if self.per.is_some() {
+            "--per goes with --sasa, --volumes, --ses, --contact-areas or --pockets"
+        } else {
+            return Ok(());
+        };
+        Err(Error::usage(message))
+    }
+
+    /// Refuses flags that choose contacts where there are none. (To the parser, a flag that conflicts with
+    /// another is not required.)
+    fn check_contacts_only(&self) -> Result<()> {
+        let flags = [
+            ("--min-area", self.min_area.is_some()),
+            ("--within", self.within.is_some()),
+            ("--between", self.between.is_some()),
+        ];
+        match flags.into_iter().find(|(_, is_given)| *is_given && !self.contact_areas) {
+            Some((flag, _)) => Err(Error::usage(format!("{flag} goes with --contact-areas"))),
+            None => Ok(()),
+        }
+    }
+
+    fn level(&self) -> Level {
+        match self.per {
+            None if self.pockets => Level::Molecule,
+            None | Some(LevelFlag::Atom) => Level::Atom,
+            Some(LevelFlag::Residue) => Level::Residue,
+            Some(LevelFlag::Chain) => Level::Chain,
+            Some(LevelFlag::Molecule) => Level::Molecule,
+        }
+    }
+
+    fn text(&self, options: &BallOptions, radii: &str) -> String {
+        let mut text = String::new();
+        let products = [
+            ("sasa", self.sasa),
+            ("volumes", self.volumes),
+            ("ses", self.ses),
+            ("contact-areas", self.contact_areas),
+            ("pockets", self.pockets),
+            ("mouths", self.mouths),
+        ];
+        for (name, is_given) in products {
+            text += &if is_given { format!(" --{name}") } else { String::new() };
+        }
+        let probe = f64::from(options.probe) / STEPS;
+        let _ = write!(text, " --radii {radii} --probe {probe} --per {}", options.level.name());
+        for (name, value) in [("min-area", self.min_area), ("within", self.within)] {
+            text += &value.map_or(String::new(), |value| format!(" --{name} {value}"));
+        }
+        if let Some(between) = options.contacts.between {
+            let _ = write!(text, " --between {}s", between.name());
+        }
+        text
+    }
+}
+
+/// Steps of 0.001 Å.
+fn parse_probe(text: &str) -> std::result::Result<u32, String> {
+    let radius: f64 = text.parse().map_err(|_| format!("{text:?} is not a number"))?;
+    let steps = (radius * STEPS).round();
+    let is_exact = (steps / STEPS - radius).abs() < 1e-9;
+    if (0.0..=PROBE_MAX).contains(&radius) && is_exact {
+        Ok(steps as u32)
+    } else {
+        Err(format!("{text:?} is not a radius of 0 to {PROBE_MAX} Å with at most three decimals"))
+    }
+}
+
+pub(super) fn parse_positive(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err(format!("{text:?} is not a number of 0 or more")),
+    }
+}

@@ -1,0 +1,76 @@
+//! Flags of meshes that take the place of tables of balls.
+
+use std::path::Path;
+
+use clap::{Args, ValueEnum};
+
+use super::balls::{BallFlags, parse_positive};
+use crate::tess3::{ColourBy, PictureForm, PictureOptions, Product};
+use spmesh_base::error::{Error, Result};
+
+/// Resolution by default, in Å.
+const RESOLUTION: f64 = 0.5;
+
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Atoms as balls, as meshes (-o FILE.ply or FILE.vtu)")]
+pub(super) struct PictureFlags {
+    /// Greatest distance of neighbouring vertices (Å), at least 1/200 of the greatest radius [default: 0.5]
+    #[arg(long, value_name = "DISTANCE", value_parser = parse_positive)]
+    resolution: Option<f64>,
+
+    /// What the colours of --sasa tell: the element, the chain, or the pocket around which a triangle lies
+    /// [default: element]
+    #[arg(long, value_enum, value_name = "WHAT", requires = "sasa")]
+    colour_by: Option<ColourFlag>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ColourFlag {
+    Element,
+    Chain,
+    Pocket,
+}
+
+impl PictureFlags {
+    /// The mesh that the ending of the output asks for; `None` for a table.
+    ///
+    /// # Errors
+    /// Usage, if flags are for the other one.
+    pub(super) fn of_output(
+        &self,
+        output: &Path,
+        product: Product,
+        balls: &BallFlags,
+    ) -> Result<Option<PictureOptions>> {
+        let is_of_balls = matches!(product, Product::Cells | Product::ContactAreas | Product::Pockets);
+        let ending = output.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+        let form = match ending.as_deref().filter(|_| is_of_balls) {
+            Some("ply") => PictureForm::Ply,
+            Some("vtu") => PictureForm::Vtu,
+            _ => {
+                let reason = "needs -o FILE.ply or FILE.vtu, and --sasa, --contact-areas or --pockets";
+                return self.refuse(reason).map(|()| None);
+            }
+        };
+        balls.check_for_mesh()?;
+        let colours = match self.colour_by {
+            None | Some(ColourFlag::Element) => ColourBy::Element,
+            Some(ColourFlag::Chain) => ColourBy::Chain,
+            Some(ColourFlag::Pocket) => ColourBy::Pocket,
+        };
+        Ok(Some(PictureOptions { form, resolution: self.resolution.unwrap_or(RESOLUTION), colours }))
+    }
+
+    /// Refuses flags of meshes where there is none.
+    ///
+    /// # Errors
+    /// Usage, if there is one, because of `reason`.
+    pub(super) fn refuse(&self, reason: &str) -> Result<()> {
+        let flag = match (self.resolution, self.colour_by) {
+            (Some(_), _) => "--resolution",
+            (_, Some(_)) => "--colour-by",
+            _ => return Ok(()),
+        };
+        Err(Error::usage(format!("{flag} {reason}")))
+    }
+}

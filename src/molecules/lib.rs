@@ -1,0 +1,10 @@
+//! Molecules and other balls: tetrahedra of atoms (thesis 3.4), and the union of balls, its areas, volumes,
+//! contacts, pockets and surfaces.
+//!
+//! [`balls`] computes, [`tess3`] is the engine of the program; `flags`, with the feature of this name, has its
+//! command line.
+
+pub mod balls;
+#[cfg(feature = "flags")]
+pub mod flags;
+pub mod tess3;

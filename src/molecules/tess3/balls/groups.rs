@@ -1,0 +1,84 @@
+//! Atoms that share a row of a table.
+
+use std::collections::HashMap;
+
+use super::Level;
+use crate::tess3::names::AtomNames;
+use spmesh_formats::source::structure::{AtomView, Name, Residue, Selected};
+
+/// The groups of the selected atoms, numbered as they first appear.
+pub(super) struct Groups {
+    /// For each atom its group; empty if each atom is one.
+    of_atoms: Vec<u32>,
+    /// Number of atoms of each group; empty if each atom is one.
+    pub(super) sizes: Vec<u32>,
+    names: Names,
+}
+
+enum Names {
+    Atoms(AtomNames),
+    Texts(Vec<String>),
+}
+
+impl Groups {
+    pub(super) fn new(selected: &Selected<'_>, level: Level) -> Groups {
+        if level == Level::Atom {
+            let names = Names::Atoms(AtomNames::new(selected));
+            return Groups { of_atoms: Vec::new(), sizes: Vec::new(), names };
+        }
+        let mut groups = Groups { of_atoms: Vec::new(), sizes: Vec::new(), names: Names::Texts(Vec::new()) };
+        let mut known: HashMap<Key, u32> = HashMap::new();
+        let mut texts = Vec::new();
+        for index in 0..selected.points().len() {
+            let Some(atom) = selected.atom(index) else { continue };
+            let group = *known.entry(key(&atom, level)).or_insert_with(|| {
+                texts.push(name(&atom, level));
+                groups.sizes.push(0);
+                texts.len() as u32 - 1
+            });
+            groups.of_atoms.push(group);
+            groups.sizes[group as usize] += 1;
+        }
+        groups.names = Names::Texts(texts);
+        groups
+    }
+
+    /// The group of an atom.
+    pub(super) fn of(&self, atom: u32) -> u32 {
+        self.of_atoms.get(atom as usize).copied().unwrap_or(atom)
+    }
+
+    pub(super) fn name(&self, group: u32) -> &str {
+        match &self.names {
+            Names::Atoms(names) => names.name(group as usize),
+            Names::Texts(texts) => &texts[group as usize],
+        }
+    }
+}
+
+/// What atoms of a group have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Key {
+    Residue(Residue),
+    Chain(Name),
+    All,
+}
+
+pub(super) fn key(atom: &AtomView<'_>, level: Level) -> Key {
+    match level {
+        Level::Residue => Key::Residue(*atom.residue()),
+        Level::Chain => Key::Chain(atom.residue().chain),
+        Level::Atom | Level::Molecule => Key::All,
+    }
+}
+
+fn name(atom: &AtomView<'_>, level: Level) -> String {
+    match level {
+        Level::Atom | Level::Molecule => "all".to_string(),
+        Level::Chain => atom.chain().to_string(),
+        Level::Residue => {
+            let number = atom.residue_number().map_or(String::new(), |number| number.to_string());
+            format!("{}/{}/{number}{}", atom.chain(), atom.residue_name(), atom.insertion_code())
+        }
+    }
+}

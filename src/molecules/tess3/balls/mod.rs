@@ -1,0 +1,211 @@
+//! Atoms as balls: exposed areas, volumes and contacts of their cells, as tables.
+
+mod colours;
+mod groups;
+mod pictures;
+mod pockets;
+mod radii;
+mod tables;
+
+pub use pictures::{ColourBy, PictureForm, PictureOptions};
+pub use radii::NamedRadii;
+
+use std::io::Write;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+use self::pictures::Picture;
+use self::pockets::PocketTable;
+use super::{Product, Report};
+use crate::balls::{Balls, Cells, measure, molecular_surface, pockets};
+use groups::Groups;
+use spmesh_base::error::{Error, Result};
+use spmesh_formats::sink::TableSink;
+use spmesh_formats::source::structure::{AtomView, Radii, Selected};
+use tables::{CellTable, ContactTable};
+
+/// Steps of a radius in 1 Å.
+const STEPS: f64 = 1000.0;
+
+/// How atoms become balls, and what is measured of these.
+#[derive(Debug, Clone)]
+pub struct BallOptions {
+    /// Radii of atoms.
+    pub radii: Arc<Radii>,
+    /// Added to each radius, in steps of 0.001 Å: that of the probe that rolls over the molecule.
+    pub probe: u32,
+    /// What a row is about.
+    pub level: Level,
+    /// Whether rows of cells have the area of the surface.
+    pub areas: bool,
+    /// Whether rows of cells have the volume.
+    pub volumes: bool,
+    /// Which contacts have rows.
+    pub contacts: ContactFilter,
+    /// Rows of pockets are about their mouths.
+    pub mouths: bool,
+    /// A mesh takes the place of the table.
+    pub picture: Option<PictureOptions>,
+    /// Radii of heavy atoms include their hydrogens.
+    pub has_united_radii: bool,
+    /// Threads that measure a structure.
+    pub threads: NonZeroUsize,
+    /// The flags that asked for all this, for the summary of a sweep.
+    pub text: String,
+}
+
+/// Which contacts have rows.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ContactFilter {
+    /// Least area of a row, in Å².
+    pub min_area: f64,
+    /// Greatest distance of the centres of two atoms, in Å.
+    pub within: Option<f64>,
+    /// What must differ between the two atoms.
+    pub between: Option<Level>,
+}
+
+/// What a row of a table is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Level {
+    /// Each atom.
+    #[default]
+    Atom,
+    /// Each residue.
+    Residue,
+    /// Each chain.
+    Chain,
+    /// All atoms together.
+    Molecule,
+}
+
+impl Level {
+    /// Its name, which heads the column of names.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Level::Atom => "atom",
+            Level::Residue => "residue",
+            Level::Chain => "chain",
+            Level::Molecule => "molecule",
+        }
+    }
+}
+
+/// Selected atoms as balls.
+pub(super) struct Molecule<'s> {
+    pub(super) number: i64,
+    pub(super) selected: &'s Selected<'s>,
+    /// World units per stored unit.
+    pub(super) scale: f64,
+}
+
+impl Molecule<'_> {
+    /// Radii of all atoms with the probe, in stored units: integers where coordinates are.
+    fn radii(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
+        let Some(atoms) = options.radii.of_atoms(self.selected) else {
+            let message = "points have no elements, and so no radii: give a structure (PDB, mmCIF, XYZ)";
+            return Err(Error::usage(message));
+        };
+        let mut radius = |(atom, steps): (AtomView<'_>, u32)| {
+            let is_hydrogen = atom.structure.is_hydrogen(atom.atom);
+            report.hydrogens += u64::from(is_hydrogen && options.has_united_radii);
+            self.length(steps + options.probe)
+        };
+        atoms.map(|found| found.map(&mut radius)).collect()
+    }
+
+    /// Radii for a report that is of the cells of balls.
+    fn radii_of_cells(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
+        report.is_of_cells = true;
+        report.vertices = report.atoms;
+        self.radii(options, report)
+    }
+
+    /// Steps of a radius in stored units.
+    fn length(&self, steps: u32) -> f64 {
+        if self.scale == 1.0 {
+            return f64::from(steps) / STEPS;
+        }
+        // The unit of structures is 0.001 Å or a lesser power of ten, so this is an integer for them.
+        f64::from(steps) * (1.0 / (STEPS * self.scale)).round()
+    }
+
+    /// The weights of all atoms: squares of their radii, in stored units.
+    ///
+    /// # Errors
+    /// If an atom has no radius.
+    pub(super) fn weights(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
+        Ok(self.radii(options, report)?.into_iter().map(|radius| radius * radius).collect())
+    }
+
+    /// Writes a mesh of the surface, of contacts or of pockets. The output is opened at first.
+    ///
+    /// # Errors
+    /// If an atom has no radius; those of writing.
+    pub(super) fn draw(
+        &self,
+        product: Product,
+        picture: PictureOptions,
+        options: &BallOptions,
+        report: &mut Report,
+        output: &mut impl Write,
+    ) -> Result<()> {
+        let radii = self.radii_of_cells(options, report)?;
+        let balls = Balls { centres: self.selected.points(), radii: &radii };
+        report.left_out = Picture { molecule: self, options, picture, balls }.write(product, output)?;
+        Ok(())
+    }
+
+    /// Measures the balls, and writes the rows of a table: of cells, of the molecular surface, of contacts,
+    /// or of pockets. The output is opened when they are measured.
+    ///
+    /// # Errors
+    /// If an atom has no radius; those of measuring and writing.
+    pub(super) fn write<'o>(
+        &self,
+        product: Product,
+        options: &BallOptions,
+        report: &mut Report,
+        open: impl FnOnce() -> Result<&'o mut TableSink>,
+    ) -> Result<()> {
+        let radii = self.radii_of_cells(options, report)?;
+        let balls = Balls { centres: self.selected.points(), radii: &radii };
+        if product == Product::Pockets {
+            let found = pockets(balls)?;
+            let groups = Groups::new(self.selected, options.level);
+            return PocketTable {
+                molecule: self,
+                level: options.level,
+                mouths: options.mouths,
+                groups: &groups,
+            }
+            .write(&found, open()?);
+        }
+        let is_contacts = product == Product::ContactAreas;
+        let Cells { cells, contacts } = if product == Product::Surface {
+            let cells = molecular_surface(balls, self.length(options.probe), options.threads)?;
+            Cells { cells, ..Cells::default() }
+        } else {
+            measure(balls, is_contacts.then_some(0.0), options.threads)?
+        };
+        report.without_cell = cells.iter().filter(|cell| cell.volume == 0.0).count() as u64;
+        let groups = Groups::new(self.selected, options.level);
+        if is_contacts {
+            ContactTable { molecule: self, options, groups: &groups }.write(&contacts, open()?)
+        } else {
+            CellTable { molecule: self, options, groups: &groups }.write(&cells, open()?)
+        }
+    }
+}
+
+impl BallOptions {
+    /// The line with the names of the columns of a table.
+    pub(super) fn columns(&self, product: Product) -> String {
+        match product {
+            Product::Pockets => self::pockets::columns(self),
+            Product::ContactAreas => tables::contact_columns(self),
+            _ => tables::cell_columns(self),
+        }
+    }
+}

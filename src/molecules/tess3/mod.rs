@@ -1,0 +1,278 @@
+//! `tess3`: the Delaunay tetrahedralization of the atoms of molecules and of other points in memory (thesis
+//! 3.4), as a mesh stream or as tables, for one file or many.
+//!
+//! [`run`] turns one structure into one output; [`sweep::sweep`] does so for a list of files in parallel.
+
+mod alpha;
+mod balls;
+mod exact;
+pub mod filtration;
+pub mod heap;
+mod job;
+mod mesh;
+mod method;
+mod names;
+mod radius;
+mod rows;
+mod selection;
+mod spheres;
+pub mod sweep;
+mod tables;
+
+pub use alpha::AlphaComplex;
+pub use balls::{BallOptions, ColourBy, ContactFilter, Level, NamedRadii, PictureForm, PictureOptions};
+pub use job::{ModelName, run};
+pub use mesh::write_mesh;
+pub use method::{Arithmetic, Method, NO_EXPERIMENTS};
+pub use radius::Radius;
+pub use spheres::{Measure, measure};
+
+use std::time::Duration;
+
+use spmesh_delaunay::predicates::PredicateCounts;
+use spmesh_formats::sink::TableFormat;
+use spmesh_formats::source::structure::Selection;
+
+/// The output made of a triangulation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Product {
+    /// The stream of the tetrahedral mesh, one per model.
+    Mesh,
+    /// A table of the tetrahedra.
+    Tetrahedra,
+    /// A table of the edges.
+    Contacts,
+    /// A table of the cells of atoms as balls ([`Options::balls`]): areas and volumes.
+    Cells,
+    /// A table of the molecular surface and of what is inside it, by atoms as balls.
+    Surface,
+    /// A table of the faces between cells.
+    ContactAreas,
+    /// A table of the pockets and voids between them.
+    Pockets,
+    /// The filtration of the alpha complex, one per model.
+    Filtration,
+}
+
+impl Product {
+    /// Whether the output is a table.
+    #[must_use]
+    pub fn is_table(self) -> bool {
+        !self.is_per_model()
+    }
+
+    /// Whether each model has an output of its own.
+    #[must_use]
+    pub fn is_per_model(self) -> bool {
+        matches!(self, Product::Mesh | Product::Filtration)
+    }
+}
+
+/// What to triangulate, and what to write of it.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Which atoms; all models are triangulated one by one.
+    pub selection: Selection,
+    /// The biological assembly to make of each file first, if one is wanted.
+    pub assembly: Option<String>,
+    /// What is written.
+    pub product: Product,
+    /// Write only simplices of the alpha complex with this radius, in world units.
+    pub alpha: Option<Radius>,
+    /// How the kernel works.
+    pub method: Method,
+    /// The format of tables.
+    pub format: TableFormat,
+    /// Whether the blocks of meshes are compressed.
+    pub compress: bool,
+    /// How atoms become balls, for what is measured of these, and for meshes and filtrations with weights.
+    pub balls: Option<BallOptions>,
+}
+
+impl Options {
+    /// Whether each model has an output of its own.
+    #[must_use]
+    pub fn is_per_model(&self) -> bool {
+        self.product.is_per_model() || self.balls.as_ref().is_some_and(|balls| balls.picture.is_some())
+    }
+}
+
+/// Counts and times of one model.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Report {
+    /// Number that the file gives the model.
+    pub model: i64,
+    /// Atoms that were selected.
+    pub atoms: u64,
+    /// Distinct points among them: vertices of the mesh.
+    pub vertices: u64,
+    /// Tetrahedra of the triangulation, or with a radius of the alpha complex.
+    pub tetrahedra: u64,
+    /// Facets of the convex hull.
+    pub hull_facets: u64,
+    /// Balls were measured; counts of the triangulation are unknown.
+    pub is_of_cells: bool,
+    /// Atoms that have no cell in the power diagram, as others take all of it.
+    pub without_cell: u64,
+    /// Atoms whose surface a mesh lacks, as rounding leaves its border in doubt.
+    pub left_out: u64,
+    /// Hydrogens that were measured with radii of heavy atoms that include them.
+    pub hydrogens: u64,
+    /// Tetrahedra that the kernel created, infinite ones included; most were replaced later.
+    pub created: u64,
+    /// In-sphere tests of the search for cavities.
+    pub in_sphere_tests: u64,
+    /// Peak memory of the kernel and its result in bytes, the points of the input included; 0 if unknown.
+    pub kernel_bytes: u64,
+    /// Decisions of the predicates, if they are exact.
+    pub predicates: PredicateCounts,
+    /// Rounding errors, if they are not exact.
+    pub rounding: Rounding,
+    /// Time.
+    pub times: Times,
+}
+
+impl Report {
+    /// The report of a model with `atoms` atoms, before any work.
+    fn new(model: i64, atoms: usize) -> Self {
+        Report { model, atoms: atoms as u64, ..Report::default() }
+    }
+
+    /// What a user may not expect of the model, in sentences; usually nothing.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let mut texts = Vec::new();
+        if self.hydrogens > 0 {
+            let counted = if self.hydrogens == 1 { "hydrogen counts" } else { "hydrogens count" };
+            let reason = "radii of heavy atoms include them: use --atoms heavy, or --radii bondi";
+            texts.push(format!("{} {counted} twice, as {reason}", self.hydrogens));
+        }
+        if self.without_cell > 0 {
+            let verb = if self.without_cell == 1 { "has" } else { "have" };
+            let (without, atoms) = (self.without_cell, self.atoms);
+            texts.push(format!("{without} of {atoms} atoms {verb} no cell: others take all of it"));
+        }
+        if self.left_out > 0 {
+            let reason = "rounding leaves the border of their surface in doubt";
+            texts.push(format!("{} atoms are left out of the mesh: {reason}", self.left_out));
+        }
+        if self.is_of_cells {
+            return texts;
+        }
+        let merged = self.atoms - self.vertices;
+        if merged > 0 {
+            let verb = if merged == 1 { "coincides" } else { "coincide" };
+            texts.push(format!("{merged} of {} points {verb} with an earlier one", self.atoms));
+        }
+        let missing = self.rounding.missing;
+        if missing > 0 && self.hull_facets > 0 {
+            let message = "points are in no tetrahedron: rounding in floating-point arithmetic left them out";
+            texts.push(format!("{missing} of {} {message}", self.vertices));
+        }
+        if self.hull_facets == 0 {
+            let few = self.vertices < 4;
+            let reason = if few { "fewer than four different points" } else { "all points in a plane" };
+            texts.push(format!("no tetrahedra: {reason} ({} points)", self.atoms));
+        }
+        texts
+    }
+}
+
+/// Rounding errors in a triangulation in floating-point arithmetic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rounding {
+    /// In-sphere tests with a wrong sign, except those whose exact value is zero. This count and the next two
+    /// are known only if signs are checked.
+    pub wrong_signs: u64,
+    /// In-sphere tests whose exact value is zero and whose computed value is not.
+    pub wrong_zeros: u64,
+    /// In-sphere tests whose value was not the exact one.
+    pub rounded: u64,
+    /// Distinct points that are in no tetrahedron.
+    pub missing: u64,
+    /// Tetrahedra that are inverted or flat, or have a vertex of a neighbour inside of their sphere; `None`
+    /// in exact arithmetic.
+    pub violations: Option<u64>,
+}
+
+impl Rounding {
+    fn add(&mut self, other: &Rounding) {
+        let Rounding { wrong_signs, wrong_zeros, rounded, missing, violations } = self;
+        *wrong_signs += other.wrong_signs;
+        *wrong_zeros += other.wrong_zeros;
+        *rounded += other.rounded;
+        *missing += other.missing;
+        if let Some(count) = other.violations {
+            *violations.get_or_insert(0) += count;
+        }
+    }
+}
+
+/// Where the time went.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Times {
+    /// Reading and parsing the file; counted with the first model.
+    pub read: Duration,
+    /// Selecting atoms and triangulating.
+    pub triangulate: Duration,
+    /// Of that, ordering the points.
+    pub order: Duration,
+    /// Of that, if measured: the walks to the points (`locate`), the search of cavities (`predicates`), and
+    /// the replacement of tetrahedra (`update`).
+    pub locate: Duration,
+    /// See `locate`.
+    pub predicates: Duration,
+    /// See `locate`.
+    pub update: Duration,
+    /// Measuring, formatting and writing.
+    pub write: Duration,
+}
+
+impl Times {
+    /// All of it.
+    #[must_use]
+    pub fn total(&self) -> Duration {
+        self.read + self.triangulate + self.write
+    }
+
+    fn add(&mut self, other: &Times) {
+        let Times { read, triangulate, order, locate, predicates, update, write } = self;
+        *read += other.read;
+        *triangulate += other.triangulate;
+        *order += other.order;
+        *locate += other.locate;
+        *predicates += other.predicates;
+        *update += other.update;
+        *write += other.write;
+    }
+}
+
+/// Counts and times of all models together.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stats {
+    /// Models.
+    pub models: u64,
+    /// Sums over the models, and the maximum of [`Report::kernel_bytes`]; `model` is unused.
+    pub sums: Report,
+    /// Greatest number of atoms of a model.
+    pub atoms_max: u64,
+}
+
+impl Stats {
+    /// Adds a model.
+    pub fn add(&mut self, report: &Report) {
+        let Stats { models, sums, atoms_max } = self;
+        *models += 1;
+        *atoms_max = report.atoms.max(*atoms_max);
+        sums.atoms += report.atoms;
+        sums.vertices += report.vertices;
+        sums.tetrahedra += report.tetrahedra;
+        sums.hull_facets += report.hull_facets;
+        sums.created += report.created;
+        sums.in_sphere_tests += report.in_sphere_tests;
+        sums.kernel_bytes = report.kernel_bytes.max(sums.kernel_bytes);
+        sums.predicates.merge(&report.predicates);
+        sums.rounding.add(&report.rounding);
+        sums.times.add(&report.times);
+    }
+}

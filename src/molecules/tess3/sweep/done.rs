@@ -1,0 +1,104 @@
+//! What an earlier sweep has done, as its summary says.
+
+use std::collections::{HashMap, HashSet};
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use super::input::Input;
+use super::row::{Format, Row};
+use spmesh_base::error::{Error, Result};
+
+/// The files that an earlier run has done, with their rows; files that failed are left out.
+#[derive(Debug, Default)]
+pub(super) struct Done {
+    by_file: HashMap<String, DoneFile>,
+}
+
+/// A file that is done.
+#[derive(Debug, Default)]
+pub(super) struct DoneFile {
+    rows: Vec<Row>,
+}
+
+impl DoneFile {
+    /// Outputs with their lengths in bytes.
+    pub(super) fn outputs(&self) -> impl Iterator<Item = (PathBuf, u64)> {
+        self.rows
+            .iter()
+            .filter_map(|row| Some((row.get("output").into(), row.get("output_bytes").parse().ok()?)))
+    }
+
+    /// The file as it was when it was read; `None` if that is unknown.
+    pub(super) fn input(&self) -> Option<Input> {
+        let row = self.rows.first()?;
+        let [modified, sha256] = ["input_modified", "input_sha256"].map(|column| row.get(column).to_string());
+        Some(Input { bytes: row.get("input_bytes").parse().ok()?, modified, sha256 })
+    }
+}
+
+impl Done {
+    /// Reads the summary of an earlier run; empty if there is none. An incomplete last line is ignored.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or is not a summary.
+    pub(super) fn read(path: &Path) -> Result<Done> {
+        let name = path.display();
+        let text = match fs::read(path) {
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Done::default()),
+            other => other.map_err(|e| Error::io("reading the summary", e).of_input(name.to_string()))?,
+        };
+        let text = String::from_utf8_lossy(&text);
+        let complete = text.rfind('\n').map_or("", |end| &text[..=end]);
+        let format = Format::of(path);
+        let Some(rows) = (if complete.is_empty() { Some("") } else { complete.strip_prefix(&format.head()) })
+        else {
+            let message = "not a summary of this version of tess3: its first line has other columns. Do the \
+                           sweep without --resume, or give another --summary";
+            return Err(Error::usage(message).of_input(name.to_string()));
+        };
+        let mut done = Done::default();
+        for row in rows.lines().filter_map(|line| format.row(line)) {
+            if row.get("output_bytes").parse::<u64>().is_ok() {
+                done.by_file.entry(row.get("file").to_string()).or_default().rows.push(row);
+            }
+        }
+        Ok(done)
+    }
+
+    /// The file, if it is done with the same options by the same version. A name that is not UTF-8 is written
+    /// with other characters, which may be the name of another file: it counts as not done.
+    pub(super) fn file(&self, path: &Path, options: &str, version: &str) -> Option<&DoneFile> {
+        let file = self.by_file.get(path.to_str()?)?;
+        let is_same = |row: &Row| row.get("options") == options && row.get("version") == version;
+        file.rows.iter().all(is_same).then_some(file)
+    }
+
+    /// Takes out a file, which will be done again.
+    pub(super) fn take(&mut self, path: &Path) -> Option<DoneFile> {
+        self.by_file.remove(path.to_str()?)
+    }
+
+    /// Names of all outputs, without one, two, ... of their extensions.
+    pub(super) fn stems(&self) -> HashSet<PathBuf> {
+        let outputs = self.by_file.values().flat_map(DoneFile::outputs);
+        let stems = outputs.flat_map(|(output, _)| {
+            std::iter::successors(Some(output.with_extension("")), |stem| {
+                stem.extension().map(|_| stem.with_extension(""))
+            })
+        });
+        stems.collect()
+    }
+
+    /// The rows of all files, in the order of their lines.
+    pub(super) fn lines(&self, format: Format) -> Vec<String> {
+        let rows = self.by_file.values().flat_map(|file| &file.rows);
+        let mut lines: Vec<String> = rows.map(|row| format.line(row)).collect();
+        lines.sort_unstable();
+        lines
+    }
+}
+
+/// Whether a path of a summary stays in the folder of outputs.
+pub(super) fn is_inside(output: &Path) -> bool {
+    output.components().all(|part| matches!(part, Component::Normal(_)))
+}

@@ -1,0 +1,209 @@
+//! One file of a sweep.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use super::Sweep;
+use super::done::{self, DoneFile};
+use super::input::Input;
+use super::summary::{Line, Written};
+use crate::tess3::heap::peak_during;
+use crate::tess3::{ModelName, Options, Product, Report, job};
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::output::{Output, create_folder};
+use spmesh_base::places::Inputs;
+use spmesh_formats::source::panic_guard::guarded;
+use spmesh_formats::source::structure::{Models, Structure, read_structure};
+use spmesh_stream::ends_with_end;
+
+/// A file to triangulate.
+#[derive(Debug)]
+pub(super) struct Job<'f> {
+    pub(super) file: &'f Path,
+    /// Name of the output without its extension, relative to the folder of outputs.
+    pub(super) stem: PathBuf,
+    /// Outputs of an earlier sweep of this file.
+    pub(super) outputs: Vec<PathBuf>,
+}
+
+/// The result of a job.
+#[derive(Debug)]
+pub(super) struct End {
+    pub(super) result: Result<Vec<Model>>,
+    input: Option<Input>,
+    time: Duration,
+    peak_memory: Option<u64>,
+}
+
+/// A model that was written.
+#[derive(Debug)]
+pub(super) struct Model {
+    pub(super) report: Report,
+    output: PathBuf,
+    bytes: u64,
+    warnings: Vec<String>,
+}
+
+impl End {
+    /// The lines of the summary: one per model, or one for the failure.
+    pub(super) fn lines<'l>(&'l self, file: &'l Path, sweep: &'l Sweep) -> Vec<Line<'l>> {
+        let (options, version) = (&sweep.options_text[..], &sweep.version[..]);
+        let (peak_memory, input) = (self.peak_memory, self.input.as_ref());
+        let line = |time, result| Line { file, options, version, time, peak_memory, input, result };
+        match &self.result {
+            Err(error) => vec![line(self.time, Err(error))],
+            Ok(models) => {
+                let written = models.iter().map(|Model { report, output, bytes, warnings }| {
+                    line(report.times.total(), Ok(Written { report, output, bytes: *bytes, warnings }))
+                });
+                written.collect()
+            }
+        }
+    }
+}
+
+/// Checks before the work that the output of a file replaces none of the files that are `taken`.
+///
+/// # Errors
+/// Usage, if it does.
+pub(super) fn check(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<()> {
+    check_free(&sweep.folder.join(output_name(&job.stem, &sweep.options, None)), taken)
+}
+
+fn check_free(output: &Path, taken: &Inputs) -> Result<()> {
+    let Some(file) = taken.at(output) else { return Ok(()) };
+    let message = format!("the output would replace {file}: give another --out-dir");
+    Err(Error::usage(message).of_input(output.display().to_string()))
+}
+
+/// The name of the outputs that an earlier sweep made of a file, without the number of a model and the
+/// extension; `None` if it made none of this kind.
+pub(super) fn stem(known: &DoneFile, sweep: &Sweep) -> Option<PathBuf> {
+    let ending = ending(&sweep.options);
+    known.outputs().filter(|(output, _)| done::is_inside(output)).find_map(|(output, _)| {
+        let name = output.to_str()?.strip_suffix(&ending)?;
+        let plain = name.rsplit_once(".model").filter(|(_, number)| number.parse::<i64>().is_ok());
+        let is_numbered = sweep.options.selection.models == Models::All && sweep.options.is_per_model();
+        Some(PathBuf::from(plain.filter(|_| is_numbered).map_or(name, |(plain, _)| plain)))
+    })
+}
+
+/// Removes the outputs that an earlier sweep made of a file.
+pub(super) fn remove_earlier(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<()> {
+    let ending = ending(&sweep.options);
+    let of_kind = |output: &&PathBuf| output.to_string_lossy().ends_with(&ending);
+    job.outputs.iter().filter(of_kind).try_for_each(|output| remove(&sweep.folder.join(output), taken))
+}
+
+/// Removes a file, unless it is one of those that are `taken`, or does not exist.
+fn remove(path: &Path, taken: &Inputs) -> Result<()> {
+    if taken.at(path).is_some() {
+        return Ok(());
+    }
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+            Err(Error::io("removing the output of an earlier sweep", e).of_input(path.display().to_string()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Triangulates a file. A panic is an error of this file. If it fails, nothing is left under the usual name
+/// of its output.
+pub(super) fn run(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> End {
+    let started = Instant::now();
+    let input = Input::of(job.file).ok().flatten();
+    let (result, peak_memory) = peak_during(|| guarded(|| triangulate(job, sweep, taken)));
+    let result = result.unwrap_or_else(|panic| {
+        let message = format!("internal error: {panic}; please report it with the file");
+        Err(Error::new(ErrorKind::Io, message).of_input(job.file.display().to_string()))
+    });
+    let usual = sweep.folder.join(output_name(&job.stem, &sweep.options, None));
+    let removed = if result.is_err() { remove(&usual, taken) } else { Ok(()) };
+    let result = removed.and(result);
+    End { result, input, time: started.elapsed(), peak_memory }
+}
+
+fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model>> {
+    let started = Instant::now();
+    let structure = read_structure(job.file, sweep.format)?;
+    let read = started.elapsed();
+    let has_distinct_numbers = has_distinct_numbers(&structure);
+    let mut of_file = structure.warnings.clone();
+    of_file.extend(structure.missing_location(&sweep.options.selection));
+    let mut outputs: Vec<PathBuf> = Vec::new();
+    let mut open = |model: Option<ModelName>| {
+        let model = model.filter(|_| sweep.options.selection.models == Models::All);
+        let model = model.map(|name| if has_distinct_numbers { name.number } else { name.place as i64 });
+        let output = output_name(&job.stem, &sweep.options, model);
+        let path = sweep.folder.join(&output);
+        create_folder_of(&path)?;
+        check_free(&path, taken)?;
+        outputs.push(output);
+        Output::create(&path, true)
+    };
+    let mut reports = job::run(structure, &sweep.options, &mut open)?;
+    reports.iter_mut().take(1).for_each(|report| report.times.read = read);
+    let mut models = Vec::new();
+    for (i, report) in reports.into_iter().enumerate() {
+        // All models share one table.
+        let output = outputs[i.min(outputs.len() - 1)].clone();
+        let path = sweep.folder.join(&output);
+        let length = fs::metadata(&path).map(|metadata| metadata.len());
+        let bytes =
+            length.map_err(|e| Error::io("looking at the output", e).of_input(path.display().to_string()))?;
+        // Those of the file are in the first row.
+        let mut warnings = std::mem::take(&mut of_file);
+        warnings.extend(report.warnings());
+        models.push(Model { report, output, bytes, warnings });
+    }
+    Ok(models)
+}
+
+fn has_distinct_numbers(structure: &Structure) -> bool {
+    let mut numbers: Vec<i64> = structure.models.iter().map(|model| model.number).collect();
+    numbers.sort_unstable();
+    numbers.windows(2).all(|pair| pair[0] < pair[1])
+}
+
+/// Stem, model and the extension of the product.
+fn output_name(stem: &Path, options: &Options, model: Option<i64>) -> PathBuf {
+    let mut name = stem.as_os_str().to_os_string();
+    if let Some(number) = model.filter(|_| options.product.is_per_model()) {
+        name.push(format!(".model{number}"));
+    }
+    name.push(ending(options));
+    name.into()
+}
+
+fn ending(options: &Options) -> String {
+    let table = match options.product {
+        Product::Mesh => return ".spm".to_string(),
+        Product::Filtration => return ".filtration.txt".to_string(),
+        Product::Tetrahedra => "tetrahedra",
+        Product::Contacts => "contacts",
+        Product::Cells => "cells",
+        Product::Surface => "surface",
+        Product::ContactAreas => "contact-areas",
+        Product::Pockets => "pockets",
+    };
+    format!(".{table}.{}", options.format.ending())
+}
+
+fn create_folder_of(path: &Path) -> Result<()> {
+    path.parent().map_or(Ok(()), create_folder)
+}
+
+/// Whether the outputs that an earlier run made of a file still exist and are complete, and the file has not
+/// changed.
+pub(super) fn is_still_there(file: &Path, done: &DoneFile, folder: &Path) -> bool {
+    let is_complete = |output: &Path, bytes: u64| -> std::io::Result<bool> {
+        let path = folder.join(output);
+        let mut file = File::open(&path)?;
+        let is_mesh = path.extension().is_some_and(|extension| extension == "spm");
+        Ok(file.metadata()?.len() == bytes && (!is_mesh || ends_with_end(&mut file)?))
+    };
+    done.outputs().all(|(output, bytes)| is_complete(&output, bytes).unwrap_or(false))
+        && done.input().is_some_and(|input| input.is_still(file))
+}

@@ -1,0 +1,121 @@
+//! Tables of tetrahedra and of contacts.
+//!
+//! Rows do not depend on how the triangulation was made: the atoms of a row, and the rows, are in the order
+//! of the input.
+
+use super::alpha::AlphaComplex;
+use super::names::AtomNames;
+use super::rows::distance;
+use super::spheres::measure;
+use spmesh_base::error::Result;
+use spmesh_delaunay::delaunay3::Tetrahedralization;
+use spmesh_delaunay::predicates::Point3;
+use spmesh_formats::sink::TableSink;
+use spmesh_formats::source::structure::Selected;
+
+/// Columns of the table of tetrahedra.
+pub(super) const TETRAHEDRA: &str = "model\tatom1\tatom2\tatom3\tatom4\tserial1\tserial2\tserial3\tserial4\t\
+                                     circumradius\tvolume\n";
+
+/// Columns of the table of contacts.
+pub(super) const CONTACTS: &str = "model\tatom1\tatom2\tserial1\tserial2\tdistance\ttetrahedra\n";
+
+/// The data of the tables of one model.
+pub(super) struct ModelTables<'s> {
+    /// Number that the file gives it.
+    pub(super) number: i64,
+    /// The atoms that the mesh was made of.
+    pub(super) selected: &'s Selected<'s>,
+    pub(super) mesh: &'s Tetrahedralization,
+    /// The part of the mesh to print, if not all of it.
+    pub(super) alpha: Option<&'s AlphaComplex<'s>>,
+    /// World units per stored unit.
+    pub(super) scale: f64,
+}
+
+impl<'s> ModelTables<'s> {
+    /// Writes a row per tetrahedron: its atoms, the radius of the circumscribed sphere, and the volume.
+    ///
+    /// Memory: 16 bytes per tetrahedron, and the names of the atoms.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn write_tetrahedra(&self, rows: &mut TableSink) -> Result<()> {
+        let tetrahedra = self.mesh.tetrahedra().iter().enumerate();
+        let kept = tetrahedra.filter(|&(t, _)| self.alpha.is_none_or(|alpha| alpha.has_tetrahedron(t)));
+        let mut found: Vec<[u32; 4]> = kept.map(|(_, t)| self.in_order_of_input(t.vertices)).collect();
+        found.sort_unstable();
+        let mut table = Table::new(rows, self);
+        for row in found {
+            table.start_row(&row)?;
+            let measure = measure(row.map(|index| self.point(index)));
+            table.rows.number(measure.circumradius * self.scale);
+            table.rows.number(measure.volume * self.scale.powi(3));
+            table.rows.end()?;
+        }
+        Ok(())
+    }
+
+    /// Writes a row per edge: its atoms, their distance, and the number of tetrahedra around it.
+    ///
+    /// Memory: 12 bytes per edge, and the names of the atoms.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn write_contacts(&self, rows: &mut TableSink) -> Result<()> {
+        let mut found: Vec<([u32; 2], u32)> = Vec::new();
+        self.mesh.for_each_edge(
+            |_| true,
+            |ring| -> Result<()> {
+                if self.alpha.is_none_or(|alpha| alpha.has_edge(ring)) {
+                    let is_kept = |t: u32| self.alpha.is_none_or(|alpha| alpha.has_tetrahedron(t as usize));
+                    let tetrahedra = ring.tetrahedra.iter().filter(|&&t| is_kept(t)).count();
+                    found.push((self.in_order_of_input(ring.ends), tetrahedra as u32));
+                }
+                Ok(())
+            },
+        )?;
+        found.sort_unstable();
+        let mut table = Table::new(rows, self);
+        for (row, tetrahedra) in found {
+            table.start_row(&row)?;
+            table.rows.number(distance(row.map(|index| self.point(index))) * self.scale);
+            table.rows.integer(tetrahedra)?;
+            table.rows.end()?;
+        }
+        Ok(())
+    }
+
+    /// Indices in the selection, increasing, of vertices of the mesh.
+    fn in_order_of_input<const N: usize>(&self, vertices: [u32; N]) -> [u32; N] {
+        let mut indices = vertices.map(|v| self.mesh.vertices()[v as usize].index);
+        indices.sort_unstable();
+        indices
+    }
+
+    fn point(&self, index: u32) -> Point3 {
+        self.selected.points()[index as usize]
+    }
+}
+
+/// Rows of atoms by their names.
+struct Table<'t> {
+    number: i64,
+    selected: &'t Selected<'t>,
+    names: AtomNames,
+    rows: &'t mut TableSink,
+}
+
+impl<'t> Table<'t> {
+    fn new(rows: &'t mut TableSink, of: &ModelTables<'t>) -> Self {
+        let ModelTables { number, selected, .. } = *of;
+        Table { number, selected, names: AtomNames::new(selected), rows }
+    }
+
+    /// Model, names and serial numbers of atoms.
+    fn start_row(&mut self, atoms: &[u32]) -> Result<()> {
+        self.rows.integer(self.number)?;
+        atoms.iter().for_each(|&index| self.rows.field(self.names.name(index as usize)));
+        atoms.iter().try_for_each(|&index| self.rows.integer(self.selected.label(index as usize)))
+    }
+}

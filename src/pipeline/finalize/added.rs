@@ -1,0 +1,178 @@
+//! Points beside those of the input: the vertices of lines.
+//!
+//! They come before all others. A point of the input at the place of one of them is left out.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use foldhash::fast::FixedState;
+use std::cmp::Ordering as Order;
+use std::hash::BuildHasher;
+
+use super::passes::{Passes, next_kept};
+use spmesh_base::error::Result;
+use spmesh_formats::source::{Description, PointReader};
+use spmesh_stream::model::bounds::{Bounds, Point};
+
+/// Points of a batch.
+const BATCH: usize = 1 << 14;
+
+/// Points that are added to an input.
+#[derive(Debug, Default)]
+pub struct AddedPoints {
+    /// In lexicographic order of their places.
+    points: Vec<Point>,
+    /// A bit for each value that the hash of a place of them can have.
+    hashes: Vec<u64>,
+    /// Points of the input that the last pass left out.
+    replaced: AtomicU64,
+}
+
+impl AddedPoints {
+    /// Adds points, in stored coordinates of the input, to an input of the plane. No two have one place.
+    #[must_use]
+    pub fn new(mut points: Vec<Point>) -> AddedPoints {
+        points.sort_unstable_by(by_place);
+        // Of other places, one in sixteen or fewer has the hash of one of these.
+        let bits = (16 * points.len()).next_power_of_two().max(64);
+        let mut added = AddedPoints { points, hashes: vec![0; bits / 64], replaced: AtomicU64::new(0) };
+        for index in 0..added.points.len() {
+            let hash = added.hash_of(&added.points[index]);
+            added.hashes[hash / 64] |= 1 << (hash % 64);
+        }
+        added
+    }
+
+    fn hash_of(&self, [x, y, _]: &Point) -> usize {
+        // -0 and 0 are one place.
+        let hash = FixedState::default().hash_one([(x + 0.0).to_bits(), (y + 0.0).to_bits()]);
+        hash as usize & (64 * self.hashes.len() - 1)
+    }
+
+    /// Whether one of these points has the place of a point.
+    fn has_place_of(&self, point: &Point) -> bool {
+        if self.points.is_empty() {
+            return false;
+        }
+        let hash = self.hash_of(point);
+        self.hashes[hash / 64] >> (hash % 64) & 1 == 1
+            && self.points.binary_search_by(|other| by_place(other, point)).is_ok()
+    }
+
+    /// Number of points that are added.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether no points are added.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// After a run: how many points of the input were left out.
+    #[must_use]
+    pub fn replaced(&self) -> u64 {
+        self.replaced.load(Ordering::Relaxed)
+    }
+}
+
+/// The lexicographic order of places; -0 is 0. Points of the input may have coordinates that are not finite.
+fn by_place(a: &Point, b: &Point) -> Order {
+    (a[0] + 0.0).total_cmp(&(b[0] + 0.0)).then_with(|| (a[1] + 0.0).total_cmp(&(b[1] + 0.0)))
+}
+
+/// An input with added points.
+pub(super) struct WithAdded<'a, P: Passes + ?Sized> {
+    input: &'a P,
+    added: &'a AddedPoints,
+    description: Description,
+    /// The row of an added point.
+    row: Vec<u8>,
+}
+
+impl<'a, P: Passes + ?Sized> WithAdded<'a, P> {
+    pub(super) fn new(input: &'a P, added: &'a AddedPoints) -> Self {
+        let description = input.description().clone();
+        let bounds = Bounds::of_points(&added.points);
+        let description = Description {
+            stated_bounds: description
+                .stated_bounds
+                .map(|stated| bounds.map_or(stated, |own| stated.union(own))),
+            stated_points: description.stated_points.map(|points| points + added.points.len() as u64),
+            ..description
+        };
+        WithAdded { input, added, row: description.attributes.unknown_row(), description }
+    }
+}
+
+impl<P: Passes + ?Sized> Passes for WithAdded<'_, P> {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn read(&self) -> Result<Box<dyn PointReader + '_>> {
+        Ok(Box::new(WithAddedReader {
+            reader: self.input.read()?,
+            added: self.added,
+            row: &self.row,
+            next: 0,
+            replaced: 0,
+            rows: Vec::new(),
+        }))
+    }
+
+    fn is_costly(&self) -> bool {
+        self.input.is_costly()
+    }
+
+    fn name(&self) -> Option<String> {
+        self.input.name()
+    }
+}
+
+/// One pass over an input with added points.
+struct WithAddedReader<'a> {
+    reader: Box<dyn PointReader + 'a>,
+    added: &'a AddedPoints,
+    row: &'a [u8],
+    /// Added points that were passed on.
+    next: usize,
+    /// Points of the input that were left out.
+    replaced: u64,
+    rows: Vec<u8>,
+}
+
+impl PointReader for WithAddedReader<'_> {
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        let rest = &self.added.points[self.next..];
+        if !rest.is_empty() {
+            let points = &rest[..rest.len().min(BATCH)];
+            batch.clear();
+            batch.extend_from_slice(points);
+            self.next += points.len();
+            self.rows.clear();
+            points.iter().for_each(|_| self.rows.extend_from_slice(self.row));
+            return Ok(());
+        }
+        let WithAddedReader { reader, added, row, replaced, rows, .. } = self;
+        // Points of the input at places of added points are left out.
+        next_kept(&mut **reader, batch, row.len(), rows, |point| {
+            let is_free = !added.has_place_of(point);
+            *replaced += u64::from(!is_free);
+            is_free
+        })?;
+        if batch.is_empty() {
+            added.replaced.store(*replaced, Ordering::Relaxed);
+        }
+        Ok(())
+    }
+
+    fn rows(&self) -> &[u8] {
+        &self.rows
+    }
+
+    fn invalid(&self) -> u64 {
+        self.reader.invalid()
+    }
+}

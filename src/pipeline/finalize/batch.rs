@@ -1,0 +1,51 @@
+//! A batch of points.
+
+use spmesh_base::error::Result;
+use spmesh_formats::source::PointReader;
+use spmesh_stream::model::bounds::Point;
+use spmesh_stream::{Header, encode_points};
+
+/// Points with their rows.
+#[derive(Default)]
+pub(super) struct PointBatch {
+    pub(super) points: Vec<Point>,
+    /// A row for each point, if they carry attributes.
+    pub(super) rows: Vec<u8>,
+}
+
+impl PointBatch {
+    /// Replaces the content by the next points; leaves it empty at the end.
+    ///
+    /// # Errors
+    /// As [`PointReader::next_batch`].
+    pub(super) fn read(&mut self, reader: &mut dyn PointReader) -> Result<()> {
+        reader.next_batch(&mut self.points)?;
+        self.rows.clear();
+        self.rows.extend_from_slice(reader.rows());
+        Ok(())
+    }
+}
+
+/// Appends the record of each point: its encoded coordinates, then its row. `points` is a buffer.
+///
+/// # Errors
+/// As [`encode_points`].
+pub(super) fn encode_records(
+    header: &Header,
+    batch: &PointBatch,
+    points: &mut Vec<u8>,
+    records: &mut Vec<u8>,
+) -> Result<()> {
+    let row_len = header.attributes.row_len();
+    if row_len == 0 {
+        return encode_points(header, &batch.points, records);
+    }
+    points.clear();
+    encode_points(header, &batch.points, points)?;
+    records.reserve(points.len() + batch.rows.len());
+    for (point, row) in points.chunks_exact(header.point_len()).zip(batch.rows.chunks_exact(row_len)) {
+        records.extend_from_slice(point);
+        records.extend_from_slice(row);
+    }
+    Ok(())
+}

@@ -1,0 +1,136 @@
+//! The passes over an input.
+
+use spmesh_base::error::Result;
+use spmesh_formats::source::{Description, Input, PointReader};
+use spmesh_stream::model::bounds::Point;
+
+/// An input that can be read from its start as often as needed, the same every time.
+pub trait Passes {
+    /// Properties of the input, known before its points are read.
+    fn description(&self) -> &Description;
+
+    /// Starts a pass.
+    ///
+    /// # Errors
+    /// If the input cannot be opened.
+    fn read(&self) -> Result<Box<dyn PointReader + '_>>;
+
+    /// Whether decoding costs more than writing decoded points to disk and reading them back.
+    fn is_costly(&self) -> bool {
+        false
+    }
+
+    /// Name of the input in messages, if it has one.
+    fn name(&self) -> Option<String> {
+        None
+    }
+}
+
+impl Passes for Input {
+    fn description(&self) -> &Description {
+        Input::description(self)
+    }
+
+    fn read(&self) -> Result<Box<dyn PointReader + '_>> {
+        Input::read(self)
+    }
+
+    fn is_costly(&self) -> bool {
+        Input::is_costly(self)
+    }
+
+    fn name(&self) -> Option<String> {
+        Some(Input::name(self))
+    }
+}
+
+/// Reads the next batch of which `keeps` accepts points, and leaves out all others; empty at the end. Sets
+/// `rows` to the rows of these points, of `row_len` bytes.
+///
+/// # Errors
+/// Those of the reader.
+pub(super) fn next_kept(
+    reader: &mut dyn PointReader,
+    batch: &mut Vec<Point>,
+    row_len: usize,
+    rows: &mut Vec<u8>,
+    mut keeps: impl FnMut(&Point) -> bool,
+) -> Result<()> {
+    rows.clear();
+    loop {
+        reader.next_batch(batch)?;
+        if batch.is_empty() {
+            return Ok(());
+        }
+        let mut kept = 0;
+        for index in 0..batch.len() {
+            if keeps(&batch[index]) {
+                batch[kept] = batch[index];
+                kept += 1;
+                rows.extend_from_slice(&reader.rows()[index * row_len..(index + 1) * row_len]);
+            }
+        }
+        batch.truncate(kept);
+        if kept > 0 {
+            return Ok(());
+        }
+    }
+}
+
+/// The passes over the input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pass {
+    /// Finding the mean distance between points.
+    Spacing,
+    /// Collecting the points near shores.
+    Shores,
+    /// Finding the greatest weight.
+    Weights,
+    /// Finding the points that thinning keeps.
+    Thin,
+    /// Finding the bounding box.
+    Bounds,
+    /// Counting points per cell.
+    Count,
+    /// Counting the points of crowded cells on a finer grid.
+    Refine,
+    /// Writing points and tags.
+    Write,
+}
+
+impl Pass {
+    /// Name in reports and in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Pass::Spacing => "spacing",
+            Pass::Shores => "shores",
+            Pass::Weights => "weights",
+            Pass::Thin => "thin",
+            Pass::Bounds => "bounds",
+            Pass::Count => "count",
+            Pass::Refine => "refine",
+            Pass::Write => "write",
+        }
+    }
+
+    /// Whether it writes the output.
+    #[must_use]
+    pub fn is_output(self) -> bool {
+        self == Pass::Write
+    }
+}
+
+/// Receives the progress of a run; `()` ignores it.
+pub trait Observer {
+    /// A pass starts; the input has `total` points, if that is known.
+    fn pass(&mut self, _pass: Pass, _total: Option<u64>) {}
+
+    /// `points` points of the pass are done.
+    fn done(&mut self, _points: u64) {}
+
+    /// A message for the user.
+    fn notice(&mut self, _message: &str) {}
+}
+
+impl Observer for () {}

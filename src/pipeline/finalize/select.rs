@@ -1,0 +1,162 @@
+//! Which points of an input count: those inside of polygons, or those outside.
+//!
+//! Every pass tests every point anew, so all passes see the same points, whatever their order.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::passes::{Passes, next_kept};
+use crate::polygons::{Polygons, Rings, Side};
+use spmesh_base::error::Result;
+use spmesh_formats::source::{Description, PointReader};
+use spmesh_stream::model::bounds::{Bounds, Point};
+use spmesh_stream::model::points::Point2;
+
+/// Polygons that select points. Coordinates are those that the input stores.
+#[derive(Debug, Default)]
+pub struct Areas {
+    clip: Option<(Polygons, Option<[Point2; 2]>)>,
+    drop: Option<Polygons>,
+    water: Option<Polygons>,
+}
+
+impl Areas {
+    /// Keeps the points inside of `clip` or on its border, if it is given, and of these the ones that are not
+    /// strictly inside of a polygon of `drop`.
+    #[must_use]
+    pub fn new(clip: Option<&[Rings]>, drop: &[Rings]) -> Areas {
+        Areas {
+            clip: clip.map(|polygons| (Polygons::new(polygons), extent(polygons))),
+            drop: (!drop.is_empty()).then(|| Polygons::new(drop)),
+            water: None,
+        }
+    }
+
+    /// Drops points in water, too, and those on its shores: the edges of its polygons with their numbers.
+    #[must_use]
+    pub fn with_water(self, edges: impl Iterator<Item = (u32, [Point2; 2])>) -> Areas {
+        Areas { water: Some(Polygons::of_edges(edges)), ..self }
+    }
+
+    /// Whether all points are kept.
+    #[must_use]
+    pub fn keep_all(&self) -> bool {
+        self.clip.is_none() && self.drop.is_none() && self.water.is_none()
+    }
+
+    fn clips(&self, place: Point2) -> bool {
+        self.clip.as_ref().is_some_and(|(clip, _)| clip.side(place) == Side::Outside)
+    }
+
+    fn floods(&self, place: Point2) -> bool {
+        self.water.as_ref().is_some_and(|water| water.side(place) != Side::Outside)
+    }
+
+    fn drops(&self, place: Point2) -> bool {
+        self.drop.as_ref().is_some_and(|drop| drop.side(place) == Side::Inside)
+    }
+}
+
+/// The box of polygons; `None` if they have no vertex.
+fn extent(polygons: &[Rings]) -> Option<[Point2; 2]> {
+    let mut places = polygons.iter().flatten().flatten();
+    let &first = places.next()?;
+    Some(places.fold([first; 2], |[min, max], place| {
+        [[0, 1].map(|axis| min[axis].min(place[axis])), [0, 1].map(|axis| max[axis].max(place[axis]))]
+    }))
+}
+
+/// The points of an input that polygons select.
+pub struct Selected<'a, P: Passes + ?Sized> {
+    input: &'a P,
+    areas: &'a Areas,
+    description: Description,
+    counts: [AtomicU64; 3],
+}
+
+impl<'a, P: Passes + ?Sized> Selected<'a, P> {
+    /// The points of `input` that `areas` select.
+    #[must_use]
+    pub fn new(input: &'a P, areas: &'a Areas) -> Self {
+        let mut description = input.description().clone();
+        if let Some((_, extent)) = &areas.clip {
+            description.stated_bounds = description.stated_bounds.and_then(|stated| within(stated, *extent));
+        }
+        Selected { input, areas, description, counts: Default::default() }
+    }
+
+    /// After a run: points outside of the polygons to keep, inside of those to drop, and in water.
+    #[must_use]
+    pub fn dropped(&self) -> [u64; 3] {
+        self.counts.each_ref().map(|count| count.load(Ordering::Relaxed))
+    }
+}
+
+/// The part of a box that is in another one of the plane; `None` if there is none.
+fn within(mut bounds: Bounds, extent: Option<[Point2; 2]>) -> Option<Bounds> {
+    let [min, max] = extent?;
+    for axis in 0..2 {
+        bounds.min[axis] = bounds.min[axis].max(min[axis]);
+        bounds.max[axis] = bounds.max[axis].min(max[axis]);
+    }
+    (0..2).all(|axis| bounds.min[axis] <= bounds.max[axis]).then_some(bounds)
+}
+
+impl<P: Passes + ?Sized> Passes for Selected<'_, P> {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn read(&self) -> Result<Box<dyn PointReader + '_>> {
+        Ok(Box::new(SelectedReader {
+            reader: self.input.read()?,
+            areas: self.areas,
+            counts: &self.counts,
+            dropped: [0; 3],
+            row_len: self.description.attributes.row_len(),
+            rows: Vec::new(),
+        }))
+    }
+
+    fn is_costly(&self) -> bool {
+        self.input.is_costly()
+    }
+
+    fn name(&self) -> Option<String> {
+        self.input.name()
+    }
+}
+
+/// One pass over the points that count.
+struct SelectedReader<'a> {
+    reader: Box<dyn PointReader + 'a>,
+    areas: &'a Areas,
+    /// For the counts of a whole pass.
+    counts: &'a [AtomicU64; 3],
+    dropped: [u64; 3],
+    row_len: usize,
+    rows: Vec<u8>,
+}
+
+impl PointReader for SelectedReader<'_> {
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        let SelectedReader { reader, areas, counts, dropped, row_len, rows } = self;
+        next_kept(&mut **reader, batch, *row_len, rows, |&[x, y, _]| {
+            let tests = [Areas::clips, Areas::drops, Areas::floods];
+            let reason = tests.iter().position(|test| test(areas, [x, y]));
+            reason.into_iter().for_each(|reason| dropped[reason] += 1);
+            reason.is_none()
+        })?;
+        if batch.is_empty() {
+            counts.iter().zip(dropped).for_each(|(count, dropped)| count.store(*dropped, Ordering::Relaxed));
+        }
+        Ok(())
+    }
+
+    fn rows(&self) -> &[u8] {
+        &self.rows
+    }
+
+    fn invalid(&self) -> u64 {
+        self.reader.invalid()
+    }
+}

@@ -1,0 +1,160 @@
+//! The points near the shores of lakes and rivers.
+//!
+//! A pass before all others collects them. Memory: 24 bytes for each point and each shore that it is near.
+
+use foldhash::{HashMap, HashMapExt};
+
+use super::batch::PointBatch;
+use super::passes::{Observer, Pass, Passes};
+use super::read_ahead::read_ahead;
+use crate::polygons::{Polygons, Side};
+use spmesh_base::error::Result;
+use spmesh_stream::model::bounds::{Bounds, Point};
+use spmesh_stream::model::points::Point2;
+
+/// Cells along all shores, at most: so many in any case, and so many for each edge. Few edges are found fast
+/// in large cells, too.
+const CELLS: f64 = 4096.0;
+const CELLS_PER_EDGE: f64 = 16.0;
+
+/// Cells along all shores, however many edges they have.
+const CELLS_MAX: f64 = 1e6;
+
+/// Mean distances between points that the width of shores is by default.
+const WIDTH_DISTANCES: f64 = 4.0;
+
+/// The width of shores where none is given: four times the mean distance between points, which is the root of
+/// the area of their box for each point. `None` without points. In stored units.
+///
+/// # Errors
+/// Those of the input.
+pub fn shore_width<P: Passes + ?Sized>(input: &P, observer: &mut dyn Observer) -> Result<Option<f64>> {
+    observer.pass(Pass::Spacing, input.description().stated_points);
+    let (mut bounds, mut points): (Option<Bounds>, u64) = (None, 0);
+    let prepare = |_: &PointBatch, (): &mut ()| Ok(());
+    read_ahead(&mut *input.read()?, prepare, |batch, ()| {
+        let own = Bounds::of_points(&batch.points);
+        bounds = own.map(|own| bounds.map_or(own, |bounds| bounds.union(own))).or(bounds);
+        points += batch.points.len() as u64;
+        observer.done(points);
+        Ok(())
+    })?;
+    Ok(bounds.map(|Bounds { min, max }| {
+        let [width, height] = [0, 1].map(|axis| max[axis] - min[axis]);
+        let across = (width * height / points as f64).sqrt();
+        // Points on a line have no area.
+        WIDTH_DISTANCES * if across > 0.0 { across } else { width.max(height) / points as f64 }
+    }))
+}
+
+/// Shores, and the points that count for them: those at most a width away, and neither in water nor on a
+/// shore.
+#[derive(Debug)]
+pub struct Shores {
+    edges: Vec<(u32, [Point2; 2])>,
+    water: Polygons,
+    width: f64,
+    /// Side of a cell.
+    side: f64,
+    /// The edges near each cell.
+    cells: HashMap<[i64; 2], Vec<u32>>,
+    polygons: usize,
+}
+
+impl Shores {
+    /// The shores of polygons whose edges are given with their numbers; points are collected for those that
+    /// `needed` says. `width` is in stored units.
+    #[must_use]
+    pub fn new(edges: Vec<(u32, [Point2; 2])>, needed: &[bool], width: f64) -> Shores {
+        let water = Polygons::of_edges(edges.iter().copied());
+        let is_needed = |(number, _): &(u32, _)| needed[*number as usize];
+        let edges: Vec<(u32, [Point2; 2])> = edges.into_iter().filter(is_needed).collect();
+        let length: f64 = edges.iter().map(|(_, [a, b])| (b[0] - a[0]).hypot(b[1] - a[1])).sum();
+        let cells = (CELLS + CELLS_PER_EDGE * edges.len() as f64).min(CELLS_MAX);
+        let side = width.max(length / cells).max(f64::MIN_POSITIVE);
+        let polygons = needed.len();
+        let mut shores = Shores { edges, water, width, side, cells: HashMap::new(), polygons };
+        for number in 0..shores.edges.len() {
+            shores.enter(number as u32);
+        }
+        shores
+    }
+
+    fn cell(&self, value: f64) -> i64 {
+        (value / self.side).floor() as i64
+    }
+
+    /// Enters an edge into all cells near it, row by row.
+    fn enter(&mut self, number: u32) {
+        let (_, [a, b]) = self.edges[number as usize];
+        let [low, high] = if a[1] <= b[1] { [a, b] } else { [b, a] };
+        // A margin for rounding.
+        let reach = self.width * (1.0 + 1e-9) + 1e-9 * self.side;
+        let height = high[1] - low[1];
+        let x_at = |y: f64| {
+            let part = if height > 0.0 { ((y - low[1]) / height).clamp(0.0, 1.0) } else { 0.0 };
+            low[0] + part * (high[0] - low[0])
+        };
+        for row in self.cell(low[1] - reach)..=self.cell(high[1] + reach) {
+            let ys = [row as f64 * self.side - reach, (row + 1) as f64 * self.side + reach];
+            let mut xs = if height > 0.0 { ys.map(x_at) } else { [low[0], high[0]] };
+            xs.sort_unstable_by(f64::total_cmp);
+            for column in self.cell(xs[0] - reach)..=self.cell(xs[1] + reach) {
+                self.cells.entry([column, row]).or_default().push(number);
+            }
+        }
+    }
+
+    /// The numbers of the polygons near whose shores a place is, each once.
+    fn near(&self, place: Point2, found: &mut Vec<u32>) {
+        found.clear();
+        let Some(edges) = self.cells.get(&place.map(|value| self.cell(value))) else { return };
+        for &number in edges {
+            let (polygon, ends) = self.edges[number as usize];
+            if found.last() != Some(&polygon) && square(ends, place) <= self.width * self.width {
+                found.push(polygon);
+            }
+        }
+        if !found.is_empty() && self.water.side(place) != Side::Outside {
+            found.clear();
+        }
+    }
+
+    /// The points of an input near each shore, in the order of the polygons and of the input.
+    ///
+    /// # Errors
+    /// Those of the input.
+    pub fn collect<P: Passes + ?Sized>(
+        &self,
+        input: &P,
+        observer: &mut dyn Observer,
+    ) -> Result<Vec<Vec<Point>>> {
+        observer.pass(Pass::Shores, input.description().stated_points);
+        let (mut shores, mut done) = (vec![Vec::new(); self.polygons], 0);
+        let prepare = |batch: &PointBatch, near: &mut Vec<(u32, Point)>| {
+            near.clear();
+            let mut found = Vec::new();
+            for &point in &batch.points {
+                self.near([point[0], point[1]], &mut found);
+                near.extend(found.iter().map(|&polygon| (polygon, point)));
+            }
+            Ok(())
+        };
+        read_ahead(&mut *input.read()?, prepare, |batch, near| {
+            near.iter().for_each(|&(polygon, point)| shores[polygon as usize].push(point));
+            done += batch.points.len() as u64;
+            observer.done(done);
+            Ok(())
+        })?;
+        Ok(shores)
+    }
+}
+
+/// The square of the distance of a place from an edge, in f64.
+fn square([a, b]: [Point2; 2], [x, y]: Point2) -> f64 {
+    let [u, v] = [b[0] - a[0], b[1] - a[1]];
+    let square = u * u + v * v;
+    let along = if square > 0.0 { (((x - a[0]) * u + (y - a[1]) * v) / square).clamp(0.0, 1.0) } else { 0.0 };
+    let [p, q] = [x - (a[0] + along * u), y - (a[1] + along * v)];
+    p * p + q * q
+}

@@ -1,0 +1,445 @@
+//! `spfinalize`: flags.
+
+mod areas;
+mod figures;
+pub(crate) mod leaf;
+mod planning;
+mod water;
+mod weights;
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+
+use super::lines::{LineFlags, summary, write_report};
+use super::point_filters::PointFilters;
+use crate::finalize::{
+    AddedPoints, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Passes, Selected, Spooling,
+    Weighed,
+};
+use crate::lines::{Changes, Levels, Target, Water};
+use areas::AreaFlags;
+use figures::{Drops, LineStats, stats_json, stats_text};
+use planning::PlanFlags;
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::output::Output;
+use spmesh_base::parallel::available_threads;
+use spmesh_base::places::check_apart;
+use spmesh_base::system;
+use spmesh_delaunay::network::Network;
+use spmesh_formats::detect::SPFINALIZE;
+use spmesh_formats::source::{
+    AttributeChoice, Description, DropReason, Dropped, Input, InvalidAdvice, RawType, SourceOptions,
+};
+use spmesh_shell::compression::Compression;
+use spmesh_shell::crs::CrsFlag;
+use spmesh_shell::endings;
+use spmesh_shell::progress::Progress;
+use spmesh_shell::text_flags::TextFlags;
+use spmesh_shell::{Common, StatsFormat, notice, parse_numbers, parse_size, read_list};
+use spmesh_stream::model::bounds::Point;
+use water::WaterFlags;
+use weights::{Weighing, WeightFlags};
+
+const TOOL: &str = "spfinalize";
+
+const EXAMPLES: &str = "\
+Examples:
+  Triangulate a tile in bounded memory:
+      spfinalize tile.laz | spdelaunay2d -o tile.spm
+  Ground and water of many files as one input, keeping within 256 MB:
+      spfinalize --lof tiles.txt --keep-class 2,9 --memory 256M -o ground.spm
+  The lowest first return of each square of half a metre, without synthetic points:
+      spfinalize --first-only --drop-synthetic --thin 0.5:lowest tile.laz -o ground.spm
+  One flight line, from its start to a GPS time, and how many points were dropped for which reason:
+      spfinalize --keep-point-source 12,12 --keep-gps-time ,278300 --stats tile.laz -o line.spm
+  A table whose comment names its columns, and the times along with the points:
+      spfinalize --columns GLON,GLAT,ZG --attributes TIME ILVIS2.TXT -o lvis.spm
+  What is left of a file whose transfer broke off:
+      spfinalize --salvage tile.laz -o part.spm
+  Files that another program lists:
+      find tiles -name '*.laz' | spfinalize --lof - -o tiles.spm
+  A grid of 2^6 x 2^6 cells, points in their own order, with the counts of the run:
+      spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
+  Intensities, classes and times of the points along with them:
+      spfinalize --attributes intensity,classification,gps_time tile.laz | spdelaunay2d -o tile.spm
+  Atoms with their radii, for the tetrahedra that are dual to their power diagram:
+      spfinalize --octree --radii protor 1abc.cif | spdelaunay3d --weights -o 1abc.spm
+  A coordinate reference system that the files state wrongly or not at all, with one for heights:
+      spfinalize --crs EPSG:25832+7837 tiles/*.laz | spdelaunay2d -o ground.spm
+  Points of space from compressed text:
+      spfinalize --octree scan.xyz.gz | spdelaunay3d -o scan.spm
+  Points and roads, whose vertices with elevations become points:
+      spfinalize --keep-class 2 --lines roads.gpkg tile.laz | spdelaunay2d -o ground.spm
+  The points of a district, without those inside of buildings:
+      spfinalize --clip district.shp --drop-inside buildings.gpkg tiles/*.laz -o district.spm
+  Flat lakes and rivers that fall; the same file makes their shores edges of the mesh:
+      spfinalize --flatten water.gpkg tile.laz | spdelaunay2d | spconstrain --lines water.gpkg -o flat.spm
+  A plan for many jobs on a cluster, from the headers of tiles alone (see spnode):
+      spfinalize --plan plan.json --keep-class 2 tiles/*.laz
+  Points for another machine, at a quarter of the bytes:
+      spfinalize --compress tile.laz | ssh host spdelaunay2d -o tile.spm
+  Particles as floats without a header, the files of two processes as one input:
+      spfinalize --octree --raw f32le rank0.bin rank1.bin -o particles.spm
+
+Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept,
+6 input of another version of spmesh, 7 complete but for points of inputs that were cut off (--salvage), 141 output closed by its reader.";
+
+/// The message after a failed allocation.
+const OUT_OF_MEMORY: &str = "spfinalize: not enough memory: give less --memory, or fewer --threads\n";
+
+/// Finalize points: tag each cell of a quadtree or octree after the last point in it
+///
+/// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, arrays of numpy (.npy), the
+/// vertices of PLY, OBJ or VTK (VTU, VTP, VTS or legacy), the atoms of PDB, mmCIF or XYZ of chemistry (those
+/// that tess3 takes by default), or numbers without a header (--raw), all of them plain or compressed (.gz),
+/// and writes a stream of points. Its tags name cells in which no later point lies. The points of a cell are
+/// held back and written together (chunked), unless --preserve is given. The input is read at least twice,
+/// and again if headers do not state its bounding box or if cells are crowded. Input that cannot be read
+/// again is spooled, as are decoded points where that is cheaper (--spool).
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = EXAMPLES)]
+pub struct Flags {
+    /// Files to read as one input; - is stdin, and the default
+    #[arg(value_name = "INPUT")]
+    inputs: Vec<PathBuf>,
+
+    /// Read the files listed in this file, one per line; - is stdin. Empty lines and lines that start with #
+    /// do not count
+    #[arg(long, value_name = "FILE")]
+    lof: Option<PathBuf>,
+
+    /// Read files of bare numbers, x, y and z of each point: a type of i8, u8, i16, u16, i32, u32, i64,
+    /// u64, f32 or f64 with its byte order, as in f32le or f64be
+    #[arg(long, value_name = "TYPE")]
+    raw: Option<RawType>,
+
+    /// Of LAS, LAZ, text or raw files that were cut off, take the whole points before the cut (of LAZ, whole
+    /// chunks), and exit with 7. A last line of text without a line end counts as cut
+    #[arg(long)]
+    salvage: bool,
+
+    /// File for the stream; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    plan: PlanFlags,
+
+    /// Take all occupied cells of this level as leaves; with --cell-points, the deepest level of leaves. 0 is
+    /// a single cell
+    #[arg(long, value_name = "K")]
+    level: Option<u8>,
+
+    #[arg(long, value_name = "N", help = format!("Divide cells that hold more points than this [default: {CELL_POINTS}]"), value_parser = clap::value_parser!(u64).range(1..))]
+    cell_points: Option<u64>,
+
+    /// Keep the order of the points and only insert tags
+    #[arg(long)]
+    preserve: bool,
+
+    /// Divide space with an octree: z is geometry, not elevation
+    #[arg(long)]
+    octree: bool,
+
+    /// Memory limit of the process; points beyond it wait in a temporary file (see --temp-dir)
+    #[arg(long, value_name = "SIZE", default_value = "512M", value_parser = parse_size)]
+    memory: u64,
+
+    /// Folder for temporary files [default: the system's]. The default may be in RAM (tmpfs): name a folder
+    /// on disk for big input without order
+    #[arg(long, value_name = "FOLDER")]
+    temp_dir: Option<PathBuf>,
+
+    /// Spool decoded points to a temporary file for later passes (see --temp-dir): where decoding again would
+    /// cost more and the disk has room, always, or never
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t = Spool::Auto)]
+    spool: Spool,
+
+    /// Threads that decode LAZ [default: one per core]; each takes a part of --memory. One more always reads
+    /// ahead
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Take attributes of the points along: their names, or all that every file has
+    #[arg(long, value_name = "NAMES|all", value_delimiter = ',')]
+    attributes: Vec<String>,
+
+    /// Round coordinates to a grid of these steps
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>)]
+    scale: Option<[f64; 3]>,
+
+    /// World coordinates of the origin of that grid [default: 0,0,0]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true, requires = "scale")]
+    offset: Option<[f64; 3]>,
+
+    #[command(flatten)]
+    compression: Compression,
+
+    #[command(flatten)]
+    crs: CrsFlag,
+
+    /// Print the counts of the run on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "text")]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+
+    #[command(flatten)]
+    points: PointFilters,
+
+    #[command(flatten)]
+    areas: AreaFlags,
+
+    #[command(flatten)]
+    text: TextFlags,
+
+    #[command(flatten)]
+    lines: LineFlags,
+
+    #[command(flatten)]
+    water: WaterFlags,
+
+    #[command(flatten)]
+    weights: WeightFlags,
+}
+
+/// When decoded points are kept for later passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Spool {
+    Auto,
+    Always,
+    Never,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// Everything that reading, finalizing and writing fail with.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    system::give_back_large_blocks();
+    if let Some(plan) = &flags.plan.plan {
+        return planning::make(&flags, plan);
+    }
+    let mut options = flags.options()?;
+    let weighing = flags.weights.load()?;
+    flags.lines.check(!flags.water.files().is_empty())?;
+    // Fail before the work if the output cannot be created.
+    let mut output = Output::create(&flags.output, true)?;
+    let paths = flags.paths()?;
+    let inputs = paths.iter().chain(&flags.lof).chain(flags.beside()).map(PathBuf::as_path);
+    let inputs = inputs.chain(flags.weights.file());
+    let mut outputs = vec![("--output", flags.output.as_path())];
+    outputs.extend(flags.lines.report.as_ref().map(|report| ("--report", report.as_path())));
+    check_apart(inputs, &outputs)?;
+    let report = flags.lines.create_report()?;
+    endings::check(&flags.output, &[endings::STREAM])?;
+    let input = Input::open(&paths, &flags.source_options(weighing.as_ref())?)?;
+    for message in input.notices() {
+        notice(TOOL, &flags.common, message);
+    }
+    let target = target_of(&input);
+    let (areas, messages) = flags.areas.read(&target)?;
+    let (network, water, changes) = flags.network(&target)?;
+    for message in messages.iter().chain(&changes.notices) {
+        notice(TOOL, &flags.common, message);
+    }
+    let mut watch = Watch { common: &flags.common, progress: None };
+    let (areas, levels) = flags.water.levels((&network, &water), (&input, areas), &target, &mut watch)?;
+    for message in &levels.notices {
+        watch.notice(message);
+    }
+    let added = flags.added(&network, &levels, &target);
+    let has_lines = !network.vertices.is_empty();
+    drop(network);
+    let selected = Selected::new(&input, &areas);
+    // Without polygons, no point takes a way round.
+    let points: &dyn Passes = if areas.keep_all() { &input } else { &selected };
+    let weighed = weighing.as_ref().map(|weighing| Weighed::new(points, &weighing.source)).transpose()?;
+    if let Some(weighed) = &weighed {
+        let named = |error: Error| error.of_input(input.name());
+        options.weighted = Some(weighed.weighted(&mut watch).map_err(named)?);
+    }
+    let points: &dyn Passes = weighed.as_ref().map_or(points, |weighed| weighed);
+    let stats = crate::finalize::run_with(points, &added, &options, &mut watch, &mut output)?;
+    drop(watch);
+    let has_water = !flags.water.files().is_empty();
+    write_report(report, &changes, has_water.then_some(&levels))?;
+    output.commit()?;
+    if let Some(message) = summary(&changes) {
+        notice(TOOL, &flags.common, &message);
+    }
+    let lines = LineStats {
+        has_lines,
+        water: flags.water.counts(&water, &levels),
+        points: added.len(),
+        replaced: added.replaced(),
+        changes: &changes,
+    };
+    let dropped = Drops { filters: input.dropped(), areas: selected.dropped() };
+    if let Some(message) = withheld_notice(&dropped.filters) {
+        notice(TOOL, &flags.common, &message);
+    }
+    if stats.points == 0 {
+        notice(TOOL, &flags.common, "no points: the input has none, or the filters keep none");
+    }
+    let lacking = stats.spilled_points - stats.cold_points;
+    if lacking > 0 {
+        let message = format!("{lacking} points waited in a temporary file, for lack of --memory");
+        notice(TOOL, &flags.common, &message);
+    }
+    match flags.stats {
+        Some(StatsFormat::Text) => spmesh_shell::say(&(stats_text(&stats, &dropped) + &lines.text())),
+        Some(StatsFormat::Json) => {
+            spmesh_shell::say(&format!("{}\n", lines.in_json(stats_json(&stats, &dropped))))
+        }
+        None => {}
+    }
+    let salvaged = input.salvaged();
+    if !salvaged.is_empty() {
+        anyhow::bail!(Error::new(ErrorKind::Salvaged, salvaged.join("; ")));
+    }
+    Ok(())
+}
+
+impl Flags {
+    fn options(&self) -> anyhow::Result<Options> {
+        let leaves = match (self.level, self.cell_points) {
+            (Some(level), None) => Leaves::Level(level),
+            (level_max, cell_points) => {
+                Leaves::Collapsed { cell_points: cell_points.unwrap_or(CELL_POINTS), level_max }
+            }
+        };
+        Ok(Options {
+            leaves,
+            order: if self.preserve { Order::Preserved } else { Order::Chunked },
+            budget: Budget::of_process(self.memory, self.threads())?,
+            thin: self.points.thin,
+            compress: self.compression.of_stream(),
+            temp_dir: self.temp_dir.clone(),
+            spooling: match self.spool {
+                Spool::Auto => Spooling::Auto,
+                Spool::Always => Spooling::Always,
+                Spool::Never => Spooling::Never,
+            },
+            weighted: None,
+        })
+    }
+
+    /// Lines and water, and what was changed about them.
+    fn network(&self, target: &Target) -> anyhow::Result<(Network, Water, Changes)> {
+        let of_plane = [("--lines", &self.lines.files[..]), ("--flatten", self.water.files())];
+        if let Some((flag, _)) = of_plane.iter().find(|(_, files)| self.octree && !files.is_empty()) {
+            anyhow::bail!(Error::usage(format!("{flag} needs points of the plane: leave out --octree")));
+        }
+        Ok(self.lines.read(self.water.files(), target)?.unwrap_or_default())
+    }
+
+    /// The vertices of lines and water that become points.
+    fn added(&self, network: &Network, levels: &Levels, target: &Target) -> AddedPoints {
+        let is_kept = |&point: &Point| {
+            self.points.bounds.is_none_or(|bounds| bounds.contains(target.coordinates.to_decimal(point)))
+        };
+        let points = (0..).zip(&network.vertices).filter_map(|(number, vertex)| {
+            let [x, y] = vertex.place;
+            Some([x, y, levels.elevations.get(&number).copied().or(vertex.z)?])
+        });
+        AddedPoints::new(points.filter(is_kept).collect())
+    }
+
+    fn threads(&self) -> usize {
+        self.threads.map_or_else(|| available_threads().get(), usize::from)
+    }
+
+    fn source_options(&self, weighing: Option<&Weighing>) -> Result<SourceOptions> {
+        let chosen = &self.attributes;
+        Ok(SourceOptions {
+            crs: self.crs.system()?,
+            reader: &SPFINALIZE,
+            attributes: match weighing {
+                Some(weighing) => weighing.with_own(chosen),
+                None => AttributeChoice::of_names(chosen),
+            },
+            radii: weighing.and_then(|weighing| weighing.radii.clone()),
+            filters: self.points.filters(),
+            bounds: self.points.bounds,
+            reach: None,
+            skip_invalid: self.points.skip_invalid,
+            invalid_advice: InvalidAdvice::SkipInvalid,
+            dims: if self.octree { 3 } else { 2 },
+            grid: self.scale.map(|scale| (scale, self.offset.unwrap_or([0.0; 3]))),
+            raw: self.raw,
+            text: self.text.options(),
+            salvage: self.salvage,
+            temp_dir: self.temp_dir.clone(),
+            threads: NonZeroUsize::new(self.threads()),
+            ..SourceOptions::default()
+        })
+    }
+
+    fn paths(&self) -> anyhow::Result<Vec<PathBuf>> {
+        let mut paths = self.inputs.clone();
+        let stdin = Path::new("-");
+        if let Some(list) = &self.lof {
+            paths.extend(read_list(list)?);
+            if list == stdin && paths.iter().any(|path| path == stdin) {
+                anyhow::bail!(Error::usage(
+                    "the list of files and one of the files cannot both be stdin (-)"
+                ));
+            }
+        } else if paths.is_empty() {
+            paths.push(PathBuf::from("-"));
+        }
+        let beside = self.beside().filter(|path| *path == stdin).count();
+        let others = paths.iter().chain(&self.lof).filter(|path| *path == stdin).count();
+        if beside > 1 || (beside == 1 && others > 0) {
+            let message = "stdin (-) can be only one of points, lines, polygons and the list of files";
+            anyhow::bail!(Error::usage(message));
+        }
+        Ok(paths)
+    }
+
+    /// Files beside those of points.
+    fn beside(&self) -> impl Iterator<Item = &PathBuf> {
+        self.lines.files.iter().chain(self.areas.files()).chain(self.water.files())
+    }
+}
+
+/// Shows progress and notices on stderr.
+struct Watch<'a> {
+    common: &'a Common,
+    progress: Option<Progress>,
+}
+
+impl Observer for Watch<'_> {
+    fn pass(&mut self, pass: Pass, total: Option<u64>) {
+        self.progress = None;
+        let start = if pass.is_output() { Progress::new } else { Progress::before_output };
+        self.progress = Some(start(self.common, pass.name(), total));
+    }
+
+    fn done(&mut self, points: u64) {
+        if let Some(progress) = &mut self.progress {
+            progress.set(points);
+        }
+    }
+
+    fn notice(&mut self, message: &str) {
+        notice(TOOL, self.common, message);
+    }
+}
+
+/// What lines and polygons are read for.
+fn target_of(input: &Input) -> Target {
+    let Description { coordinates, has_elevation, ref crs, .. } = *input.description();
+    Target { coordinates, crs: crs.clone(), has_elevation }
+}
+
+fn withheld_notice(dropped: &Dropped) -> Option<String> {
+    let count = dropped.of(DropReason::Withheld);
+    let points = if count == 1 { "point" } else { "points" };
+    (count > 0).then(|| format!("{count} withheld {points} dropped; --keep-withheld keeps them"))
+}

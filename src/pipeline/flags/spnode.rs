@@ -1,0 +1,208 @@
+//! `spnode`: the jobs of a plan.
+
+mod collect;
+mod make;
+mod outputs;
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::plan::{Node, Plan};
+use crate::reduce::Duplicates;
+use spmesh_base::error::{ErrorKind, Result};
+use spmesh_base::system;
+use spmesh_shell::{Common, parse_size, say, threads};
+
+const TOOL: &str = "spnode";
+
+const EXAMPLES: &str = "\
+Examples:
+  Plan from the headers of tiles, make all nodes one after the other, and collect them into one mesh:
+      spfinalize --plan plan.json --keep-class 2 tiles/*.laz
+      spnode list plan.json | cut -f 1 | xargs spnode run plan.json -d parts
+      spnode collect plan.json -d parts -o ground.json
+      spdem --step 1 ground.json -o terrain.tif
+  The leaves as one job array of Slurm, and later the nodes of the next stage:
+      sbatch --array=0-999 --wrap 'spnode run plan.json $SLURM_ARRAY_TASK_ID -d parts'
+  The raster of one part, in the job that made it:
+      spnode run plan.json 17 -d parts && spdem --step 1 parts/000017.spm -o dem/000017.tif
+  The parts as one stream without parts:
+      spconvert ground.json -o ground.spm
+
+Exit codes: 0 success, 1 I/O failure, 2 usage, or files that changed since the plan was made, 3 malformed input, or \
+points that are not accounted for, 5 not enough memory, 6 input of another version of spmesh.";
+
+const OUT_OF_MEMORY: &str =
+    "spnode: not enough memory: take fewer --threads, or plan with fewer --leaf-points\n";
+
+/// Make one part of a mesh that many jobs make, on one machine or on a cluster
+///
+/// spfinalize --plan divides the box of all points into leaves. A leaf triangulates its points; a node above it joins
+/// what its children left. Each node writes three files into the folder: its part of the mesh (000017.spm, a stream
+/// that other programs read), what it leaves to the node above (000017.rest.spm), and at last its report
+/// (000017.json). A node that is complete is not made again. Jobs need nothing but the plan, the points and the
+/// folder, and run in any order in which children come before their parents: scripts/cluster has them for Snakemake,
+/// Slurm and GNU parallel.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = EXAMPLES)]
+pub struct Flags {
+    #[command(subcommand)]
+    action: Action,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// List the nodes: number, stage, kind, children, expected points, separated by tabs
+    List(ListFlags),
+    /// Make nodes, unless they are complete
+    Run(RunFlags),
+    /// Check that all nodes are complete and account for every point, and write the manifest of the mesh
+    Collect(collect::Flags),
+}
+
+#[derive(Debug, Args)]
+struct ListFlags {
+    /// The plan of spfinalize --plan
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+
+    /// Only the nodes of this stage: 0 for leaves
+    #[arg(long, value_name = "S")]
+    stage: Option<u32>,
+
+    /// Print the first and the last node of each stage instead: stage, first, last
+    #[arg(long, conflicts_with = "stage")]
+    stages: bool,
+}
+
+#[derive(Debug, Args)]
+struct RunFlags {
+    /// The plan of spfinalize --plan
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+
+    /// Numbers of nodes, which are made one after the other
+    #[arg(value_name = "NODE", required = true)]
+    nodes: Vec<u32>,
+
+    /// Make nodes again that are complete
+    #[arg(long)]
+    force: bool,
+
+    /// Elevation of a vertex where points coincide in x and y; the same for all nodes
+    #[arg(long, value_enum, default_value_t = Policy::First, value_name = "POLICY")]
+    duplicates: Policy,
+
+    #[command(flatten)]
+    work: WorkFlags,
+}
+
+/// How nodes are made.
+#[derive(Debug, Args)]
+struct WorkFlags {
+    /// Folder for the parts; it is made if it does not exist
+    #[arg(short = 'd', long, value_name = "FOLDER")]
+    dir: PathBuf,
+
+    /// Threads of a node [default: one per core, at most 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Memory for points of a leaf that wait; others wait in a temporary file
+    #[arg(long, value_name = "SIZE", default_value = "512M", value_parser = parse_size)]
+    memory: u64,
+
+    /// Folder for temporary files [default: the system's]
+    #[arg(long, value_name = "FOLDER")]
+    temp_dir: Option<PathBuf>,
+
+    /// Compress parts and residuals
+    #[arg(long)]
+    compress: bool,
+}
+
+impl WorkFlags {
+    fn threads(&self) -> NonZeroUsize {
+        threads(self.threads)
+    }
+}
+
+/// Which elevation survives where points coincide.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Policy {
+    /// The elevation of the point that comes first
+    First,
+    /// The lowest elevation
+    Lowest,
+    /// The highest elevation
+    Highest,
+    /// The mean elevation
+    Mean,
+    /// Coinciding points are an error
+    Error,
+}
+
+impl Policy {
+    fn duplicates(self) -> Duplicates {
+        match self {
+            Policy::First => Duplicates::First,
+            Policy::Lowest => Duplicates::Lowest,
+            Policy::Highest => Duplicates::Highest,
+            Policy::Mean => Duplicates::Mean,
+            Policy::Error => Duplicates::Error,
+        }
+    }
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// Everything that reading points, triangulating and writing fail with.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    match &flags.action {
+        Action::List(action) => Ok(list(action)?),
+        Action::Run(action) => {
+            let plan = Plan::read(&action.plan)?;
+            let maker = make::Maker::new(&plan, &action.work, action.duplicates, &flags.common)?;
+            action.nodes.iter().try_for_each(|&number| plan.node(number).map(|_| ()))?;
+            action.nodes.iter().try_for_each(|&number| maker.run(number, action.force))
+        }
+        Action::Collect(action) => collect::run(action, &flags.common),
+    }
+}
+
+fn list(flags: &ListFlags) -> Result<()> {
+    let plan = Plan::read(&flags.plan)?;
+    if flags.stages {
+        let lines =
+            (0..).zip(&plan.stages).map(|(stage, [first, last])| format!("{stage}\t{first}\t{last}\n"));
+        return print(&lines.collect::<String>());
+    }
+    let nodes = plan.nodes.iter().filter(|node| flags.stage.is_none_or(|stage| stage == node.stage));
+    print(&nodes.map(line_of).collect::<String>())
+}
+
+fn line_of(node: &Node) -> String {
+    let children: Vec<String> = node.children.iter().map(u32::to_string).collect();
+    let children = if children.is_empty() { "-".to_string() } else { children.join(",") };
+    format!("{}\t{}\t{}\t{children}\t{}\n", node.number, node.stage, node.kind_name(), node.points)
+}
+
+fn print(text: &str) -> Result<()> {
+    use std::io::Write;
+    let mut output = spmesh_base::output::Output::create(std::path::Path::new("-"), false)?;
+    output.write_all(text.as_bytes()).map_err(|e| spmesh_base::error::Error::io("writing", e))?;
+    output.commit()
+}
+
+fn tell(common: &Common, message: &str) {
+    if !common.quiet {
+        say(&format!("{TOOL}: {message}\n"));
+    }
+}

@@ -1,0 +1,127 @@
+//! The files of a node, and whether they are complete.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::plan::{FileSize, Node, NodeReport, Plan, hash_of_file};
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_shell::open_stream;
+
+/// The folder of all parts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Folder<'a> {
+    pub(super) path: &'a Path,
+    pub(super) plan: &'a Plan,
+}
+
+/// Name of the part of a node.
+pub(super) fn mesh_name(number: u32) -> String {
+    format!("{number:06}.spm")
+}
+
+/// Name of the residual of a node.
+pub(super) fn residual_name(number: u32) -> String {
+    format!("{number:06}.rest.spm")
+}
+
+/// Name of the report of a node.
+pub(super) fn report_name(number: u32) -> String {
+    format!("{number:06}.json")
+}
+
+impl Folder<'_> {
+    pub(super) fn mesh(&self, number: u32) -> PathBuf {
+        self.path.join(mesh_name(number))
+    }
+
+    pub(super) fn residual(&self, number: u32) -> PathBuf {
+        self.path.join(residual_name(number))
+    }
+
+    pub(super) fn report_path(&self, number: u32) -> PathBuf {
+        self.path.join(report_name(number))
+    }
+
+    /// The report of a node, if it is one of this plan.
+    ///
+    /// # Errors
+    /// I/O, if it is there and cannot be read.
+    pub(super) fn report(&self, number: u32) -> Result<Option<NodeReport>> {
+        let report = NodeReport::read(&self.report_path(number))?;
+        Ok(report.filter(|report| report.plan == self.plan.id() && report.node == number))
+    }
+
+    fn has(&self, file: &FileSize) -> bool {
+        fs::metadata(self.path.join(&file.file))
+            .is_ok_and(|found| found.is_file() && found.len() == file.bytes)
+    }
+
+    /// The report of a node whose part is there.
+    ///
+    /// # Errors
+    /// As [`Folder::report`].
+    pub(super) fn with_mesh(&self, number: u32) -> Result<Option<NodeReport>> {
+        Ok(self.report(number)?.filter(|report| self.has(&report.mesh)))
+    }
+
+    /// The report of a node that need not be made: its part is there, made of the residuals that its children have
+    /// left; and its residual is, or the part of its parent, which has used it.
+    ///
+    /// # Errors
+    /// As [`Folder::report`].
+    pub(super) fn complete(&self, node: &Node) -> Result<Option<NodeReport>> {
+        let Some(report) = self.with_mesh(node.number)? else { return Ok(None) };
+        if report.joined != self.residual_hashes(node)? {
+            return Ok(None);
+        }
+        let is_used = match (&report.residual, node.parent) {
+            (Some(residual), _) if self.has(residual) => true,
+            (_, Some(parent)) => self.with_mesh(parent)?.is_some(),
+            (_, None) => true,
+        };
+        Ok(Some(report).filter(|_| is_used))
+    }
+
+    /// Whether the residual of a node is there, as it was written.
+    ///
+    /// # Errors
+    /// As [`Folder::report`].
+    pub(super) fn has_whole_residual(&self, number: u32) -> Result<bool> {
+        let written = self.report(number)?.and_then(|report| report.residual).map(|residual| residual.hash);
+        Ok(written.is_some() && hash_of_file(&self.residual(number)).ok() == written)
+    }
+
+    /// The hashes of the residuals that a node joins, as the reports of its children state them.
+    ///
+    /// # Errors
+    /// As [`Folder::report`].
+    pub(super) fn residual_hashes(&self, node: &Node) -> Result<Vec<String>> {
+        let hash = |&child: &u32| -> Result<String> {
+            let residual = self.report(child)?.and_then(|report| report.residual);
+            Ok(residual.map(|residual| residual.hash).unwrap_or_default())
+        };
+        node.children.iter().map(hash).collect()
+    }
+
+    /// What is wrong with the part of a node, if anything: it is read to its end.
+    ///
+    /// # Errors
+    /// Failures of the machine rather than of the file.
+    pub(super) fn damage_of(&self, node: &Node) -> Result<Option<Error>> {
+        let read = || -> Result<()> {
+            let path = self.mesh(node.number);
+            let mut reader = open_stream(&path)?;
+            if reader.header().part != Some(self.plan.part(node)) {
+                let message = format!("this is not part {} of the plan", node.number);
+                return Err(Error::malformed(message).of_input(path.display().to_string()));
+            }
+            while reader.next_event()?.is_some() {}
+            Ok(())
+        };
+        match read() {
+            Ok(()) => Ok(None),
+            Err(error) if error.kind() == ErrorKind::Memory => Err(error),
+            Err(error) => Ok(Some(error)),
+        }
+    }
+}

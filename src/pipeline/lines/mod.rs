@@ -1,0 +1,203 @@
+//! Breaklines: from lines in files to a planar network on the grid of a stream.
+//!
+//! Steps: `io` reads the lines; their systems are compared with that of the points (`systems`); gaps in
+//! elevations are filled and long parts divided (`prepare`); coordinates are rounded to the grid of the
+//! stream (`grid`); and `geometry::noding` makes crossings and overlaps common vertices.
+
+mod areas;
+mod banks;
+mod changes;
+mod features;
+mod grid;
+mod levels;
+mod numbered;
+mod polygons;
+mod prepare;
+mod report;
+mod rivers;
+mod sections;
+mod stations;
+mod systems;
+mod water;
+
+use std::borrow::Cow;
+use std::path::PathBuf;
+
+use spmesh_base::error::{Error, Result};
+use spmesh_base::limits::{LINE_CROSSINGS_MAX, check_line_vertices};
+use spmesh_delaunay::network::{Network, NetworkVertex};
+use spmesh_delaunay::noding::{LineVertex, Noded, NodingOptions, node_lines};
+use spmesh_formats::source::{Breaklines, name_of, read_breaklines};
+use spmesh_stream::{Coordinates, Crs, Header};
+
+pub use areas::{Areas, Sources};
+pub use changes::{Change, ChangeKind, Changes};
+use grid::Grid;
+pub use levels::Levels;
+use numbered::Bent;
+pub use polygons::read_polygons;
+pub use report::write_report;
+pub use water::{Water, WaterPolygon};
+
+/// The stream that lines are for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// Encoding of its coordinates.
+    pub coordinates: Coordinates,
+    /// Its system.
+    pub crs: Crs,
+    /// Whether its points have elevations. If not, those of lines are ignored.
+    pub has_elevation: bool,
+}
+
+impl Target {
+    /// The target of lines for a stream with this header.
+    #[must_use]
+    pub fn of(header: &Header) -> Target {
+        let Header { coordinates, has_elevation, ref crs, .. } = *header;
+        Target { coordinates, crs: crs.clone(), has_elevation }
+    }
+}
+
+/// How lines are read.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Options {
+    /// Longest part of a line, in world units; longer parts are divided evenly.
+    pub densify: Option<f64>,
+    /// Whether changes are listed, and not counted alone.
+    pub lists_changes: bool,
+}
+
+/// Reads the lines of files as one network. Lines are numbered over all files, in their order. Between the
+/// ends of two banks of a river are lines, too, behind all others.
+///
+/// The network depends on the set of lines alone, but for the numbers of lines. Its coordinates are those
+/// that the stream stores. If these are f64, they are rounded to decimals: as many places as leave fewer than
+/// 2^42 steps up to the greatest magnitude of the lines, 6 for coordinates in millions.
+///
+/// # Errors
+/// Those of reading; usage, if the system of a file differs from that of the stream, or a coordinate is
+/// beyond the grid of the stream; malformed, if there are too many vertices or crossings.
+pub fn read(paths: &[PathBuf], target: &Target, options: &Options) -> Result<(Network, Changes)> {
+    let sources = Sources { lines: paths, ..Sources::default() };
+    read_all(&sources, target, options).map(|(network, _, _, changes)| (network, changes))
+}
+
+/// Reads lines as [`read`], and the polygons of areas, whose rings are lines, too.
+///
+/// # Errors
+/// As there; malformed, if an area has no polygon.
+pub fn read_with_areas(
+    sources: &Sources,
+    target: &Target,
+    options: &Options,
+) -> Result<(Network, Areas, Changes)> {
+    read_all(sources, target, options).map(|(network, areas, _, changes)| (network, areas, changes))
+}
+
+/// Reads lines as [`read`], and lakes and rivers, whose shores, banks and centre lines are lines, too.
+///
+/// # Errors
+/// As there; malformed, if a feature is neither a polygon nor the centre line or a bank of a river, or banks
+/// bound no area; usage, if there is water and points have no elevation.
+pub fn read_with_water(
+    sources: &Sources,
+    target: &Target,
+    options: &Options,
+) -> Result<(Network, Water, Changes)> {
+    read_all(sources, target, options).map(|(network, _, water, changes)| (network, water, changes))
+}
+
+fn read_all(
+    sources: &Sources,
+    target: &Target,
+    options: &Options,
+) -> Result<(Network, Areas, Water, Changes)> {
+    if options.densify.is_some_and(|longest| !(longest > 0.0 && longest.is_finite())) {
+        return Err(Error::usage("--densify, the longest part of a line, must be a positive number"));
+    }
+    let mut changes = Changes::new(options.lists_changes);
+    let mut files = Vec::new();
+    for (role, path) in sources.files() {
+        let mut file = read_breaklines(path)?;
+        let name = name_of(path);
+        changes.notices.extend(systems::check(&name, &file.crs, &target.crs)?);
+        if !target.has_elevation {
+            file.lines.iter_mut().for_each(|line| line.elevations.fill(None));
+        }
+        files.push((role, name, file));
+    }
+    banks::close(&mut files);
+    let grid = Grid::of(target, files.iter().flat_map(|(_, _, file)| &file.lines));
+    changes.notices.extend(grid.notice());
+    let rings = areas::rings(&files)?;
+    let features = features::features(&files, target)?;
+    let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
+    let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
+    let noding = noding(target);
+    let mut note = |change, line, place| changes.note(ChangeKind::of(change), line, || grid.world(place));
+    if rings.is_empty() && features.is_empty() {
+        let noded =
+            node_lines(Cow::Owned(vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
+        return Ok((network(noded, &grid), Areas::default(), Water::default(), changes));
+    }
+    let noded =
+        node_lines(Cow::Borrowed(&vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
+    let bent = Bent::new(&noded, &vertices, &starts);
+    let (areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
+    Ok((network(noded, &grid), areas, water, changes))
+}
+
+fn noding(target: &Target) -> NodingOptions {
+    NodingOptions {
+        round_elevations: matches!(target.coordinates, Coordinates::I32 { .. }),
+        crossings_max: LINE_CROSSINGS_MAX,
+    }
+}
+
+/// The vertices of all lines on the grid, and the number of the first one of each line.
+fn stored(
+    files: Vec<(String, Breaklines)>,
+    grid: &Grid,
+    options: &Options,
+    changes: &mut Changes,
+) -> Result<(Vec<LineVertex>, Vec<u32>)> {
+    let (mut vertices, mut starts) = (Vec::new(), Vec::new());
+    for (name, file) in files {
+        for line in file.lines {
+            let number = starts.len() as u32;
+            starts.push(vertices.len() as u32);
+            let position = line.position.clone();
+            let fault = |error: Error| error.at(&*position).of_input(name.clone());
+            let line = prepare::prepare(line, number, options.densify, changes).map_err(fault)?;
+            check_line_vertices(vertices.len() + line.len()).map_err(|error| match options.densify {
+                Some(_) => fault(error.noting("divide parts less: --densify")),
+                None => fault(error),
+            })?;
+            let first = vertices.len();
+            for &(place, z) in &line {
+                vertices.push(grid.vertex(place, z, number, changes).map_err(fault)?);
+            }
+            grid.check_length(&line, &vertices[first..]).map_err(fault)?;
+        }
+    }
+    Ok((vertices, starts))
+}
+
+fn network(noded: Noded, grid: &Grid) -> Network {
+    let vertex = |vertex: LineVertex| NetworkVertex { place: grid.stored(vertex.place), z: vertex.z };
+    let vertices = noded.vertices.into_iter().map(vertex).collect();
+    Network { vertices, segments: noded.segments, step: grid.step() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Noding itself is tested with fewer crossings, at both sides.
+    #[test]
+    fn crossings_are_limited() {
+        let target = Target { coordinates: Coordinates::F64, crs: Crs::Unknown, has_elevation: true };
+        assert_eq!(noding(&target).crossings_max, LINE_CROSSINGS_MAX);
+    }
+}

@@ -1,0 +1,313 @@
+//! Lakes and rivers: polygons whose shores become flat, or fall downstream.
+//!
+//! Shores are noded with all other lines, so `spconstrain` finds the same vertices. The levels are found in
+//! `levels`.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::areas::odd;
+use super::banks::check;
+use super::features::{Feature, FeatureKind};
+use super::grid::Grid;
+use super::numbered::Bent;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::network::Network;
+use spmesh_stream::model::points::Point2;
+
+/// Polygons of water, and the courses of rivers, as parts of a network.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Water {
+    /// The polygons, of which two banks make one.
+    pub polygons: Vec<WaterPolygon>,
+    /// The rivers, in the order of their names.
+    pub(crate) rivers: Vec<River>,
+}
+
+/// A polygon of water.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct WaterPolygon {
+    /// The segments of its border.
+    pub(crate) segments: Vec<u32>,
+    /// Of a lake: its level, if the file states one.
+    pub(crate) level: Option<Stated>,
+    /// Of a river: its number.
+    pub(crate) river: Option<usize>,
+    /// Number of its first line.
+    pub(crate) line: u32,
+    /// Position in the file, for messages.
+    pub(crate) position: Place,
+}
+
+/// A level that a file states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stated {
+    /// As stored.
+    pub(crate) level: f64,
+    /// Whether a property states it, and not third coordinates.
+    pub(crate) by_property: bool,
+}
+
+/// A river.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct River {
+    pub(crate) name: String,
+    pub(crate) course: Course,
+    /// Whether the lines of its course state elevations.
+    pub(crate) is_hard: bool,
+    /// Number of the first of these lines.
+    pub(crate) line: u32,
+    pub(crate) position: Place,
+}
+
+/// What leads a river downstream, as vertices of the network.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Course {
+    Centre(Vec<u32>),
+    Banks {
+        /// The left one and the right one.
+        banks: [Vec<u32>; 2],
+        /// What closes the river above and below, from left to right; empty where the banks meet.
+        ends: [Vec<u32>; 2],
+    },
+}
+
+/// A file and a position in it, for messages.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) file: String,
+    pub(crate) position: Arc<str>,
+}
+
+impl Place {
+    pub(crate) fn fault(&self, message: impl Into<String>) -> Error {
+        Error::malformed(message).at(&*self.position).of_input(&self.file)
+    }
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.file, self.position)
+    }
+}
+
+impl WaterPolygon {
+    /// Whether its level must be found from points near its shore. `water` has the polygon.
+    pub(crate) fn needs_points(&self, water: &Water) -> bool {
+        match self.river {
+            None => self.level.is_none(),
+            Some(river) => !water.rivers[river].is_hard,
+        }
+    }
+
+    /// Its segments, as places of their ends.
+    pub(crate) fn edges<'n>(&'n self, network: &'n Network) -> impl Iterator<Item = [Point2; 2]> + 'n {
+        self.segments.iter().map(|&segment| network.places(&network.segments[segment as usize]))
+    }
+}
+
+impl Water {
+    /// The edges of all polygons, with their numbers.
+    #[must_use]
+    pub fn edges(&self, network: &Network) -> Vec<(u32, [Point2; 2])> {
+        let numbered = (0..).zip(&self.polygons);
+        numbered
+            .flat_map(|(number, polygon)| polygon.edges(network).map(move |edge| (number, edge)))
+            .collect()
+    }
+
+    /// Of each polygon, whether its level must be found from points near its shore.
+    #[must_use]
+    pub fn need_points(&self) -> Vec<bool> {
+        self.polygons.iter().map(|polygon| polygon.needs_points(self)).collect()
+    }
+
+    /// Numbers of lakes and of rivers.
+    #[must_use]
+    pub fn counts(&self) -> [u64; 2] {
+        let lakes = self.polygons.iter().filter(|polygon| polygon.river.is_none()).count();
+        [lakes as u64, self.rivers.len() as u64]
+    }
+
+    /// Enters a river, and its polygon if it has banks.
+    fn enter(&mut self, name: &str, lines: &Lines, bent: &Bent, grid: &Grid) -> Result<()> {
+        let banks = lines.banks(name)?;
+        let of_banks = banks.map(|banks| of_banks(banks, &lines.ends, bent, grid)).transpose()?;
+        let (course, segments) = of_banks.unzip();
+        let (course, leading) = lines.course(name, course.zip(banks), bent)?;
+        let Feature { line, ref position, .. } = *leading[0];
+        if let Some(segments) = segments {
+            let (river, position) = (Some(self.rivers.len()), position.clone());
+            self.polygons.push(WaterPolygon { segments, level: None, river, line, position });
+        }
+        let (name, is_hard) = (name.to_string(), leading.iter().any(|line| line.is_hard));
+        self.rivers.push(River { name, course, is_hard, line, position: position.clone() });
+        Ok(())
+    }
+}
+
+/// Water after noding.
+///
+/// # Errors
+/// Malformed, if a river lacks one of its lines or polygons or has one too many, or its banks bound no area.
+pub(crate) fn water(features: &[Feature], bent: &Bent, grid: &Grid) -> Result<Water> {
+    let mut rivers: BTreeMap<&str, Lines> = BTreeMap::new();
+    for feature in features {
+        if let Some(river) = feature.river() {
+            rivers.entry(river).or_default().enter(feature)?;
+        }
+    }
+    let mut water = Water::default();
+    for (name, lines) in &rivers {
+        water.enter(name, lines, bent, grid)?;
+    }
+    let rings: Vec<&Feature> = features.iter().filter(|feature| feature.polygon().is_some()).collect();
+    for same in rings.chunk_by(|a, b| a.polygon() == b.polygon()) {
+        let number = |river: &str| rivers.keys().position(|name| *name == river);
+        water.polygons.push(polygon(same, same[0].river().and_then(number), bent)?);
+    }
+    Ok(water)
+}
+
+/// The features of a river.
+#[derive(Default)]
+struct Lines<'f> {
+    centre: Option<&'f Feature>,
+    banks: [Option<&'f Feature>; 2],
+    ends: Vec<&'f Feature>,
+    /// A polygon of it.
+    polygon: Option<&'f Feature>,
+}
+
+impl<'f> Lines<'f> {
+    fn enter(&mut self, feature: &'f Feature) -> Result<()> {
+        let (own, what) = match feature.kind {
+            FeatureKind::Ring(_) => {
+                self.polygon.get_or_insert(feature);
+                return Ok(());
+            }
+            FeatureKind::End => {
+                self.ends.push(feature);
+                return Ok(());
+            }
+            FeatureKind::Centre => (&mut self.centre, "centre line"),
+            FeatureKind::Bank(bank) => {
+                (&mut self.banks[bank as usize], ["left bank", "right bank"][bank as usize])
+            }
+        };
+        if own.replace(feature).is_some() {
+            let name = feature.river().unwrap_or_default();
+            let message = format!("the river {name:?} has a second {what}, expected one: join them");
+            return Err(feature.position.fault(message));
+        }
+        Ok(())
+    }
+
+    /// Both banks; `None` if the river has a polygon.
+    fn banks(&self, name: &str) -> Result<Option<[&'f Feature; 2]>> {
+        match (self.banks, self.polygon) {
+            ([Some(bank), _] | [_, Some(bank)], Some(_)) => Err(bank.position.fault(format!(
+                "the river {name:?} has a polygon and a bank: remove its polygons, or its banks"
+            ))),
+            ([Some(left), Some(right)], None) => Ok(Some([left, right])),
+            ([Some(bank), None] | [None, Some(bank)], None) => {
+                let is_left = self.banks[0].is_some();
+                let (own, other) = if is_left { ("left", "right") } else { ("right", "left") };
+                Err(bank.position.fault(format!(
+                    "the river {name:?} has a {own} bank alone: add a line of this river with bank {other:?}"
+                )))
+            }
+            ([None, None], _) => Ok(None),
+        }
+    }
+
+    /// What leads the river downstream, and the features of it: the centre line, or else the banks.
+    fn course(
+        &self,
+        name: &str,
+        banks: Option<(Course, [&'f Feature; 2])>,
+        bent: &Bent,
+    ) -> Result<(Course, Vec<&'f Feature>)> {
+        let fault = |feature: &Feature, message: String| Err(feature.position.fault(message));
+        match (self.centre, banks, self.polygon) {
+            (Some(centre), None, None) => {
+                fault(centre, format!("the river {name:?} has no polygon: add one, or its two banks"))
+            }
+            (Some(centre), ..) => {
+                let (vertices, _) = chain(centre, bent)?;
+                if vertices.len() < 2 {
+                    let message = "a centre line is at one place of the grid, expected two at least";
+                    return fault(centre, message.into());
+                }
+                Ok((Course::Centre(vertices), vec![centre]))
+            }
+            (None, Some((course, banks)), _) => Ok((course, banks.to_vec())),
+            (None, None, Some(polygon)) => fault(
+                polygon,
+                format!("the river {name:?} has no centre line: add a line with the property river {name:?}"),
+            ),
+            (None, None, None) => Err(Error::malformed(format!("the river {name:?} was lost"))),
+        }
+    }
+}
+
+/// The course along two banks, and the segments around the river. `closing` are the lines between their ends.
+///
+/// # Errors
+/// Malformed, if they are not the border of an area.
+fn of_banks(
+    features: [&Feature; 2],
+    closing: &[&Feature],
+    bent: &Bent,
+    grid: &Grid,
+) -> Result<(Course, Vec<u32>)> {
+    let [(left, mut segments), (right, of_right)] = [chain(features[0], bent)?, chain(features[1], bent)?];
+    segments.extend(of_right);
+    let mut ends = [Vec::new(), Vec::new()];
+    for end in closing {
+        let (vertices, of_end) = chain(end, bent)?;
+        segments.extend(of_end);
+        let is_lower = vertices[0] != left[0];
+        ends[usize::from(is_lower)] = vertices;
+    }
+    let place = |vertex: u32| bent.noded.vertices[vertex as usize].place;
+    check([&left, &right], ends.each_ref().map(|end| &end[..]), place, |place| grid.world(place))
+        .map_err(|(bank, message)| features[bank as usize].position.fault(message))?;
+    Ok((Course::Banks { banks: [left, right], ends }, odd(segments)))
+}
+
+/// The vertices and the segments of a line, in its order.
+fn chain(feature: &Feature, bent: &Bent) -> Result<(Vec<u32>, Vec<u32>)> {
+    let segments = segments(feature, bent)?;
+    let start = bent.vertices(feature.line)[0].place;
+    let Ok(first) = bent.noded.vertices.binary_search_by_key(&start, |vertex| vertex.place) else {
+        return Err(feature.position.fault("the line was lost"));
+    };
+    let mut vertices = vec![first as u32];
+    for &segment in &segments {
+        let [a, b] = bent.noded.segments[segment as usize].ends;
+        vertices.push(if vertices[vertices.len() - 1] == a { b } else { a });
+    }
+    Ok((vertices, segments))
+}
+
+/// The polygon of some rings.
+fn polygon(rings: &[&Feature], river: Option<usize>, bent: &Bent) -> Result<WaterPolygon> {
+    let mut border = Vec::new();
+    for ring in rings {
+        border.extend(segments(ring, bent)?);
+    }
+    let &Feature { level, line, ref position, .. } = rings[0];
+    if let Some(other) =
+        rings.iter().find(|ring| ring.level.map(|own| own.level) != level.map(|own| own.level))
+    {
+        let message = "the shores of islands have another elevation than that of the lake";
+        return Err(other.position.fault(message));
+    }
+    Ok(WaterPolygon { segments: odd(border), level, river, line, position: position.clone() })
+}
+
+/// The segments of a line, in its order.
+fn segments(feature: &Feature, bent: &Bent) -> Result<Vec<u32>> {
+    bent.segments(feature.line).map_err(|_| feature.position.fault("the line was lost"))
+}

@@ -1,0 +1,305 @@
+//! The plan as a file.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use data_encoding::HEXLOWER;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::check;
+use super::crs::PlannedCrs;
+use super::files::PlannedFile;
+use super::node::Node;
+use super::tree::{Division, Share};
+use spmesh_base::error::{Error, Result};
+use spmesh_base::limits::{self, PLAN_LEN_MAX};
+use spmesh_formats::source::{Description, Extent, Survey};
+use spmesh_stream::{Coordinates, Header, Kind, PartName};
+
+/// What a plan says of itself, so that no other JSON is taken for one.
+const FORMAT: &str = "spmesh plan";
+
+/// Version of the layout.
+const VERSION: u32 = 1;
+
+/// The extent of files that are not read for points.
+const NO_POINTS: Extent = Extent { points: 0, bounds: None };
+
+/// The grid of integer coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Grid {
+    scale: [f64; 3],
+    offset: [f64; 3],
+}
+
+/// How to make a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Planning<'a> {
+    /// A box is divided if more points than this are expected in it.
+    pub leaf_points: u64,
+    /// Arguments of `spfinalize` that say which points count, and how files are read.
+    pub arguments: &'a [String],
+    /// Files beside those of points that say which points count.
+    pub beside: &'a [PathBuf],
+}
+
+/// A plan: the files, and the tree of nodes that triangulates them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plan {
+    format: String,
+    version: u32,
+    /// A hash of all else, in hexadecimal digits.
+    id: String,
+    /// Arguments of `spfinalize` that say which points count, and how files are read.
+    pub arguments: Vec<String>,
+    dims: u8,
+    /// The grid of coordinates; none if they are numbers of 64 bits in world units.
+    grid: Option<Grid>,
+    elevation: bool,
+    crs: PlannedCrs,
+    /// Names of the attributes of points.
+    pub attributes: Vec<String>,
+    /// The number of points above which a box was divided.
+    pub leaf_points: u64,
+    /// Points of all files.
+    pub points: u64,
+    /// First and last node of each stage.
+    pub stages: Vec<[u32; 2]>,
+    /// Files beside those of points that say which points count, such as polygons.
+    pub beside: Vec<PlannedFile>,
+    /// The nodes by number.
+    pub nodes: Vec<Node>,
+    /// The files, in the order in which points are read.
+    pub files: Vec<PlannedFile>,
+}
+
+/// Makes a plan for surveyed files, which are at `paths`.
+///
+/// # Errors
+/// Usage, if there would be too many nodes, or a file is no regular one; I/O, if one is gone.
+pub fn plan_of(survey: &Survey, paths: &[PathBuf], planning: Planning) -> Result<Plan> {
+    let Description { coordinates, dims, has_elevation, ref crs, ref attributes, .. } = survey.description;
+    let pairs = paths.iter().zip(&survey.extents);
+    let files = pairs.map(|(path, extent)| PlannedFile::new(path, extent)).collect::<Result<Vec<_>>>()?;
+    let shares: Vec<Share> = (0..)
+        .zip(&survey.extents)
+        .filter_map(|(file, extent)| Some(Share { file, points: extent.points, bounds: extent.bounds? }))
+        .collect();
+    let grid = match coordinates {
+        Coordinates::F64 => None,
+        Coordinates::I32 { scale, offset } => Some(Grid { scale, offset }),
+    };
+    let division =
+        Division { dims: usize::from(dims), leaf_points: planning.leaf_points, are_whole: grid.is_some() };
+    let nodes = division.nodes(&shares)?;
+    let mut plan = Plan {
+        format: FORMAT.to_string(),
+        version: VERSION,
+        id: String::new(),
+        arguments: planning.arguments.to_vec(),
+        dims,
+        grid,
+        elevation: has_elevation,
+        crs: PlannedCrs::of(crs),
+        attributes: attributes.iter().map(|attribute| attribute.name.clone()).collect(),
+        leaf_points: planning.leaf_points,
+        points: files.iter().map(|file| file.points).sum(),
+        stages: stages_of(&nodes),
+        nodes,
+        beside: planning
+            .beside
+            .iter()
+            .map(|path| PlannedFile::new(path, &NO_POINTS))
+            .collect::<Result<_>>()?,
+        files,
+    };
+    plan.id = plan.hash()?;
+    Ok(plan)
+}
+
+/// A hash of bytes, in hexadecimal digits.
+pub(super) fn hash_of(bytes: &[u8]) -> String {
+    HEXLOWER.encode(&Sha256::digest(bytes)[..8])
+}
+
+/// First and last number of each stage.
+fn stages_of(nodes: &[Node]) -> Vec<[u32; 2]> {
+    let mut stages: Vec<[u32; 2]> = Vec::new();
+    for node in nodes {
+        match stages.get_mut(node.stage as usize) {
+            Some(stage) => stage[1] = node.number,
+            None => stages.push([node.number; 2]),
+        }
+    }
+    stages
+}
+
+fn check_len(len: u64) -> Result<()> {
+    limits::check_len("no plan: it has", len, PLAN_LEN_MAX)
+}
+
+impl Plan {
+    /// Reads a plan.
+    ///
+    /// # Errors
+    /// I/O, if the file cannot be read; malformed, if it is no plan, or was changed by hand; unsupported, if its
+    /// version is another one.
+    pub fn read(path: &Path) -> Result<Plan> {
+        let named = |error: Error| error.of_input(path.display().to_string());
+        let found = fs::metadata(path).map_err(|e| named(Error::io("reading", e)))?;
+        if !found.is_file() {
+            return Err(named(Error::malformed("no plan: it is no regular file")));
+        }
+        check_len(found.len()).map_err(named)?;
+        let text = fs::read(path).map_err(|e| named(Error::io("reading", e)))?;
+        Plan::parse(&text).map_err(named)
+    }
+
+    fn parse(text: &[u8]) -> Result<Plan> {
+        /// What all versions have.
+        #[derive(Deserialize)]
+        struct Head {
+            format: String,
+            version: u32,
+        }
+        let not_one =
+            |e: serde_json::Error| Error::malformed(format!("this is no plan of spfinalize --plan: {e}"));
+        let Head { format, version } = serde_json::from_slice(text).map_err(not_one)?;
+        if format != FORMAT {
+            return Err(Error::malformed(format!(
+                "this is {format:?}, expected a plan of spfinalize --plan"
+            )));
+        }
+        if version != VERSION {
+            return Err(Error::unsupported(format!(
+                "version {version} of a plan; this program reads version {VERSION}: plan again"
+            )));
+        }
+        let plan: Plan = serde_json::from_slice(text).map_err(not_one)?;
+        if plan.hash()? != plan.id {
+            return Err(Error::malformed("the plan was changed since it was made: plan again"));
+        }
+        check::check(&plan)?;
+        Ok(plan)
+    }
+
+    /// The plan as JSON, one file or node in each line.
+    ///
+    /// # Errors
+    /// If it cannot be written as JSON.
+    pub fn to_json(&self) -> Result<String> {
+        let text = |e: serde_json::Error| Error::malformed(format!("the plan cannot be written: {e}"));
+        let head = Plan { nodes: Vec::new(), files: Vec::new(), ..self.clone() };
+        let head = serde_json::to_string(&head).map_err(text)?;
+        let lines = |items: Vec<std::result::Result<String, serde_json::Error>>| {
+            let lines = items.into_iter().collect::<std::result::Result<Vec<_>, _>>().map_err(text)?;
+            Ok::<String, Error>(lines.join(",\n"))
+        };
+        let nodes = lines(self.nodes.iter().map(serde_json::to_string).collect())?;
+        let files = lines(self.files.iter().map(serde_json::to_string).collect())?;
+        let empty = "\"nodes\":[],\"files\":[]}";
+        let head = head.strip_suffix(empty).unwrap_or(&head);
+        Ok(format!("{head}\"nodes\":[\n{nodes}\n],\n\"files\":[\n{files}\n]}}\n"))
+    }
+
+    /// The hash of everything but the hash.
+    fn hash(&self) -> Result<String> {
+        let bare = Plan { id: String::new(), ..self.clone() };
+        let text = serde_json::to_vec(&bare)
+            .map_err(|e| Error::malformed(format!("the plan cannot be written: {e}")))?;
+        Ok(hash_of(&text))
+    }
+
+    /// The number by which streams name the plan.
+    #[must_use]
+    pub fn number(&self) -> u64 {
+        u64::from_str_radix(&self.id, 16).unwrap_or_default()
+    }
+
+    /// The hash of the plan, in hexadecimal digits.
+    #[must_use]
+    pub fn id(&self) -> &str {
+        &self.id
+    }
+
+    /// Dimensions of the geometry: 2 or 3.
+    #[must_use]
+    pub fn dims(&self) -> u8 {
+        self.dims
+    }
+
+    /// The encoding of all coordinates.
+    #[must_use]
+    pub fn coordinates(&self) -> Coordinates {
+        match self.grid {
+            None => Coordinates::F64,
+            Some(Grid { scale, offset }) => Coordinates::I32 { scale, offset },
+        }
+    }
+
+    /// Node `number`.
+    ///
+    /// # Errors
+    /// Usage, if there is none.
+    pub fn node(&self, number: u32) -> Result<&Node> {
+        let last = self.nodes.len().saturating_sub(1);
+        self.nodes
+            .get(number as usize)
+            .ok_or_else(|| Error::usage(format!("there is no node {number}: the plan has nodes 0 to {last}")))
+    }
+
+    /// The name of a node's part.
+    #[must_use]
+    pub fn part(&self, node: &Node) -> PartName {
+        PartName { plan: self.number(), number: node.number }
+    }
+
+    /// The header of streams of points without attributes.
+    ///
+    /// # Errors
+    /// Malformed, if the coordinate system of the plan is damaged.
+    pub fn header(&self, kind: Kind) -> Result<Header> {
+        let mut header = Header::new(kind, self.coordinates(), self.dims, self.elevation);
+        header.crs = self.crs.crs()?;
+        Ok(header)
+    }
+
+    /// The files that reach into a leaf.
+    #[must_use]
+    pub fn files_of(&self, node: &Node) -> Vec<&PlannedFile> {
+        node.files.iter().filter_map(|&file| self.files.get(file as usize)).collect()
+    }
+
+    /// The nodes in an order in which each comes behind its children, and few wait for their parent.
+    #[must_use]
+    pub fn upwards(&self) -> Vec<u32> {
+        let mut order = Vec::with_capacity(self.nodes.len());
+        let mut waiting: Vec<(u32, bool)> =
+            self.nodes.last().map(|root| (root.number, false)).into_iter().collect();
+        while let Some((number, is_expanded)) = waiting.pop() {
+            let children = self.nodes.get(number as usize).map_or(&[][..], |node| &node.children);
+            if is_expanded || children.is_empty() {
+                order.push(number);
+            } else {
+                waiting.push((number, true));
+                waiting.extend(children.iter().rev().map(|&child| (child, false)));
+            }
+        }
+        order
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn length_has_a_limit() {
+        assert!(check_len(PLAN_LEN_MAX).is_ok());
+        let message = check_len(PLAN_LEN_MAX + 1).unwrap_err().to_string();
+        assert!(message.contains("1073741825 bytes, the maximum is 1073741824"), "{message}");
+    }
+}

@@ -1,0 +1,94 @@
+//! Joins cospherical neighbouring simplices to cells, in an order that depends on the diagram only.
+
+mod borders;
+mod classes;
+mod marks;
+mod numbers;
+mod order;
+mod ranks;
+mod search;
+
+use super::Stats;
+use super::simplices::{Coefficient, Complex};
+use borders::Borders;
+use classes::Classes;
+pub(super) use numbers::Joined;
+pub use ranks::sort_distinct;
+use spmesh_delaunay::parallel::for_each;
+use spmesh_stream::model::cells4::{Cells4, Lists4};
+use std::num::NonZeroUsize;
+
+/// The cells of the diagram, in canonical order.
+///
+/// The triangulation is one of the diagram of the points as they are (a limit of diagrams of perturbed
+/// points), so each cell is a union of its simplices, and two simplices at a facet are in one cell exactly if
+/// the vertex of one is on the sphere of the other. A facet of the diagram on the hull is the union of those
+/// facets of simplices of one cell that are in one hyperplane (thesis 4.3.6).
+pub(super) fn cells<C: Coefficient>(complex: Complex<C>, threads: NonZeroUsize, stats: &mut Stats) -> Cells4 {
+    let threads = if complex.simplices.len() < SHARED_MIN { NonZeroUsize::MIN } else { threads };
+    let unordered = unordered(complex, &[], usize::MAX, threads, stats);
+    let Unordered { vertices, mut neighbours, joined, .. } = unordered.expect("no limit");
+    let mut order = order::canonical(&vertices, &joined.finite(), threads);
+    let finite = order.len();
+    order.extend(order::canonical(&vertices, &joined.infinite(), threads));
+    let mut places = vec![0; joined.numbers_end()];
+    for (place, &class) in (0u32..).zip(&order) {
+        places[joined.number(class as usize) as usize] = place;
+    }
+    for_each(threads, &mut neighbours, |lists| renumber(lists, &places));
+    Cells4::from_lists(vertices, Lists4::joined(neighbours), &order, finite)
+}
+
+/// The cells of a diagram, in any order.
+pub(super) struct Unordered {
+    /// The vertices of each cell, as sites.
+    pub(super) vertices: Lists4,
+    /// The neighbours of each cell, unsorted, as the numbers that `joined` gives to cells.
+    pub(super) neighbours: Vec<Lists4>,
+    pub(super) joined: Joined,
+    /// Whether all simplices of a cell have a mark; empty without marks.
+    pub(super) marked: Vec<bool>,
+    /// Most bytes that it took to join them, by estimate.
+    pub(super) bytes: usize,
+}
+
+/// Joins simplices, which may have marks. `None` if that takes more than `bytes`.
+pub(super) fn unordered<C: Coefficient>(
+    complex: Complex<C>,
+    marks: &[bool],
+    bytes: usize,
+    threads: NonZeroUsize,
+    stats: &mut Stats,
+) -> Option<Unordered> {
+    let borders = Borders::of(&complex, threads);
+    let Complex { simplices, order: sites, spheres, near, .. } = complex;
+    // Free the spheres, a third of the memory or more.
+    drop((spheres, near));
+    let classes = Classes::new(&simplices, &sites, borders, threads);
+    drop(sites);
+    let taken = classes.bytes();
+    if taken > bytes {
+        return None;
+    }
+    let (finite, infinite) = classes.simplices();
+    stats.simplices += finite;
+    stats.infinite_simplices += infinite;
+    let (joined, marked) = (classes.joined(), classes.marked(marks));
+    let (vertices, neighbours) = classes.lists(threads);
+    Some(Unordered { vertices, neighbours, joined, marked, bytes: taken })
+}
+
+/// Replaces classes by their places, and sorts each list.
+fn renumber(neighbours: &mut Lists4, places: &[u32]) {
+    for class in 0..neighbours.len() {
+        let list = neighbours.get_mut(class);
+        list.iter_mut().for_each(|other| *other = places[*other as usize]);
+        ranks::sort_distinct(list);
+    }
+}
+
+/// Fewer simplices are not worth the start of threads.
+const SHARED_MIN: usize = 1 << 12;
+
+/// Simplices or cells to prefetch ahead.
+const AHEAD: usize = 8;

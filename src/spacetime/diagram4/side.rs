@@ -1,0 +1,81 @@
+//! The orientation of any five points.
+
+use super::determinant::{Magnitude, dot, normal};
+use super::exact::{Exactness, orientation};
+use spmesh_delaunay::predicates::Sign;
+use spmesh_stream::model::cells4::Point4;
+
+/// A product of four differences is rounded at most 14 times; its magnitude is part of the bound.
+const ERROR: f64 = 32.0 * f64::EPSILON;
+
+/// Differences below this have products of four, and rounding errors of subnormal products, in range.
+const DIFFERENCE_MAX: f64 = 1e60;
+const UNDERFLOW: f64 = 1e-200;
+
+/// Integers below this have determinants in 128 bits: 24 products of four differences, each below 2^27.
+const INTEGER_MAX: f64 = 67_108_864.0;
+
+/// The sign of det(b - a, c - a, d - a, e - a), exact for all finite coordinates.
+///
+/// Cost: about ten nanoseconds where the rounded value is conclusive; a few times that for integers below
+/// 2^26; otherwise microseconds.
+#[must_use]
+pub fn orient4d([a, b, c, d, e]: [Point4; 5]) -> Sign {
+    let from = |p: Point4| -> Point4 { std::array::from_fn(|axis| p[axis] - a[axis]) };
+    let (rows, last) = ([from(b), from(c), from(d)], from(e));
+    let magnitude = |row: Point4| row.map(|x| Magnitude(x.abs()));
+    let value = dot(&normal(rows.each_ref()), &last);
+    let Magnitude(bound) = dot(&normal(rows.map(magnitude).each_ref()), &magnitude(last));
+    let is_in_range = rows.iter().chain([&last]).flatten().all(|x| x.abs() < DIFFERENCE_MAX);
+    if is_in_range && value.abs() > ERROR * bound + UNDERFLOW {
+        return Sign::of(value);
+    }
+    let is_small = |x: &f64| x.abs() < INTEGER_MAX && x.fract() == 0.0;
+    let is_integer = [a, b, c, d, e].iter().flatten().all(is_small);
+    let exactness = if is_integer { Exactness::Int128 } else { Exactness::Big };
+    match orientation(exactness, [a, b, c, d], e) {
+        std::cmp::Ordering::Less => Sign::Negative,
+        std::cmp::Ordering::Equal => Sign::Zero,
+        std::cmp::Ordering::Greater => Sign::Positive,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_are_those_of_the_determinant() {
+        let unit =
+            |axis: usize, x: f64| -> Point4 { std::array::from_fn(|i| if i == axis { x } else { 0.0 }) };
+        let simplex = [[0.0; 4], unit(0, 1.0), unit(1, 1.0), unit(2, 1.0), unit(3, 1.0)];
+        assert_eq!(orient4d(simplex), Sign::Positive);
+        let [a, b, c, d, e] = simplex;
+        assert_eq!(orient4d([a, c, b, d, e]), Sign::Negative);
+        for x in [1e-300, 1e-80, 1e-5, 0.1, 1e80, 1e300] {
+            assert_eq!(orient4d(simplex.map(|p| p.map(|y| y * x))), Sign::Positive, "{x}");
+            assert_eq!(orient4d([a, b, c, d, [x, x, x, 0.0]]), Sign::Zero, "{x}");
+            assert_eq!(orient4d([a, b, c, d, [x, x, x, -5e-324]]), Sign::Negative, "{x}");
+        }
+    }
+
+    #[test]
+    fn nearly_flat_simplices_are_not_flat() {
+        let third = 1.0 / 3.0;
+        let row = |x: f64| [x, x * third, x * 7.0, x * 0.1];
+        // All on a line but for one rounding.
+        let bent = [row(1.0), row(2.0), row(4.0), row(8.0), [16.0, 16.0 * third, 112.0, 1.6]];
+        assert_eq!(orient4d(bent), Sign::Zero);
+        let mut flat = [
+            [0.1, 0.2, 0.3, 0.4],
+            [1.1, 0.2, 0.3, 0.4],
+            [0.1, 1.2, 0.3, 0.4],
+            [0.1, 0.2, 1.3, 0.4],
+            [0.7; 4],
+        ];
+        flat[4][3] = 0.4;
+        assert_eq!(orient4d(flat), Sign::Zero);
+        flat[4][3] = 0.4f64.next_up();
+        assert_eq!(orient4d(flat), Sign::Positive);
+    }
+}

@@ -1,0 +1,121 @@
+//! What `splinefit eval` writes: the values of its flags, and the formats that endings of outputs stand for.
+
+use std::path::Path;
+
+use clap::ValueEnum;
+
+use crate::splinefit::Attribute;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::places::is_device;
+use spmesh_formats::raster::RasterFormat;
+use spmesh_formats::sink::MatrixFormat;
+use spmesh_shell::{cells, endings};
+
+/// Values of `--kind`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum KindFlag {
+    Value,
+    Slope,
+    Aspect,
+    ProfileCurvature,
+    TangentialCurvature,
+    /// Both derivatives: dx, dy
+    Gradient,
+    /// The second derivatives: dxx, dxy, dyy
+    Hessian,
+}
+
+/// Values of `--format`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum FormatFlag {
+    Tif,
+    Asc,
+    Npy,
+    Text,
+    Mtx,
+    Npz,
+}
+
+/// The form of an output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    /// A table.
+    Text,
+    /// An array of numpy.
+    Array,
+    Raster(RasterFormat),
+    Matrix(MatrixFormat),
+}
+
+/// The form that `--format` asks for, or else the ending of the output.
+///
+/// # Errors
+/// Usage, if it is not for sites, cells or the collocation matrix.
+pub(super) fn format_of(
+    output: &Path,
+    format: Option<FormatFlag>,
+    has_sites: bool,
+    is_collocation: bool,
+) -> Result<Form> {
+    let form = match format {
+        Some(FormatFlag::Tif) => Form::Raster(RasterFormat::GeoTiff),
+        Some(FormatFlag::Asc) => Form::Raster(RasterFormat::Ascii),
+        Some(FormatFlag::Npy) => Form::Array,
+        Some(FormatFlag::Text) => Form::Text,
+        Some(FormatFlag::Mtx) => Form::Matrix(MatrixFormat::MatrixMarket),
+        Some(FormatFlag::Npz) => Form::Matrix(MatrixFormat::Npz),
+        None => match of_ending(output) {
+            Some(form @ Form::Matrix(_)) => form,
+            of_ending if is_collocation => {
+                endings::check(output, &[endings::MATRIX])?;
+                of_ending.unwrap_or(Form::Matrix(MatrixFormat::MatrixMarket))
+            }
+            of_ending => {
+                let rasters = if has_sites { &[] } else { endings::RASTER };
+                endings::check(output, &[rasters, endings::ARRAY, endings::NUMBERS])?;
+                of_ending.unwrap_or(Form::Text)
+            }
+        },
+    };
+    match form {
+        Form::Matrix(_) if !is_collocation => Err(only_for_collocation(form, output)),
+        Form::Raster(_) if has_sites => {
+            Err(Error::usage("sites are no raster: take --format text or npy, or --step for a raster"))
+        }
+        Form::Matrix(_) => Ok(form),
+        _ if is_collocation => Err(Error::usage("a collocation matrix is sparse: take --format mtx or npz")),
+        form => Ok(form),
+    }
+}
+
+fn of_ending(output: &Path) -> Option<Form> {
+    let ending = output.extension()?.to_string_lossy().to_ascii_lowercase();
+    // A device such as /dev/fd/3.npy has no format.
+    match &ending[..] {
+        _ if is_device(output) => None,
+        "npy" => Some(Form::Array),
+        "npz" => Some(Form::Matrix(MatrixFormat::Npz)),
+        "mtx" => Some(Form::Matrix(MatrixFormat::MatrixMarket)),
+        _ => cells::format_of(output).map(Form::Raster),
+    }
+}
+
+fn only_for_collocation(form: Form, output: &Path) -> Error {
+    let ending = if form == Form::Matrix(MatrixFormat::Npz) { ".npz" } else { ".mtx" };
+    let what = format!("{ending} is for sparse matrices (--collocation): values go to .npy, or to text");
+    Error::usage(what).of_input(output.display().to_string())
+}
+
+impl From<KindFlag> for Attribute {
+    fn from(kind: KindFlag) -> Attribute {
+        match kind {
+            KindFlag::Value => Attribute::Value,
+            KindFlag::Slope => Attribute::Slope,
+            KindFlag::Aspect => Attribute::Aspect,
+            KindFlag::ProfileCurvature => Attribute::ProfileCurvature,
+            KindFlag::TangentialCurvature => Attribute::TangentialCurvature,
+            KindFlag::Gradient => Attribute::Gradient,
+            KindFlag::Hessian => Attribute::Hessian,
+        }
+    }
+}

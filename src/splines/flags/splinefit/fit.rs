@@ -1,0 +1,317 @@
+//! `splinefit fit`: flags.
+
+use std::cell::RefCell;
+use std::io::Write;
+use std::iter;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+
+use super::{Threads, check_stdin, report, say};
+use crate::fitting::Loss;
+use crate::splinefit::{Fitted, Options, Points, Smoothing};
+use spmesh_base::error::{Error, Result};
+use spmesh_base::output::Output;
+use spmesh_base::places::check_apart;
+use spmesh_formats::detect::SPLINEFIT;
+use spmesh_formats::source::{
+    Filters, InvalidAdvice, Opened, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines,
+    read_values,
+};
+use spmesh_shell::compression::Compression;
+use spmesh_shell::crs::CrsFlag;
+use spmesh_shell::endings;
+use spmesh_shell::{Common, StatsFormat, open_held, parse_box, progress::Progress};
+use spmesh_stream::model::bounds::Bounds;
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "\
+Without --knots, the program searches for knots. It starts with a coarse grid over the box of the points. \
+Each round adds knots where residuals exceed --tol [default: 0.25 % of the range of most elevations], up to \
+--max-knots [default: one for 4 points, at most 20,000]. Without both flags, the search ends at 5,000 knots; \
+if residuals still exceed the tolerance, the knots are those of a grid with about four for each point (at \
+most 600,000), which predicts terrain best. The smoothing is chosen over a quarter of them (at most \
+100,000); robust fits have half of them. With --step, knots form a grid with cells of this side. Points as \
+knots are for splines of degree 2 over their convex hull: the border is pulled apart.
+
+Without --lambda, given knots get the coefficients of least squares. Coefficients that the points leave \
+undetermined are those of least energy. For other knots, lambda and the tension are chosen by restricted \
+maximum likelihood (reml), which bridges gaps and adapts to noise and to steps of the ground. No choice of \
+lambda is less than a floor that depends on the distance of points. LAMBDA multiplies an energy, which is \
+added to the sum of squares of residuals. It is that of a thin plate (plus a thousandth of the bending of the \
+control mesh) and, with a tension T, T squared over the area of a point times that of a membrane.
+
+--features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which \
+values are linear. Their vertices become knots. Long segments get more knots, and other knots near them are \
+dropped. In GeoJSON points are corners, and lines and rings are creases, unless a feature has a property \
+spline with one of the words. Polylines may meet at common vertices only.
+
+--robust weighs points by their residuals, iteratively: huber reduces weights beyond 1.345 standard \
+deviations, tukey reduces them to zero at 4.685, where points are rejected. The deviation is estimated from \
+the median of magnitudes; for rejecting points it is greater where many residuals nearby are. If lambda is chosen, it is chosen with these weights.";
+
+#[derive(Debug, Clone, Args)]
+#[command(after_help = NOTES)]
+pub(super) struct Flags {
+    /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, NPY, vertices of PLY, OBJ and
+    /// VTK, point streams); - is stdin
+    #[arg(value_name = "POINTS", default_value = "-")]
+    inputs: Vec<PathBuf>,
+
+    /// Where the spline goes; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    /// Knots: points, a stream of configurations, or a spline whose knots are reused; - is stdin
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["tol", "max_knots", "step"])]
+    knots: Option<PathBuf>,
+
+    /// Degree of splines, where --knots has configurations of several degrees [default: 2 if functions are
+    /// listed, or else one more than the highest]
+    #[arg(long, value_name = "K")]
+    degree: Option<usize>,
+
+    /// Tolerance of the search: add knots where residuals exceed T, in units of elevations
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_positive)]
+    tol: Option<f64>,
+
+    /// Maximum number of distinct knots of the search; features may add as many again
+    #[arg(long, value_name = "N")]
+    max_knots: Option<usize>,
+
+    /// Place knots on a grid of cells with this side instead of searching; inner knots are moved slightly
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = parse_positive)]
+    #[arg(conflicts_with_all = ["tol", "max_knots"])]
+    step: Option<f64>,
+
+    /// How much to smooth: a number, reml (restricted maximum likelihood), gcv (generalised
+    /// cross-validation), or cv or cv:FOLDS (cross-validation)
+    #[arg(long, value_name = "LAMBDA|reml|gcv|cv[:FOLDS]", allow_negative_numbers = true)]
+    lambda: Option<Smoothing>,
+
+    /// Tension: 0 for a thin plate; with more, waves longer than six distances of points over T are those of
+    /// a membrane, which follows points more closely [default: chosen with reml, or else 0]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_tension)]
+    #[arg(conflicts_with_all = ["robust", "interpolate"])]
+    tension: Option<f64>,
+
+    /// Weigh points by their residuals, so that gross errors count little, or not at all
+    #[arg(long, value_enum, value_name = "huber|tukey", hide_possible_values = true)]
+    robust: Option<LossFlag>,
+
+    /// Instead of least squares, interpolate: pass through the triangulated points at the Greville sites
+    #[arg(long, requires = "knots")]
+    interpolate: bool,
+
+    /// Weights of points: a number on each line, in the order of the points; - is stdin
+    #[arg(long, value_name = "FILE")]
+    weights: Option<PathBuf>,
+
+    /// Corners and breaklines in the coordinates of the points: lines of corner, crease, smooth-crease or
+    /// linear and X Y X Y ..., or GeoJSON; - is stdin
+    #[arg(long, value_name = "FILE")]
+    features: Option<PathBuf>,
+
+    /// List the points in the domain: lines of x, y, z and elevation less spline
+    #[arg(long, value_name = "FILE")]
+    residuals: Option<PathBuf>,
+
+    /// List the points that --robust rejects, in the same way
+    #[arg(long, value_name = "FILE", requires = "robust")]
+    rejected: Option<PathBuf>,
+
+    #[command(flatten)]
+    crs: CrsFlag,
+
+    /// Keep only points of these classes
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
+    keep_class: Vec<u8>,
+
+    /// Drop points of these classes
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
+    drop_class: Vec<u8>,
+
+    /// Keep only points that lie in this closed box: MINX,MINY,MINZ,MAXX,MAXY,MAXZ or, whatever their z,
+    /// MINX,MINY,MAXX,MAXY
+    #[arg(long, value_name = "BOX", value_parser = parse_box, allow_hyphen_values = true)]
+    bounds: Option<Bounds>,
+
+    /// Drop and count points with a coordinate that is not finite, instead of failing
+    #[arg(long)]
+    skip_invalid: bool,
+
+    /// Seed of folds
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+
+    #[command(flatten)]
+    threads: Threads,
+
+    #[command(flatten)]
+    compression: Compression,
+
+    /// Print what the run did on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1)]
+    #[arg(default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+}
+
+/// Values of `--robust`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum LossFlag {
+    Huber,
+    Tukey,
+}
+
+impl Flags {
+    pub(super) fn run(&self, common: &Common) -> Result<()> {
+        let started = Instant::now();
+        self.check_stdin()?;
+        self.check_apart()?;
+        endings::check(&self.output, &[endings::STREAM])?;
+        let lists = [&self.residuals, &self.rejected].into_iter().flatten();
+        lists.into_iter().try_for_each(|path| endings::check(path, &[endings::NUMBERS]))?;
+        // Fail before the work if an output cannot be created.
+        let mut output = Output::create(&self.output, true)?;
+        let residuals = self.residuals.as_ref().map(|path| Output::create(path, false)).transpose()?;
+        let rejected = self.rejected.as_ref().map(|path| Output::create(path, false)).transpose()?;
+        let options = self.options()?;
+        let points = self.points(common)?;
+        points.notices().iter().for_each(|text| say(common, text));
+        let knots = self.knots(common)?;
+        let progress = RefCell::new(Progress::new(common, "fitting", None));
+        let fitted =
+            crate::splinefit::fit(&points, knots, &options, &|read| progress.borrow_mut().set(read))?;
+        drop(progress);
+        fitted.spline.write(self.compression.of_stream(), &mut output)?;
+        let output_bytes = output.bytes_written();
+        list(residuals, |list| {
+            crate::splinefit::write_residuals(&fitted.spline, &points, options.threads, list)
+        })?;
+        let rejected = list(rejected, |list| fitted.write_rejected(&points, &options, list))?;
+        output.commit()?;
+        self.report(common, &fitted, rejected, started, output_bytes);
+        Ok(())
+    }
+
+    fn report(
+        &self,
+        common: &Common,
+        fitted: &Fitted,
+        rejected: Option<u64>,
+        started: Instant,
+        output_bytes: u64,
+    ) {
+        report::notices(&fitted.report, &fitted.spline, rejected).iter().for_each(|text| say(common, text));
+        report::print(self.stats, fitted, rejected, self.seed, started.elapsed(), output_bytes);
+    }
+
+    fn check_stdin(&self) -> Result<()> {
+        let others = [("--knots", &self.knots), ("--features", &self.features), ("--weights", &self.weights)];
+        let others = others.iter().filter_map(|(flag, path)| Some((*flag, path.as_deref()?)));
+        check_stdin(self.inputs.iter().map(|path| ("points", path.as_path())).chain(others))
+    }
+
+    fn check_apart(&self) -> Result<()> {
+        let others = [&self.knots, &self.features, &self.weights].into_iter().flatten();
+        let lists = [("--residuals", &self.residuals), ("--rejected", &self.rejected)];
+        let lists = lists.into_iter().filter_map(|(flag, path)| Some((flag, path.as_deref()?)));
+        let outputs: Vec<_> = iter::once(("--output", self.output.as_path())).chain(lists).collect();
+        check_apart(self.inputs.iter().chain(others).map(PathBuf::as_path), &outputs)
+    }
+
+    fn options(&self) -> Result<Options> {
+        Ok(Options {
+            smoothing: self.lambda,
+            tension: self.tension,
+            loss: self.robust.map(|loss| match loss {
+                LossFlag::Huber => Loss::Huber,
+                LossFlag::Tukey => Loss::Tukey,
+            }),
+            interpolates: self.interpolate,
+            tolerance: self.tol,
+            max_knots: self.max_knots,
+            step: self.step,
+            polylines: self
+                .features
+                .as_ref()
+                .map(|path| read_features(path))
+                .transpose()?
+                .unwrap_or_default(),
+            polylines_name: self.features.as_deref().map(name_of).unwrap_or_default(),
+            degree: self.degree,
+            seed: self.seed,
+            threads: self.threads.get(),
+        })
+    }
+
+    fn points(&self, common: &Common) -> Result<Points> {
+        let source = SourceOptions {
+            reader: &SPLINEFIT,
+            filters: Filters {
+                keep_class: self.keep_class.clone(),
+                drop_class: self.drop_class.clone(),
+                ..Filters::default()
+            },
+            bounds: self.bounds,
+            skip_invalid: self.skip_invalid,
+            invalid_advice: InvalidAdvice::SkipInvalid,
+            threads: Some(self.threads.get()),
+            crs: self.crs.system()?,
+            holds_points: true,
+            ..SourceOptions::default()
+        };
+        let weights = self.weights.as_ref().map(|path| read_weights(path)).transpose()?;
+        // The search for knots and the robust weights need many passes.
+        let is_search = self.knots.is_none() && self.step.is_none();
+        let often = is_search || self.robust.is_some();
+        let mut progress = Progress::new(common, "reading", None);
+        Points::open(&self.inputs, &source, weights, often, |count| progress.set(count))
+    }
+
+    fn knots(&self, common: &Common) -> Result<Option<(Opened, String)>> {
+        let Some(path) = &self.knots else { return Ok(None) };
+        let options =
+            SourceOptions { reader: &SPLINEFIT, dims: 2, holds_points: true, ..SourceOptions::default() };
+        let source = open_knots(path, &options)?;
+        if let Opened::Points(input) = &source {
+            input.notices().iter().for_each(|text| say(common, text));
+        }
+        Ok(Some((source, name_of(path))))
+    }
+}
+
+/// Writes a list, if its output is given.
+fn list<T>(output: Option<Output>, write: impl FnOnce(&mut Output) -> Result<T>) -> Result<Option<T>> {
+    let Some(mut output) = output else { return Ok(None) };
+    let written = write(&mut output)?;
+    output.flush().map_err(|error| Error::io("writing", error))?;
+    output.commit()?;
+    Ok(Some(written))
+}
+
+fn read_features(path: &Path) -> Result<Vec<Polyline>> {
+    let (input, name) = open_held(path)?;
+    read_polylines(input).map_err(|error| error.of_input(name))
+}
+
+fn read_weights(path: &Path) -> Result<Vec<f64>> {
+    let (input, name) = open_held(path)?;
+    match read_values(input).map_err(|error| error.of_input(&name))? {
+        Values::Numbers(numbers) => Ok(numbers),
+        Values::Vectors(_) => {
+            Err(Error::malformed("found two numbers on a line, expected one weight").of_input(name))
+        }
+    }
+}
+
+fn parse_tension(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse().ok().filter(|&number: &f64| number >= 0.0 && number.is_finite());
+    number.ok_or_else(|| format!("{text:?} is not a finite number from zero on"))
+}
+
+fn parse_positive(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse().ok().filter(|&number: &f64| number > 0.0 && number.is_finite());
+    number.ok_or_else(|| format!("{text:?} is not a number above zero"))
+}

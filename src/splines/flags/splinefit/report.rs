@@ -1,0 +1,219 @@
+//! The notices and statistics of a fit.
+
+use std::time::Duration;
+
+use serde_json::{Map, Value, json};
+
+use crate::fitting::{Choice, FailedTrial};
+use crate::splinefit::{EXCESS_MAX, Extent, Fitted, PERCENTILES, Report, Spline, Statistics};
+use spmesh_shell::rows::{Row, entries, lines, seconds};
+use spmesh_shell::{StatsFormat, peak_memory, say};
+
+/// Notices for the user.
+pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -> Vec<String> {
+    let mut notices = Vec::new();
+    let functions = spline.layout.basis.len();
+    if let Some(search) = &report.search {
+        let (tolerance, most) = (search.goal.tolerance, search.goal.max_knots);
+        let knots = spline.layout.places();
+        let above = search.rounds.last().map_or(0, |round| round.above);
+        notices.push(match (search.is_replaced, search.is_reached) {
+            (true, _) => format!(
+                "{knots} knots on a grid, {functions} functions: a search for at most {most} knots left \
+                 {above} residuals above the tolerance {}",
+                short(tolerance)
+            ),
+            (false, is_reached) => format!(
+                "{knots} knots (at most {most}), {functions} functions, tolerance {}: {}",
+                short(tolerance),
+                if is_reached { "reached".into() } else { format!("{above} points are farther off") }
+            ),
+        });
+    }
+    if let Some(chosen) = &report.chosen {
+        if let Some(undetermined @ 1..) = chosen.undetermined {
+            notices.push(format!(
+                "points leave {undetermined} of {functions} functions undetermined: these alone are smoothed"
+            ));
+        }
+        if !chosen.is_solved {
+            let remedy = "smooth all with --lambda reml";
+            notices.push(format!("the energy of undetermined functions may not be the least: {remedy}"));
+        }
+        if let Some(choice) = &chosen.choice {
+            notices.extend(of_choice(choice, chosen.tension));
+        }
+    }
+    if let Some((scale, has_settled)) = report.scale {
+        notices.push(format!("standard deviation of points: {}", short(scale)));
+        if !has_settled {
+            notices
+                .push("robust weights did not settle in 50 rounds: the fit is that of the last one".into());
+        }
+    }
+    if let Some(rejected) = rejected {
+        notices.push(format!("{rejected} of {} points rejected", report.points));
+    }
+    if report.residuals.outside > 0 {
+        notices.push(outside(&report.residuals));
+    }
+    notices.extend(excess(&report.residuals));
+    notices
+}
+
+/// Notices about a chosen `lambda` and its tension.
+fn of_choice(choice: &Choice, tension: f64) -> Vec<String> {
+    let floor = if choice.is_at_floor() { ", the least that the distance of points allows" } else { "" };
+    let tension = if tension > 0.0 { format!(" and tension {}", short(tension)) } else { String::new() };
+    let mut notices = vec![format!("smoothed with lambda {}{tension}{floor}", short(choice.best.lambda))];
+    if let Some(first) = choice.failed.first() {
+        let all = choice.failed.len() + choice.trials.len();
+        notices.push(format!(
+            "{} of {all} trials of lambda failed; lambda {}: {}",
+            choice.failed.len(),
+            short(first.lambda),
+            first.reason
+        ));
+    }
+    notices
+}
+
+/// The warning about a spline that leaves the range of elevations.
+pub(super) fn excess(residuals: &Statistics) -> Option<String> {
+    let excess = residuals.excess().filter(|excess| excess.share > EXCESS_MAX)?;
+    let [low, high] = residuals.range?;
+    let [x, y] = excess.place;
+    Some(format!(
+        "warning: the spline is {} at {x} {y}, but elevations are between {} and {}: smooth more, or give \
+         points there",
+        short(excess.value),
+        short(low),
+        short(high)
+    ))
+}
+
+/// A number with four digits.
+fn short(number: f64) -> String {
+    let rounded = format!("{number:.3e}");
+    match number.abs() {
+        0.0 => "0".into(),
+        // Without trailing zeros after the point.
+        1e-4..1e6 => rounded.parse().map_or(rounded, |number: f64| number.to_string()),
+        _ => rounded,
+    }
+}
+
+/// The notice about points outside of the domain.
+pub(super) fn outside(residuals: &Statistics) -> String {
+    let all = residuals.count + residuals.outside;
+    format!("{} of {all} points are outside of the domain, and do not count", residuals.outside)
+}
+
+/// Prints what `--stats` asks for.
+pub(super) fn print(
+    format: Option<StatsFormat>,
+    fitted: &Fitted,
+    rejected: Option<u64>,
+    seed: u64,
+    time: Duration,
+    output_bytes: u64,
+) {
+    let Some(format) = format else { return };
+    let times = seconds([("time (s)", "seconds", time)]);
+    let counts = count_rows(fitted, rejected, seed, output_bytes);
+    let numbers = number_rows(fitted);
+    match format {
+        StatsFormat::Text => {
+            let numbers = numbers.iter().map(|(label, _, number)| format!("{label:<30} {number:>15.6e}\n"));
+            say(&format!("{}{}", lines(&times, counts), numbers.collect::<String>()));
+        }
+        StatsFormat::Json => {
+            let mut object = entries(&times, counts);
+            let numbers = numbers.into_iter().map(|(_, key, number)| (key.to_string(), number.into()));
+            object.extend(numbers);
+            object.extend(details(&fitted.report));
+            say(&format!("{}\n", Value::Object(object)));
+        }
+    }
+}
+
+fn count_rows(fitted: &Fitted, rejected: Option<u64>, seed: u64, output_bytes: u64) -> Vec<Row<u64>> {
+    let Fitted { spline, report, .. } = fitted;
+    let mut rows = vec![
+        ("points", "points", report.points),
+        ("points outside of the domain", "outside", report.residuals.outside),
+        ("degree", "degree", spline.layout.basis.degree() as u64),
+        ("knots", "knots", spline.layout.places() as u64),
+        ("functions", "functions", spline.layout.basis.len() as u64),
+    ];
+    if let Some(search) = &report.search {
+        rows.push(("rounds", "rounds_count", search.rounds.len() as u64));
+        rows.push(("tolerance reached", "is_reached", search.is_reached.into()));
+    }
+    let undetermined = report.chosen.as_ref().and_then(|chosen| chosen.undetermined);
+    rows.extend(undetermined.map(|count| ("undetermined functions", "undetermined", count as u64)));
+    rows.extend(rejected.map(|count| ("rejected points", "rejected", count)));
+    rows.push(("seed", "seed", seed));
+    rows.push(("output (bytes)", "output_bytes", output_bytes));
+    rows.push(("peak memory (bytes)", "peak_memory_bytes", peak_memory()));
+    rows
+}
+
+fn number_rows(fitted: &Fitted) -> Vec<Row<f64>> {
+    let report = &fitted.report;
+    let mut rows = Vec::new();
+    rows.extend(report.search.as_ref().map(|search| ("tolerance", "tolerance", search.goal.tolerance)));
+    rows.extend(report.chosen.as_ref().map(|chosen| ("lambda", "lambda", chosen.lambda)));
+    rows.extend(report.chosen.as_ref().map(|chosen| ("tension", "tension", chosen.tension)));
+    rows.extend(report.scale.map(|(scale, _)| ("standard deviation", "scale", scale)));
+    rows.extend(residual_rows(&report.residuals));
+    rows
+}
+
+/// Residuals in numbers.
+pub(super) fn residual_rows(residuals: &Statistics) -> Vec<Row<f64>> {
+    const LABELS: [(&str, &str); PERCENTILES.len()] = [
+        ("  median of magnitudes", "residual_median"),
+        ("  75 % are below", "residual_75"),
+        ("  90 % are below", "residual_90"),
+        ("  95 % are below", "residual_95"),
+        ("  99 % are below", "residual_99"),
+    ];
+    let whole = [
+        ("residuals: greatest", "residual_max", residuals.greatest),
+        ("  root of mean square", "residual_rms", residuals.root_mean_square),
+        ("  mean", "residual_mean", residuals.mean),
+    ];
+    let parts = LABELS.iter().zip(residuals.percentiles).map(|(&(label, key), number)| (label, key, number));
+    whole.into_iter().chain(parts).collect()
+}
+
+/// Details for JSON only: rounds and trials.
+fn details(report: &Report) -> Map<String, Value> {
+    let mut details = Map::new();
+    if let Some(search) = &report.search {
+        let round = |round: &crate::fitting::Round| {
+            json!({
+                "knots": round.knots, "functions": round.functions, "residual_max": round.greatest,
+                "residual_rms": round.root_mean_square, "above": round.above,
+            })
+        };
+        details.insert("is_replaced".into(), search.is_replaced.into());
+        details.insert("rounds".into(), search.rounds.iter().map(round).collect());
+    }
+    details.insert("range".into(), json!(report.residuals.range));
+    details.insert("extent".into(), extent_json(report.residuals.extent.as_ref()));
+    if let Some(choice) = report.chosen.as_ref().and_then(|chosen| chosen.choice.as_ref()) {
+        let trial = |trial: &crate::fitting::Trial| json!({"lambda": trial.lambda, "score": trial.score});
+        details.insert("trials".into(), choice.trials.iter().map(trial).collect());
+        let failed = |trial: &FailedTrial| json!({"lambda": trial.lambda, "reason": trial.reason});
+        details.insert("failed_trials".into(), choice.failed.iter().map(failed).collect());
+    }
+    details
+}
+
+/// The least and the greatest value of a spline, with their places.
+pub(super) fn extent_json(extent: Option<&Extent>) -> Value {
+    let of = |(value, place): (f64, [f64; 2])| json!({"value": value, "at": place});
+    extent.map_or(Value::Null, |extent| json!({"least": of(extent.least), "greatest": of(extent.greatest)}))
+}

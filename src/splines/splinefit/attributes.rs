@@ -1,0 +1,139 @@
+//! Attributes of a spline at a point: its value, and quantities that follow from its derivatives.
+
+use crate::bases::Jet;
+use spmesh_formats::raster::{aspect, slope};
+
+/// An attribute of a spline at a point.
+///
+/// Aspect and both curvatures are NaN where a spline is level.
+///
+/// Source: Florinsky, "Digital Terrain Analysis", 2016, chapter 2, for the curvatures, which Evans, 1972, and
+/// Shary, 1995, define, too: normal curvatures, positive where the surface is convex upwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Attribute {
+    /// The value itself. Units: those of elevations.
+    Value,
+    /// The angle with the horizontal, in degrees.
+    Slope,
+    /// The direction of steepest descent, in degrees clockwise from north, from 0 to 360.
+    Aspect,
+    /// Curvature of the section along the steepest descent; flow accelerates where it is positive. Units: 1
+    /// over the unit of coordinates.
+    ProfileCurvature,
+    /// Curvature of the section across the steepest descent; flow diverges where it is positive. Units: 1
+    /// over the unit of coordinates.
+    TangentialCurvature,
+    /// Both derivatives, by x and by y. Units: those of elevations over those of coordinates.
+    Gradient,
+    /// The second derivatives, by xx, xy and yy. Units: those of elevations over the square of those of
+    /// coordinates.
+    Hessian,
+}
+
+impl Attribute {
+    /// The names of its columns in tables.
+    #[must_use]
+    pub fn columns(self) -> &'static [&'static str] {
+        match self {
+            Attribute::Value => &["value"],
+            Attribute::Slope => &["slope"],
+            Attribute::Aspect => &["aspect"],
+            Attribute::ProfileCurvature => &["profile_curvature"],
+            Attribute::TangentialCurvature => &["tangential_curvature"],
+            Attribute::Gradient => &["dx", "dy"],
+            Attribute::Hessian => &["dxx", "dxy", "dyy"],
+        }
+    }
+
+    /// Whether the attribute is a single number.
+    #[must_use]
+    pub fn is_single(self) -> bool {
+        self.columns().len() == 1
+    }
+
+    /// The attribute at a point, or its first number if it has several, from a jet in world coordinates.
+    #[must_use]
+    pub fn of(self, jet: &Jet) -> f64 {
+        let [p, q] = jet.gradient;
+        let [r, s, t] = jet.hessian;
+        let square = p * p + q * q;
+        match self {
+            Attribute::Value => jet.value,
+            Attribute::Gradient => p,
+            Attribute::Hessian => r,
+            Attribute::Slope => slope(jet.gradient),
+            Attribute::Aspect => aspect(jet.gradient),
+            // NaN where the square is zero.
+            Attribute::ProfileCurvature => {
+                -(p * p * r + 2.0 * p * q * s + q * q * t) / (square * (1.0 + square).powf(1.5))
+            }
+            Attribute::TangentialCurvature => {
+                -(q * q * r - 2.0 * p * q * s + p * p * t) / (square * (1.0 + square).sqrt())
+            }
+        }
+    }
+
+    /// All numbers of the attribute at a point, in the order of columns.
+    pub fn all(self, jet: &Jet) -> impl Iterator<Item = f64> {
+        let others = match self {
+            Attribute::Gradient => &jet.gradient[1..],
+            Attribute::Hessian => &jet.hessian[1..],
+            _ => &[],
+        };
+        [self.of(jet)].into_iter().chain(others.iter().copied())
+    }
+
+    /// Fills in all numbers of the attribute; NaN without a jet.
+    pub(super) fn fill(self, jet: Option<&Jet>, numbers: &mut [f64]) {
+        match jet {
+            Some(jet) => numbers.iter_mut().zip(self.all(jet)).for_each(|(into, number)| *into = number),
+            None => numbers.fill(f64::NAN),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane(p: f64, q: f64) -> Jet {
+        Jet { value: 1.0, gradient: [p, q], hessian: [0.0; 3] }
+    }
+
+    #[test]
+    fn slopes_face_where_water_flows() {
+        for (p, q, aspect) in [(0.0, -1.0, 0.0), (-1.0, 0.0, 90.0), (0.0, 1.0, 180.0), (1.0, 0.0, 270.0)] {
+            assert!((Attribute::Slope.of(&plane(p, q)) - 45.0).abs() < 1e-12);
+            assert!((Attribute::Aspect.of(&plane(p, q)) - aspect).abs() < 1e-12, "{p} {q}");
+        }
+        assert!(Attribute::Aspect.of(&plane(0.0, 0.0)).is_nan());
+        assert_eq!(Attribute::Slope.of(&plane(0.0, 0.0)), 0.0);
+    }
+
+    #[test]
+    fn spheres_have_the_curvature_of_their_radius() {
+        // The upper half of a sphere of radius 5, at a place off its axes.
+        let (radius, x, y) = (5f64, 1.0, -2.5);
+        let z = (radius * radius - x * x - y * y).sqrt();
+        let second = |a: f64, b: f64, same: f64| -same / z - a * b / (z * z * z);
+        let hessian = [second(x, x, 1.0), second(x, y, 0.0), second(y, y, 1.0)];
+        let jet = Jet { value: z, gradient: [-x / z, -y / z], hessian };
+        for attribute in [Attribute::ProfileCurvature, Attribute::TangentialCurvature] {
+            assert!((attribute.of(&jet) - 1.0 / radius).abs() < 1e-14, "{attribute:?}");
+            assert!(attribute.of(&plane(0.0, 0.0)).is_nan());
+        }
+    }
+
+    #[test]
+    fn cylinders_bend_in_one_direction() {
+        // z = -x^2 / 2 at x = 1: steepest along x, where it bends by 1 / (1 + 1)^1.5.
+        let jet = Jet { value: -0.5, gradient: [-1.0, 0.0], hessian: [-1.0, 0.0, 0.0] };
+        assert!((Attribute::ProfileCurvature.of(&jet) - 0.125f64.sqrt()).abs() < 1e-15);
+        assert_eq!(Attribute::TangentialCurvature.of(&jet), 0.0);
+        // z = x - y^2 / 2 at y = 0: across the slope it bends by 1 / sqrt(2).
+        let jet = Jet { value: 0.0, gradient: [1.0, 0.0], hessian: [0.0, 0.0, -1.0] };
+        assert_eq!(Attribute::ProfileCurvature.of(&jet), 0.0);
+        assert!((Attribute::TangentialCurvature.of(&jet) - 0.5f64.sqrt()).abs() < 1e-15);
+        assert_eq!(Vec::from_iter(Attribute::Gradient.all(&jet)), [1.0, 0.0]);
+    }
+}

@@ -1,0 +1,271 @@
+//! Points of files as observations of their elevation, in the frame of knots.
+
+use std::cell::Cell;
+use std::path::PathBuf;
+
+use super::frame::Frame;
+use crate::fitting::{Observation, ObservationReader, Observations};
+use crate::splinefit::elevations::Elevations;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point2;
+use spmesh_formats::source::{Input, SourceOptions};
+use spmesh_stream::Crs;
+
+/// Up to this number, points that many passes read are held in memory, with 32 bytes each: most sources take
+/// longer to decode...
+const HELD_OFTEN: usize = 1 << 23;
+/// ...and up to this number if few passes read them. A few more passes are cheap, and memory stays bounded.
+const HELD_SELDOM: usize = 1 << 20;
+/// Least size of the sample of elevations, if there are as many points.
+const SAMPLE: usize = 1 << 12;
+/// The part of elevations that is cut off at each end of their range.
+const OUTSIDE: f64 = 0.02;
+/// Points per batch of held points.
+const BATCH: usize = 1 << 14;
+
+/// The points of an input with their weights, in world coordinates.
+#[derive(Debug)]
+pub struct Points {
+    input: Input,
+    weights: Option<Vec<f64>>,
+    held: Option<Vec<Observation>>,
+    /// A sample of elevations, sorted.
+    sample: Vec<f64>,
+    count: u64,
+}
+
+impl Points {
+    /// Opens files and reads them once. `weights` are the weights of the points, in their order; `often` says
+    /// whether many passes will follow.
+    ///
+    /// Memory: 32 bytes per point up to 8 million points if `often`, and up to one million otherwise. More
+    /// points are not held, but read again in each pass.
+    ///
+    /// # Errors
+    /// As [`Input::open`]; no elevation; another number of weights.
+    pub fn open(
+        paths: &[PathBuf],
+        options: &SourceOptions,
+        weights: Option<Vec<f64>>,
+        often: bool,
+        mut done: impl FnMut(u64),
+    ) -> Result<Points> {
+        let input = Input::open(paths, &SourceOptions { dims: 2, ..options.clone() })?;
+        let mut points = Points { input, weights, held: None, sample: Vec::new(), count: 0 };
+        let mut held = Some(Vec::new());
+        let (mut reader, mut batch) = (points.read_world()?, Vec::new());
+        let held_max = if often { HELD_OFTEN } else { HELD_SELDOM };
+        let (mut count, mut sample) = (0, Sample::default());
+        loop {
+            batch.clear();
+            reader.append(&mut batch)?;
+            if batch.is_empty() {
+                break;
+            }
+            count += batch.len() as u64;
+            batch.iter().for_each(|one| sample.add(one.value));
+            match &mut held {
+                Some(all) if all.len() + batch.len() <= held_max => all.extend_from_slice(&batch),
+                _ => held = None,
+            }
+            done(count);
+        }
+        drop(reader);
+        points.check_weights(count)?;
+        (points.held, points.sample, points.count) = (held, sample.in_order(), count);
+        Ok(points)
+    }
+
+    fn check_weights(&self, count: u64) -> Result<()> {
+        match &self.weights {
+            Some(weights) if weights.len() as u64 != count => {
+                {
+                    let message = format!("{} weights for {count} points: one each is needed", weights.len());
+                    let error = Error::usage(message).of_input(self.name());
+                    // The weights may be those of all points of the file.
+                    let dropped = [self.input.withheld_notice(), self.input.invalid_notice()];
+                    Err(dropped.iter().flatten().fold(error, |error, notice| error.noting(notice)))
+                }
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The name of the input in messages.
+    #[must_use]
+    pub fn name(&self) -> String {
+        self.input.name()
+    }
+
+    /// Notices about the files for the user.
+    #[must_use]
+    pub fn notices(&self) -> Vec<String> {
+        let dropped = self.input.withheld_notice().into_iter().chain(self.input.invalid_notice());
+        self.input.notices().iter().cloned().chain(dropped).collect()
+    }
+
+    /// The coordinate reference system.
+    #[must_use]
+    pub fn crs(&self) -> &Crs {
+        &self.input.description().crs
+    }
+
+    /// Number of points.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The range of most elevations, estimated from a sample, so that a few gross errors change it little.
+    #[must_use]
+    pub fn range(&self) -> [f64; 2] {
+        let ends = [OUTSIDE, 1.0 - OUTSIDE];
+        let place = |part: f64| (part * self.sample.len().saturating_sub(1) as f64).round() as usize;
+        ends.map(|part| self.sample.get(place(part)).copied().unwrap_or(0.0))
+    }
+
+    /// The points in a frame; `done` gets the number of points read so far, in all passes together.
+    pub fn in_frame<'a>(&'a self, frame: &'a Frame, done: &'a dyn Fn(u64)) -> PointsInFrame<'a> {
+        PointsInFrame { points: self, frame, read: Cell::new(0), done }
+    }
+
+    /// A pass in world coordinates.
+    pub(super) fn read_world(&self) -> Result<Box<dyn ObservationReader + '_>> {
+        if let Some(held) = &self.held {
+            return Ok(Box::new(Held(held)));
+        }
+        let elevations = Elevations::of(&self.input)?.into_reader()?;
+        let weights = self.weights.as_deref();
+        Ok(Box::new(Weighed { reader: elevations, weights, next: 0 }))
+    }
+}
+
+/// A sample of elevations at a regular stride, which doubles when the sample is full.
+#[derive(Default)]
+struct Sample {
+    taken: Vec<f64>,
+    /// Elevations to skip before the next one is taken, and between later ones.
+    left: u64,
+    stride: u64,
+}
+
+impl Sample {
+    fn add(&mut self, elevation: f64) {
+        if self.left > 0 {
+            self.left -= 1;
+            return;
+        }
+        self.taken.push(elevation);
+        if self.taken.len() == 2 * SAMPLE {
+            let mut is_kept = false;
+            self.taken.retain(|_| {
+                is_kept = !is_kept;
+                is_kept
+            });
+            self.stride = 2 * self.stride + 1;
+        }
+        self.left = self.stride;
+    }
+
+    fn in_order(mut self) -> Vec<f64> {
+        self.taken.sort_by(f64::total_cmp);
+        self.taken
+    }
+}
+
+/// Points that are held.
+struct Held<'a>(&'a [Observation]);
+
+impl ObservationReader for Held<'_> {
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
+        let (next, rest) = self.0.split_at(self.0.len().min(BATCH));
+        observations.extend_from_slice(next);
+        self.0 = rest;
+        Ok(())
+    }
+}
+
+/// Points that are decoded, with weights.
+struct Weighed<'a> {
+    reader: Box<dyn ObservationReader + 'a>,
+    weights: Option<&'a [f64]>,
+    next: usize,
+}
+
+impl ObservationReader for Weighed<'_> {
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
+        let first = observations.len();
+        self.reader.append(observations)?;
+        if let Some(weights) = self.weights {
+            // If there are too few weights, the other points keep weight one; `check_weights` refuses the
+            // input at the end.
+            let own = weights.iter().skip(self.next);
+            observations[first..].iter_mut().zip(own).for_each(|(one, &weight)| one.weight = weight);
+        }
+        self.next += observations.len() - first;
+        Ok(())
+    }
+}
+
+/// Points in the frame of knots.
+#[derive(Clone)]
+pub struct PointsInFrame<'a> {
+    points: &'a Points,
+    frame: &'a Frame,
+    read: Cell<u64>,
+    done: &'a dyn Fn(u64),
+}
+
+impl Observations for PointsInFrame<'_> {
+    fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
+        Ok(Box::new(Moved { all: self, reader: self.points.read_world()? }))
+    }
+}
+
+struct Moved<'a> {
+    all: &'a PointsInFrame<'a>,
+    reader: Box<dyn ObservationReader + 'a>,
+}
+
+impl ObservationReader for Moved<'_> {
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
+        let PointsInFrame { frame, read, done, .. } = self.all;
+        let first = observations.len();
+        self.reader.append(observations)?;
+        observations[first..].iter_mut().for_each(|one| one.point = frame.to_stored(one.point));
+        read.set(read.get() + (observations.len() - first) as u64);
+        done(read.get());
+        Ok(())
+    }
+}
+
+/// Reads world coordinates and elevations of points by increasing number.
+pub(super) struct Cursor<'a> {
+    reader: Box<dyn ObservationReader + 'a>,
+    batch: Vec<Observation>,
+    /// The number of the first point in the batch.
+    first: u64,
+}
+
+impl<'a> Cursor<'a> {
+    pub(super) fn new(points: &'a Points) -> Result<Cursor<'a>> {
+        Ok(Cursor { reader: points.read_world()?, batch: Vec::new(), first: 0 })
+    }
+
+    /// The point with this number; numbers must not decrease from call to call.
+    ///
+    /// # Errors
+    /// Those of the source; fewer points than in the first pass.
+    pub(super) fn at(&mut self, index: u64) -> Result<(Point2, f64)> {
+        while index >= self.first + self.batch.len() as u64 {
+            self.first += self.batch.len() as u64;
+            self.batch.clear();
+            self.reader.append(&mut self.batch)?;
+            if self.batch.is_empty() {
+                return Err(Error::malformed("there were more points before: the file has changed"));
+            }
+        }
+        let one = self.batch[(index - self.first) as usize];
+        Ok((one.point, one.value))
+    }
+}

@@ -1,0 +1,321 @@
+//! What of a network a triangle meets.
+
+use super::cells::{CellBox, Cells, Item};
+use super::circle::Circle;
+use spmesh_delaunay::network::{Network, elevation_at};
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
+use spmesh_stream::model::points::Point2;
+use std::cmp::Ordering;
+
+/// Points that are not farther from a segment than so many steps of the grid of lines are on it: noding
+/// moves its ends by up to half a step along each axis.
+const NEAR: f64 = 0.75;
+
+/// A network with its cells.
+#[derive(Debug)]
+pub(super) struct Lines<'n> {
+    pub(super) network: &'n Network,
+    cells: Cells,
+    /// For each vertex of the network whether it is a vertex of the mesh.
+    pub(super) found: Vec<bool>,
+    predicates: FiniteFloatPredicates,
+    /// Around the present patch, all vertices within twice this distance were found. In stored units.
+    margin: f64,
+    /// A little less than the side of a cell, in stored units.
+    reach: f64,
+    segments: Vec<u32>,
+    vertices: Vec<u32>,
+}
+
+/// How lines meet a triangle.
+#[derive(Debug, Default)]
+pub(super) struct Meeting {
+    /// Segments that have more than points in common with the triangle.
+    pub(super) segments: Vec<u32>,
+    /// For each side, opposite to the corner of the same place, whether a segment crosses it.
+    pub(super) is_crossed: [bool; 3],
+    /// The segments that whole sides are on.
+    pub(super) on: [Option<u32>; 3],
+    /// Whether a segment crosses the interior.
+    pub(super) is_divided: bool,
+    /// Vertices of the network inside of the circle.
+    pub(super) vertices: Vec<u32>,
+}
+
+impl Meeting {
+    /// Whether the triangle may not be one of the constrained triangulation.
+    pub(super) fn changes(&self) -> bool {
+        self.is_divided || !self.vertices.is_empty()
+    }
+}
+
+impl<'n> Lines<'n> {
+    pub(super) fn new(network: &'n Network) -> Lines<'n> {
+        let cells = Cells::new(network);
+        Lines {
+            network,
+            reach: 0.99 / cells.scale(),
+            cells,
+            found: vec![false; network.vertices.len()],
+            predicates: FiniteFloatPredicates::default(),
+            margin: 0.0,
+            segments: Vec::new(),
+            vertices: Vec::new(),
+        }
+    }
+
+    /// The vertex of the network at a place.
+    pub(super) fn vertex_at(&self, place: Point2) -> Option<u32> {
+        let at = self.cells.local(place);
+        if self.cells.is_found(&CellBox { min: at, max: at }) {
+            return None;
+        }
+        self.cells.vertex_at(place, self.network)
+    }
+
+    /// The elevation at a place that is on a segment with elevations, up to the rounding of its ends. Where
+    /// several segments meet, the lowest counts.
+    pub(super) fn elevation_near(&self, place: Point2) -> Option<f64> {
+        let mut bounds = CellBox::of(&[self.cells.local(place)]);
+        let (network, near) = (self.network, NEAR * self.network.step);
+        let reach = near * self.cells.scale();
+        bounds.min = bounds.min.map(|x| x - reach);
+        bounds.max = bounds.max.map(|x| x + reach);
+        if self.cells.is_free(&bounds) {
+            return None;
+        }
+        let mut lowest: Option<f64> = None;
+        let mut visit = |number: u32| {
+            let segment = &network.segments[number as usize];
+            let Some(elevations) = network.elevations(segment) else { return };
+            let foot = foot(network.places(segment), place, near).filter(|part| (0.0..=1.0).contains(part));
+            if let Some(z) = foot.map(|part| elevation_at(part, elevations)) {
+                lowest = Some(lowest.map_or(z, |lowest| lowest.min(z)));
+            }
+        };
+        self.cells.for_each_in(
+            &bounds,
+            |_| true,
+            |item| match item {
+                Item::Segment(number) => visit(number),
+                Item::Vertex(_) => (),
+            },
+        );
+        lowest
+    }
+
+    /// Takes note of the box of a patch: whether all vertices around it were found. `places` are those of its
+    /// vertices.
+    pub(super) fn enter(&mut self, places: impl Iterator<Item = Point2>) {
+        let mut bounds = CellBox::of(&[]);
+        places.for_each(|place| bounds.extend(self.cells.local(place)));
+        let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
+        self.margin = 0.0;
+        let margin = 0.5 * width.max(height);
+        let around = CellBox { min: bounds.min.map(|x| x - margin), max: bounds.max.map(|x| x + margin) };
+        if margin.is_finite() && self.cells.is_found(&around) {
+            self.margin = 0.49 * margin / self.cells.scale();
+        }
+    }
+
+    /// What meets a triangle, whose corners are counterclockwise; `None` if nothing does.
+    pub(super) fn meeting(&mut self, corners: [Point2; 3]) -> Option<Meeting> {
+        // Most triangles are small and far from lines.
+        if is_circle_less(self.reach, corners) && self.cells.is_far(corners[0]) {
+            return None;
+        }
+        self.collect(corners);
+        if self.segments.is_empty() && self.vertices.is_empty() {
+            return None;
+        }
+        let mut meeting = Meeting::default();
+        for place in 0..self.segments.len() {
+            self.meet(corners, self.segments[place], &mut meeting);
+        }
+        let [a, b, c] = corners;
+        for &number in &self.vertices {
+            let place = self.network.vertices[number as usize].place;
+            let is_corner = corners.contains(&place);
+            if !is_corner && self.predicates.incircle_perturbed(a, b, c, place) == Sign::Positive {
+                meeting.vertices.push(number);
+            }
+        }
+        let is_any = !meeting.segments.is_empty() || !meeting.vertices.is_empty();
+        is_any.then_some(meeting)
+    }
+
+    /// Gathers segments near a triangle, and vertices near its circle.
+    #[inline]
+    fn collect(&mut self, corners: [Point2; 3]) {
+        let local = corners.map(|corner| self.cells.local(corner));
+        let triangle = CellBox::of(&local);
+        let is_small = is_circle_less(self.margin, corners);
+        let (segments, vertices, found) = (&mut self.segments, &mut self.vertices, &self.found);
+        segments.clear();
+        vertices.clear();
+        if !self.cells.is_free(&triangle) {
+            self.cells.for_each_in(
+                &triangle,
+                |bounds| may_meet(local, bounds),
+                |item| match item {
+                    Item::Segment(number) => segments.push(number),
+                    Item::Vertex(_) => (),
+                },
+            );
+            segments.sort_unstable();
+            segments.dedup();
+        }
+        if is_small {
+            return;
+        }
+        let circle = Circle::of(corners, local, self.cells.scale());
+        if !self.cells.is_found(&circle.bounds()) {
+            self.cells.for_each_in(
+                &circle.bounds(),
+                |bounds| circle.may_meet(bounds),
+                |item| match item {
+                    Item::Vertex(number) if !found[number as usize] => vertices.push(number),
+                    _ => (),
+                },
+            );
+        }
+    }
+
+    /// Notes that a vertex of the network is a vertex of the mesh.
+    pub(super) fn find(&mut self, vertex: u32) {
+        self.found[vertex as usize] = true;
+        self.cells.find(vertex, self.network, &self.found);
+    }
+
+    /// Adds what a segment does to a triangle.
+    fn meet(&mut self, corners: [Point2; 3], number: u32, meeting: &mut Meeting) {
+        let [p, q] = self.network.places(&self.network.segments[number as usize]);
+        if are_apart(&corners, &[p, q]) {
+            return;
+        }
+        // Most segments near a triangle have an end in common with it.
+        if let [Some(first), Some(second)] =
+            [p, q].map(|end| corners.iter().position(|&corner| corner == end))
+        {
+            meeting.on[3 - first - second] = Some(number);
+            meeting.segments.push(number);
+            return;
+        }
+        let turns = corners.map(|corner| self.turn(p, q, corner));
+        let is_beside = |sign| turns.iter().all(|&turn| turn == sign);
+        if is_beside(Sign::Positive) || is_beside(Sign::Negative) {
+            return;
+        }
+        let mut is_apart = turns.iter().all(|&turn| turn != Sign::Positive)
+            || turns.iter().all(|&turn| turn != Sign::Negative);
+        let mut is_crossed = [false; 3];
+        let mut touches = false;
+        for place in 0..3 {
+            let [u, v] = [1, 2].map(|turn| corners[(place + turn) % 3]);
+            let ends = [p, q].map(|end| self.turn(u, v, end));
+            // Both ends are outside of this side, or on its line.
+            is_apart |= ends.iter().all(|&end| end != Sign::Positive);
+            let [u_turn, v_turn] = [1, 2].map(|turn| turns[(place + turn) % 3]);
+            is_crossed[place] = u_turn != Sign::Zero && u_turn == v_turn.opposite() && {
+                ends[0] != Sign::Zero && ends[0] == ends[1].opposite()
+            };
+            if u_turn == Sign::Zero && v_turn == Sign::Zero {
+                touches |= overlap([u, v], [p, q]);
+                if is_between(u, [p, q]) && is_between(v, [p, q]) {
+                    meeting.on[place] = Some(number);
+                }
+            }
+        }
+        if !is_apart {
+            meeting.is_divided = true;
+            for (place, is_crossed) in is_crossed.into_iter().enumerate() {
+                meeting.is_crossed[place] |= is_crossed;
+            }
+        }
+        if touches || !is_apart {
+            meeting.segments.push(number);
+        }
+    }
+
+    /// The side of a line on which a place lies, known at once for the places that define the line.
+    #[inline]
+    fn turn(&mut self, p: Point2, q: Point2, place: Point2) -> Sign {
+        if place == p || place == q { Sign::Zero } else { self.predicates.orient2d(p, q, place) }
+    }
+
+    /// Whether a place is in a triangle or on its border.
+    pub(super) fn is_in(&mut self, corners: [Point2; 3], place: Point2) -> bool {
+        let [a, b, c] = corners;
+        [[a, b], [b, c], [c, a]].iter().all(|&[u, v]| self.predicates.orient2d(u, v, place) != Sign::Negative)
+    }
+
+    /// Whether a place is on a segment.
+    pub(super) fn is_on(&mut self, number: u32, place: Point2) -> bool {
+        let [p, q] = self.network.places(&self.network.segments[number as usize]);
+        is_between(place, [p, q]) && self.predicates.orient2d(p, q, place) == Sign::Zero
+    }
+
+    pub(super) fn predicates(&mut self) -> &mut FiniteFloatPredicates {
+        &mut self.predicates
+    }
+}
+
+/// Where the foot of a place is on the straight line through two others, as a part of the way between them,
+/// if the place is not farther from it than `near`. `None` if the two are one place.
+pub(super) fn foot([a, b]: [Point2; 2], place: Point2, near: f64) -> Option<f64> {
+    let minus = |p: Point2| [p[0] - a[0], p[1] - a[1]];
+    let (along, to) = (minus(b), minus(place));
+    let square = along[0] * along[0] + along[1] * along[1];
+    let across = along[0] * to[1] - along[1] * to[0];
+    let is_near = square > 0.0 && across * across <= near * near * square;
+    is_near.then(|| (along[0] * to[0] + along[1] * to[1]) / square)
+}
+
+/// Whether the diameter of the circle of a triangle is less than a length. Its square is the product of the
+/// squares of the sides over that of twice the area.
+#[inline]
+fn is_circle_less(length: f64, [a, b, c]: [Point2; 3]) -> bool {
+    let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
+    let w = [u[0] - v[0], u[1] - v[1]];
+    let [uu, vv, ww] = [u, v, w].map(|p| p[0] * p[0] + p[1] * p[1]);
+    let twice_area = u[0] * v[1] - u[1] * v[0];
+    let reach = length * twice_area;
+    // Rounding errors of the area matter in flat triangles only, which are not small.
+    uu * vv * ww < reach * reach && twice_area * twice_area > 1e-12 * uu * vv
+}
+
+/// Whether the boxes of some places have nothing in common.
+#[inline]
+fn are_apart(these: &[Point2], those: &[Point2]) -> bool {
+    (0..2).any(|axis| {
+        let least = |places: &[Point2]| places.iter().fold(f64::INFINITY, |x, place| x.min(place[axis]));
+        let most = |places: &[Point2]| places.iter().fold(f64::NEG_INFINITY, |x, place| x.max(place[axis]));
+        most(these) < least(those) || most(those) < least(these)
+    })
+}
+
+/// Whether a place on the line of a segment, whose first end is the lesser one, is on the segment.
+fn is_between(place: Point2, [p, q]: [Point2; 2]) -> bool {
+    lexicographic(p, place) != Ordering::Greater && lexicographic(place, q) != Ordering::Greater
+}
+
+/// Whether two parts of one line have more than a point in common.
+fn overlap(side: [Point2; 2], [p, q]: [Point2; 2]) -> bool {
+    let [low, high] =
+        if lexicographic(side[0], side[1]) == Ordering::Less { side } else { [side[1], side[0]] };
+    lexicographic(low, q) == Ordering::Less && lexicographic(p, high) == Ordering::Less
+}
+
+/// Whether a triangle may meet a box: no side has the whole box outside.
+fn may_meet(corners: [Point2; 3], bounds: &CellBox) -> bool {
+    (0..3).all(|from| {
+        let [u, v] = [corners[from], corners[(from + 1) % 3]];
+        let [along, up] = [v[0] - u[0], v[1] - u[1]];
+        // The corner of the box that is farthest to the left of the side.
+        let x = if up > 0.0 { bounds.min[0] } else { bounds.max[0] };
+        let y = if along > 0.0 { bounds.max[1] } else { bounds.min[1] };
+        let side = along * (y - u[1]) - up * (x - u[0]);
+        let size = along.abs() * (y - u[1]).abs() + up.abs() * (x - u[0]).abs();
+        side >= -1e-6 * (1.0 + size)
+    })
+}

@@ -1,0 +1,137 @@
+//! Writes lines as GeoJSON.
+
+use std::io::Write;
+
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point2;
+use spmesh_formats::crs::System;
+use spmesh_stream::Crs;
+
+/// The format of lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineFormat {
+    /// GeoJSON: one collection of features, which states the coordinate reference system.
+    GeoJson,
+    /// Newline-delimited GeoJSON: a feature on each line.
+    GeoJsonLines,
+}
+
+/// Length of the buffer that is written at once. Units: bytes.
+const CHUNK_LEN: usize = 1 << 16;
+
+/// Writes lines as features. Coordinates are those of the stream. If the stream states an EPSG code, a
+/// collection has the member `crs` of the 2008 GeoJSON specification. RFC 7946 removed it and, without prior
+/// arrangement, allows only longitude and latitude in WGS 84; programs that know the member still read it.
+pub(super) struct LineWriter<W> {
+    output: W,
+    format: LineFormat,
+    text: Vec<u8>,
+    /// The property for the unit of elevations, as JSON behind a comma; empty if the unit is unknown.
+    unit: String,
+    /// Number of features written.
+    features: u64,
+}
+
+impl<W: Write> LineWriter<W> {
+    /// Starts the output.
+    pub(super) fn new(output: W, format: LineFormat, crs: &Crs) -> LineWriter<W> {
+        let mut text = Vec::with_capacity(2 * CHUNK_LEN);
+        if format == LineFormat::GeoJson {
+            text.extend_from_slice(b"{\"type\":\"FeatureCollection\",");
+            if let Some(code) = epsg_code(crs) {
+                let name = format!("urn:ogc:def:crs:EPSG::{code}");
+                let crs = format!(r#""crs":{{"type":"name","properties":{{"name":"{name}"}}}},"#);
+                text.extend_from_slice(crs.as_bytes());
+            }
+            text.extend_from_slice(b"\"features\":[");
+        }
+        let unit = System::of(crs).vertical.map_or(String::new(), |vertical| {
+            format!(",\"unit\":{}", serde_json::Value::from(vertical.unit.symbol))
+        });
+        LineWriter { output, format, text, unit, features: 0 }
+    }
+
+    /// Writes a line of at least two points, in world coordinates. A ring repeats its first point at the end. An
+    /// index line is one that maps draw thicker.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn line(
+        &mut self,
+        elevation: f64,
+        is_closed: bool,
+        is_index: bool,
+        points: impl Iterator<Item = Point2>,
+    ) -> Result<()> {
+        if self.format == LineFormat::GeoJson {
+            self.text.extend_from_slice(if self.features > 0 { b",\n" } else { b"\n" });
+        }
+        self.features += 1;
+        self.text.extend_from_slice(br#"{"type":"Feature","properties":{"elevation":"#);
+        self.number(elevation)?;
+        self.text.extend_from_slice(self.unit.as_bytes());
+        self.text.extend_from_slice(br#","is_closed":"#);
+        self.truth(is_closed);
+        self.text.extend_from_slice(br#","index":"#);
+        self.truth(is_index);
+        self.text.extend_from_slice(br#"},"geometry":{"type":"LineString","coordinates":["#);
+        for (count, [x, y]) in points.enumerate() {
+            self.text.extend_from_slice(if count > 0 { b",[" } else { b"[" });
+            self.number(x)?;
+            self.text.push(b',');
+            self.number(y)?;
+            self.text.push(b']');
+            self.hand_over(CHUNK_LEN)?;
+        }
+        self.text.extend_from_slice(b"]}}");
+        if self.format == LineFormat::GeoJsonLines {
+            self.text.push(b'\n');
+        }
+        self.hand_over(CHUNK_LEN)
+    }
+
+    /// Ends the output.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn end(mut self) -> Result<()> {
+        if self.format == LineFormat::GeoJson {
+            self.text.extend_from_slice(b"\n]}\n");
+        }
+        self.hand_over(0)?;
+        self.output.flush().map_err(write_error)
+    }
+
+    /// Writes the shortest decimal that reads back as the same number; zero has no sign.
+    ///
+    /// Domain: finite numbers.
+    fn number(&mut self, value: f64) -> Result<()> {
+        serde_json::to_writer(&mut self.text, &(value + 0.0)).map_err(|cause| write_error(cause.into()))?;
+        if self.text.ends_with(b".0") {
+            self.text.truncate(self.text.len() - 2);
+        }
+        Ok(())
+    }
+
+    fn truth(&mut self, is_true: bool) {
+        self.text.extend_from_slice(if is_true { b"true" } else { b"false" });
+    }
+
+    fn hand_over(&mut self, len: usize) -> Result<()> {
+        if self.text.len() >= len {
+            self.output.write_all(&self.text).map_err(write_error)?;
+            self.text.clear();
+        }
+        Ok(())
+    }
+}
+
+/// The EPSG code of the system of x and y, if it has one.
+#[must_use]
+pub fn epsg_code(crs: &Crs) -> Option<u32> {
+    System::of(crs).horizontal?.code
+}
+
+fn write_error(cause: std::io::Error) -> Error {
+    Error::io("writing", cause)
+}

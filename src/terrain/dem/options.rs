@@ -1,0 +1,192 @@
+//! What a raster shows, and how it is drawn and written.
+
+use std::sync::Arc;
+
+use super::facet::out_of_range;
+use spmesh_base::error::Result;
+use spmesh_delaunay::predicates::Point2;
+use spmesh_formats::crs::{Horizontal, System};
+use spmesh_formats::raster::{
+    self, Differences, Gradient, Grid, RasterFile, RasterOptions, Reduction, Reference, Samples, Shading,
+};
+use spmesh_formats::source::Mask;
+use spmesh_stream::Crs;
+
+/// How values between vertices follow from those of the vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Linear in each triangle.
+    Linear,
+    /// The value of the nearest corner of the triangle; of several, the one with the least x, then the least y.
+    Nearest,
+}
+
+/// The quantity that cells hold.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Quantity {
+    /// The elevation at the centre.
+    Elevation,
+    /// The angle of the surface with the horizontal, in degrees.
+    Slope,
+    /// The direction of steepest descent, in degrees clockwise from north; no data where the surface is level.
+    Aspect,
+    /// The brightness of the surface in some light, as bytes from 1 to 255.
+    Hillshade(Shading),
+    /// The colour of the elevation, lit as a hillshade: red, green, blue and opacity. Colours span these elevations, or
+    /// all that the header of the mesh states. It follows from cells whatever the method.
+    ShadedRelief(Shading, Option<[f64; 2]>),
+    /// An attribute of the points, as `spmesh_stream::model::attributes::Attributes::column` takes it.
+    Attribute(String, Interpolation),
+}
+
+/// What of the surface over a cell its elevation is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Sample {
+    /// The elevation at the centre.
+    #[default]
+    Centre,
+    /// The mean over the part of the cell that the mesh covers.
+    Mean,
+    /// The least one there.
+    Min,
+    /// The greatest one there.
+    Max,
+}
+
+impl Sample {
+    /// Whether the surface over the whole cell counts.
+    #[must_use]
+    pub fn is_whole(self) -> bool {
+        self != Sample::Centre
+    }
+}
+
+/// What slopes, aspects and hillshades are those of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// The triangle at the centre of the cell.
+    Triangle,
+    /// The cells of the raster of elevations: of a cell and its eight neighbours. A cell without all of them has no
+    /// value.
+    Cells(Differences),
+}
+
+/// What is drawn, and the memory for it.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// The quantity that cells hold.
+    pub quantity: Quantity,
+    /// What of the surface over a cell its value is. With any but [`Sample::Centre`], nothing is filled.
+    pub sample: Sample,
+    /// What slopes, aspects and hillshades are those of.
+    pub method: Method,
+    /// Triangles with a longer edge are left out. Units: those of the world.
+    pub kill: Option<f64>,
+    /// Triangles outside of the concave outline are left out: a chain of triangles leads to them from the convex
+    /// hull in which every crossed edge is longer than this. Units: those of the world.
+    pub concave: Option<f64>,
+    /// Cells with centres outside of these polygons have no data.
+    pub mask: Option<Arc<Mask>>,
+    /// Cells without data inside of the outline and the mask are filled from data at most this many cells away.
+    pub fill: Option<u32>,
+    /// Bytes for tiles, and for triangles that wait for the outline; others wait in temporary files.
+    pub memory: u64,
+    /// How the raster is written.
+    pub raster: RasterOptions,
+    /// The coordinate reference system, if not that of the mesh.
+    pub crs: Option<Crs>,
+}
+
+impl Options {
+    /// What the raster says of its coordinates.
+    pub(super) fn reference(&self, system: &System) -> Reference {
+        let are_elevations = self.quantity == Quantity::Elevation;
+        let mut reference = Reference::of(system, are_elevations, self.raster.format);
+        let is_angular = system.horizontal.as_ref().is_some_and(Horizontal::is_angular);
+        if self.quantity.is_derived() && is_angular {
+            reference.notices.push(
+                "x and y are angles, so slopes are too steep by far: project the points first".to_string(),
+            );
+        }
+        reference
+    }
+
+    /// The raster file.
+    pub(super) fn file<'a>(&'a self, grid: Grid, reference: &'a Reference) -> RasterFile<'a> {
+        // Directions have no mean: that of north-east and north-west would be south. Nor have classes.
+        let reduction = match self.quantity {
+            Quantity::Aspect | Quantity::Attribute(_, Interpolation::Nearest) => Reduction::First,
+            _ => Reduction::Mean,
+        };
+        // Holes are filled from tiles that are already written, so these must be readable.
+        let is_staged = self.fill.is_some();
+        let samples = match self.quantity {
+            Quantity::Hillshade(_) => Samples::Bytes,
+            Quantity::ShadedRelief(..) => Samples::Colours,
+            _ => Samples::Floats,
+        };
+        RasterFile { options: &self.raster, grid, reference, reduction, samples, is_staged }
+    }
+
+    /// The quantity that is drawn from triangles.
+    pub(super) fn drawn(&self) -> Quantity {
+        if self.differences().is_some() { Quantity::Elevation } else { self.quantity.clone() }
+    }
+
+    /// How the quantity follows from cells of elevations, if it does.
+    pub(super) fn differences(&self) -> Option<Differences> {
+        match (self.method, &self.quantity) {
+            (Method::Cells(differences), quantity) if quantity.is_derived() => Some(differences),
+            (Method::Triangle, Quantity::ShadedRelief(..)) => Some(Differences::Horn),
+            _ => None,
+        }
+    }
+}
+
+impl Quantity {
+    /// How values vary in a triangle.
+    pub(super) fn interpolation(&self) -> Interpolation {
+        match self {
+            Quantity::Attribute(_, interpolation) => *interpolation,
+            _ => Interpolation::Linear,
+        }
+    }
+
+    /// Whether it follows from the gradient of elevations.
+    pub(super) fn is_derived(&self) -> bool {
+        matches!(
+            self,
+            Quantity::Slope | Quantity::Aspect | Quantity::Hillshade(_) | Quantity::ShadedRelief(..)
+        )
+    }
+
+    /// The value of a whole plane, from its gradient, in which all coordinates have one unit; `None` if it varies.
+    ///
+    /// # Errors
+    /// Usage, if the gradient overflows.
+    pub(super) fn of_plane(&self, gradient: Point2) -> Result<Option<f32>> {
+        let value = match self {
+            Quantity::Elevation | Quantity::Attribute(..) => return Ok(None),
+            _ if !gradient.iter().all(|part| part.is_finite()) => return Err(out_of_range()),
+            Quantity::Slope => raster::slope(gradient) as f32,
+            Quantity::Aspect => raster::rounded_aspect(gradient),
+            Quantity::Hillshade(shading) | Quantity::ShadedRelief(shading, _) => {
+                shading.byte(gradient).into()
+            }
+        };
+        Ok(Some(value))
+    }
+
+    /// The value of a cell from its elevation and those of its eight neighbours.
+    ///
+    /// # Errors
+    /// As [`Quantity::of_plane`].
+    #[inline]
+    pub(super) fn of_cells(&self, gradient: &Gradient, cells: &[f32; 9]) -> Result<f32> {
+        let gradient = match self {
+            Quantity::Hillshade(Shading::One(_)) => gradient.of_pairs(cells),
+            _ => gradient.at(cells),
+        };
+        Ok(self.of_plane(gradient)?.unwrap_or(f32::NAN))
+    }
+}

@@ -1,0 +1,93 @@
+//! A part of a raster as a raster of its own.
+
+use std::io::{Seek, Write};
+use std::ops::Range;
+
+use super::band::Band;
+use super::tiles::{CELLS, TilePlace, TileSource, places, tiles_of};
+use spmesh_base::error::Result;
+use spmesh_formats::raster::{self, RasterFile, RasterFormat, TILE};
+
+/// A rectangle of cells of the tiles of a source, in tiles of its own.
+///
+/// Memory: one tile.
+pub(super) struct Part<'s> {
+    source: &'s mut dyn TileSource,
+    /// Columns and rows of the source.
+    cells: [Range<u32>; 2],
+    bands: usize,
+    tile: Vec<f32>,
+    /// Whether tiles that were read have data.
+    pub(super) has_data: bool,
+}
+
+impl<'s> Part<'s> {
+    /// The cells in these columns and rows.
+    pub(super) fn new(source: &'s mut dyn TileSource, cells: [Range<u32>; 2], bands: usize) -> Part<'s> {
+        Part { source, cells, bands, tile: vec![f32::NAN; bands * CELLS], has_data: false }
+    }
+}
+
+impl TileSource for Part<'_> {
+    fn get(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool> {
+        // Columns and rows of the source that the tile covers.
+        let window = [0, 1].map(|axis| {
+            let Range { start, end } = self.cells[axis];
+            let first = start as usize + at[axis] * TILE;
+            first..(first + TILE).min(end as usize)
+        });
+        let [columns, rows] = window.clone().map(|cells| cells.start / TILE..cells.end.div_ceil(TILE));
+        values.fill(f32::NAN);
+        let mut has_data = false;
+        for from in rows.flat_map(|row| columns.clone().map(move |column| [column, row])) {
+            if self.source.get(from, &mut self.tile)? {
+                has_data |= copy(&self.tile, from, &window, values, self.bands);
+            }
+        }
+        self.has_data |= has_data;
+        Ok(has_data)
+    }
+}
+
+/// Copies what a tile has of a window; returns whether that has data.
+fn copy(tile: &[f32], at: TilePlace, window: &[Range<usize>; 2], values: &mut [f32], bands: usize) -> bool {
+    let [columns, rows] = [0, 1]
+        .map(|axis| window[axis].start.max(at[axis] * TILE)..window[axis].end.min((at[axis] + 1) * TILE));
+    let mut has_data = false;
+    for band in 0..bands {
+        for row in rows.clone() {
+            let place = |first: [usize; 2]| band * CELLS + (row - first[1]) * TILE + columns.start - first[0];
+            let from = &tile[place(at.map(|at| at * TILE))..][..columns.len()];
+            has_data |= from.iter().any(|value| !value.is_nan());
+            values[place([window[0].start, window[1].start])..][..columns.len()].copy_from_slice(from);
+        }
+    }
+    has_data
+}
+
+/// Writes a raster file from tiles.
+///
+/// # Errors
+/// Those of `source`; if writing fails.
+pub(super) fn write<W: Write + Seek>(
+    output: &mut W,
+    file: &RasterFile,
+    source: &mut dyn TileSource,
+) -> Result<()> {
+    match file.options.format {
+        // Rows are written from the top, so all tiles must have come.
+        RasterFormat::Ascii => {
+            let mut band = Band::new(file.grid);
+            raster::write_rows(output, file, |row, values| band.read(source, row, values))
+        }
+        RasterFormat::GeoTiff => raster::write_tiles(output, file, |tiles| {
+            let mut values = vec![f32::NAN; file.samples.bands() * CELLS];
+            for at in places(tiles_of(&file.grid)?) {
+                if source.get(at, &mut values)? {
+                    tiles.tile(at[0], at[1], &values)?;
+                }
+            }
+            Ok(())
+        }),
+    }
+}

@@ -1,0 +1,308 @@
+//! `spcanopy`: flags, and the counts of `--stats`.
+
+mod layers;
+
+use std::cell::Cell;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Parser;
+
+use super::sheets::SheetFlags;
+use crate::dem::{Method, Options, Quantity, Sample};
+use crate::height::{Ground, HeightPoints, about_below};
+use layers::{Layers, Settings};
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::places::check_apart;
+use spmesh_base::system;
+use spmesh_formats::detect::SPCANOPY;
+use spmesh_formats::raster::{Grid, RasterFormat, Window};
+use spmesh_formats::source::{Filters, Input, SourceOptions};
+use spmesh_pipeline::finalize::Budget;
+use spmesh_shell::cells::{self, CellFlags, RasterFlags};
+use spmesh_shell::endings;
+use spmesh_shell::open_stream;
+use spmesh_shell::outline::{OutlineFlags, length};
+use spmesh_shell::progress::Progress;
+use spmesh_shell::rows::{self, Row};
+use spmesh_shell::{Common, StatsFormat, notice, parse_size, peak_memory, read_list, threads};
+
+const TOOL: &str = "spcanopy";
+
+/// Classes of noise: low points, and high noise.
+const NOISE: [u8; 2] = [7, 18];
+
+/// Thresholds of layers below the regular ones, and the distance of these.
+const LOW_LAYERS: [f64; 3] = [0.0, 2.0, 5.0];
+const LAYER_STEP: f64 = 5.0;
+/// The most layers: those of trees of half a kilometre.
+const LAYERS_MAX: usize = 102;
+
+/// The longest edge of upper layers, in cells.
+const EDGE_CELLS: f64 = 4.0;
+
+const EXAMPLES: &str = "\
+Examples:
+  The height of the canopy above the ground, in cells of half a metre:
+    spfinalize tiles/*.laz --keep-class 2 | spdelaunay2d > ground.spm
+    spcanopy --ground ground.spm tiles/*.laz --step 0.5 -o canopy.tif
+  The same in one pipe:
+    spfinalize tiles/*.laz --keep-class 2 | spdelaunay2d | spcanopy --ground - tiles/*.laz --step 0.5 -o canopy.tif
+  Only vegetation, with layers of one's own:
+    spcanopy --ground ground.spm tiles/*.laz --keep-class 2,3,4,5 --layers 0,3,6,12,18 --step 1 -o canopy.tif
+";
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "
+First returns that reach far into a crown make pits in a surface through all of them. So the canopy is the highest of \
+several surfaces (Khosravipour and others, 2014): a triangulation of all first returns, and one of those above 2 m, 5 m, \
+10 m, 15 m and so on. The upper ones leave out triangles with an edge longer than --max-edge, so they cover single crowns \
+only. All are exact Delaunay triangulations and are streamed, so tiles have no seams.
+
+Heights are those above the ground at each point; below zero, they are zero. Points outside of the ground are left out. \
+Withheld points and noise (classes 7 and 18) are dropped, unless flags say which classes to keep or drop.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
+memory, 6 input of another version of spmesh, 141 output closed by its reader.";
+
+/// The message when memory runs out.
+const OUT_OF_MEMORY: &str = "spcanopy: not enough memory: give less --memory, or fewer --threads\n";
+
+/// Write the height of a canopy above the ground as a raster, without pits.
+///
+/// Reads LAS, LAZ or COPC files and a triangle mesh of the ground, as spdelaunay2d writes it. Writes a GeoTIFF or an
+/// ESRI grid.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+pub struct Flags {
+    /// LAS, LAZ or COPC files
+    #[arg(value_name = "FILE")]
+    inputs: Vec<PathBuf>,
+
+    /// Read the paths of the files from this list, one a line; - is stdin
+    #[arg(long, value_name = "LIST", conflicts_with = "inputs")]
+    lof: Option<PathBuf>,
+
+    /// Stream of the triangle mesh of the ground; - is stdin
+    #[arg(long, value_name = "STREAM")]
+    ground: PathBuf,
+
+    /// File for the raster; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    cells: CellFlags,
+
+    #[command(flatten)]
+    sheets: SheetFlags,
+
+    /// Heights from which a surface of its own is made [default: 0,2,5,10,15 and so on]
+    #[arg(long, value_name = "HEIGHTS", value_delimiter = ',', allow_negative_numbers = true)]
+    layers: Vec<f64>,
+
+    /// Longest edge of triangles in layers above 0 [default: four cells]
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    max_edge: Option<f64>,
+
+    /// Take all returns, not only the first
+    #[arg(long)]
+    all_returns: bool,
+
+    /// Take only points of these classes
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
+    keep_class: Vec<u8>,
+
+    /// Leave out points of these classes [default: 7 and 18, which are noise, if no classes are kept]
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
+    drop_class: Vec<u8>,
+
+    /// Take points that are marked as withheld
+    #[arg(long)]
+    keep_withheld: bool,
+
+    #[command(flatten)]
+    outline: OutlineFlags,
+
+    /// Memory for points and tiles; others wait in temporary files (see --temp-dir)
+    #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M")]
+    memory: u64,
+
+    /// Threads that decompress, find heights and triangulate [default: one per core, at most 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    #[command(flatten)]
+    raster: RasterFlags,
+
+    /// Print the counts of the run on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// Those of all passes, and if an input or the output cannot be opened.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    let started = Instant::now();
+    let paths = flags.lof.as_ref().map_or_else(|| Ok(flags.inputs.clone()), |list| read_list(list))?;
+    if paths.is_empty() {
+        anyhow::bail!(Error::usage("no input: give LAS or LAZ files (see --help)"));
+    }
+    let files = paths.iter().chain([&flags.ground]).chain(flags.cells.like()).map(PathBuf::as_path);
+    let files = || files.clone().chain(flags.outline.mask_path());
+    check_apart(files(), &[("--output", &flags.output)])?;
+    endings::check(&flags.output, &[endings::RASTER])?;
+    let format = cells::format_of(&flags.output).unwrap_or_default();
+    let mut output = flags.sheets.create(&flags.output, format, &flags.cells, files())?;
+    let input = Input::open(&paths, &flags.source_options()?)?;
+    input.notices().iter().for_each(|text| flags.notice(text));
+    let grid = flags.cells.grid(&input.description().crs, || window(&input))?;
+    let bottom = flags.surface_options(format)?;
+    let settings = flags.settings(&grid)?;
+
+    let mut reader = open_stream(&flags.ground)?;
+    let mut progress = Progress::new(&flags.common, "reading the ground", reader.header().points);
+    let temp_dir = flags.raster.temp_dir();
+    let ground = Ground::read(&mut reader, temp_dir, |vertices| progress.set(vertices))?;
+    flags.check_systems(&ground, &input)?;
+    let total = input.description().stated_points;
+    let mut progress = Progress::new(&flags.common, "finding heights", total);
+    let points =
+        HeightPoints::read(&ground, &input, temp_dir, flags.threads(), |points| progress.set(points))?;
+    drop(ground);
+    let layers =
+        Layers { points: &points, grid, bottom: &bottom, settings: &settings, triangles: Cell::default() };
+    let thresholds = flags.thresholds(points.greatest())?;
+    let mut progress = Progress::counting("layers", &flags.common, "drawing", Some(thresholds.len() as u64));
+    let highest = layers.draw(&thresholds, |done| progress.set(done))?;
+    drop(progress);
+    let (known, notices) = highest.write(output.destination(), &bottom, &input.description().crs)?;
+    let committed = output.commit()?;
+    notices.iter().for_each(|text| flags.notice(text));
+    if points.outside() > 0 {
+        flags.notice(&format!("{} points outside of the ground were left out", points.outside()));
+    }
+    let below = about_below(points.below(), points.points());
+    below.iter().for_each(|text| flags.notice(text));
+    flags.notice(&cells::summary(&grid, grid.cells() - known));
+    committed.notice().iter().for_each(|text| flags.notice(text));
+    if let Some(format) = flags.stats {
+        let rows: [Row<u64>; 8] = [
+            ("points", "points", points.points()),
+            ("points outside of the ground", "outside", points.outside()),
+            ("layers", "layers", thresholds.len() as u64),
+            ("triangles of all layers", "triangles", layers.triangles.get()),
+            ("cells", "cells", grid.cells()),
+            ("cells with data", "known", known),
+            ("output (bytes)", "output_bytes", committed.bytes),
+            ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
+        ];
+        rows::print(format, started.elapsed(), rows);
+    }
+    Ok(())
+}
+
+/// The window that the headers of an input state.
+fn window(input: &Input) -> Result<Window> {
+    let description = input.description();
+    let Some(bounds) = description.stated_bounds else {
+        return Err(Error::usage("the headers do not say where the points are: give --bounds"));
+    };
+    let [min, max] = [bounds.min, bounds.max].map(|corner| {
+        let [x, y, _] = description.coordinates.to_world(corner);
+        [x, y]
+    });
+    Ok(Window { min, max })
+}
+
+impl Flags {
+    fn notice(&self, text: &str) {
+        notice(TOOL, &self.common, text);
+    }
+
+    fn source_options(&self) -> Result<SourceOptions> {
+        let is_default = self.keep_class.is_empty() && self.drop_class.is_empty();
+        let filters = Filters {
+            keep_withheld: self.keep_withheld,
+            first_only: !self.all_returns,
+            keep_class: self.keep_class.clone(),
+            drop_class: if is_default { NOISE.to_vec() } else { self.drop_class.clone() },
+            ..Filters::default()
+        };
+        Ok(SourceOptions {
+            reader: &SPCANOPY,
+            filters,
+            dims: 2,
+            temp_dir: self.raster.temp_dir().map(Into::into),
+            threads: Some(self.threads()),
+            ..SourceOptions::default()
+        })
+    }
+
+    fn threads(&self) -> NonZeroUsize {
+        threads(self.threads)
+    }
+
+    /// How the lowest surface is drawn, and the raster is written.
+    fn surface_options(&self, format: RasterFormat) -> Result<Options> {
+        Ok(Options {
+            quantity: Quantity::Elevation,
+            sample: Sample::Centre,
+            method: Method::Triangle,
+            kill: self.outline.kill()?,
+            concave: self.outline.concave()?,
+            mask: self.outline.mask()?,
+            fill: None,
+            memory: self.memory / 2,
+            raster: self.raster.options(format)?,
+            crs: None,
+        })
+    }
+
+    /// How layers are made. Half of the memory is for points, half for tiles.
+    fn settings(&self, grid: &Grid) -> Result<Settings> {
+        let threads = self.threads().get();
+        let least = 2 * Budget::process_min(threads);
+        if self.memory < least {
+            let [given, least] = [self.memory >> 20, least.div_ceil(1 << 20)];
+            let text =
+                format!("--memory of {given} MiB is too little for {threads} threads: give {least}M or more");
+            return Err(Error::new(ErrorKind::Memory, text));
+        }
+        Ok(Settings {
+            edge_max: length("--max-edge", self.max_edge)?.unwrap_or(EDGE_CELLS * grid.step),
+            memory: self.memory / 2,
+            threads,
+            temp_dir: self.raster.temp_dir().map(Into::into),
+        })
+    }
+
+    /// The thresholds of the layers, ascending from 0.
+    fn thresholds(&self, greatest: f64) -> Result<Vec<f64>> {
+        if let Some(wrong) = self.layers.iter().find(|height| !(height.is_finite() && **height >= 0.0)) {
+            return Err(Error::usage(format!("--layers takes heights from 0 on, not {wrong}")));
+        }
+        let mut thresholds = self.layers.clone();
+        if thresholds.is_empty() {
+            let regular = (2..).map(|number| f64::from(number) * LAYER_STEP);
+            thresholds = LOW_LAYERS.into_iter().chain(regular).take(LAYERS_MAX).collect();
+        }
+        thresholds.push(0.0);
+        thresholds.sort_by(f64::total_cmp);
+        thresholds.dedup();
+        thresholds.retain(|&height| height == 0.0 || height <= greatest);
+        Ok(thresholds)
+    }
+
+    /// Refuses points in another coordinate reference system than the ground's.
+    fn check_systems(&self, ground: &Ground, input: &Input) -> Result<()> {
+        ground.check_system(&input.description().crs).map_err(|e| e.of_input(input.name()))
+    }
+}

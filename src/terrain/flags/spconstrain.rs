@@ -1,0 +1,231 @@
+//! `spconstrain`: flags, and the counts of `--stats`.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Parser;
+
+use crate::constrain::{CutOptions, Options, Stats, constrain};
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::output::Output;
+use spmesh_base::places::check_apart;
+use spmesh_base::system;
+use spmesh_pipeline::flags::lines::{LineFlags, summary, write_report};
+use spmesh_pipeline::lines::Target;
+use spmesh_shell::compression::Compression;
+use spmesh_shell::endings;
+use spmesh_shell::open_stream;
+use spmesh_shell::outline::length;
+use spmesh_shell::progress::Progress;
+use spmesh_shell::rows::{self, Row};
+use spmesh_shell::{Common, StatsFormat, notice, parse_size, peak_memory};
+
+const TOOL: &str = "spconstrain";
+
+const EXAMPLES: &str = "\
+Examples:
+  Roads as edges of the terrain, in one pipe:
+    spfinalize tiles/*.laz --lines roads.geojson | spdelaunay2d | spconstrain --lines roads.geojson | spdem --step 1 -o terrain.tif
+  Lines in a mesh that exists already; those without elevations take that of the surface:
+    spconstrain --lines streams.gpkg terrain.spm -o constrained.spm
+  The mesh inside of a boundary, without buildings, and without long edges at its border:
+    spconstrain --hull boundary.geojson --holes buildings.geojson --kill 10 terrain.spm -o area.spm
+  What was changed about lines that cross, touch or overlap:
+    spconstrain --lines roads.shp --report changes.tsv terrain.spm -o constrained.spm
+";
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "
+The result is the constrained Delaunay triangulation: segments of lines are chains of edges, and all other edges are \
+those of the Delaunay triangulation as far as no line is in the way. It depends neither on the order of points and lines \
+nor on their directions. Lines that cross, touch or overlap get common vertices on the grid of the stream.
+
+Vertices of lines that the mesh does not have are added. Where a line states an elevation, it counts, and \
+not that of a point at the same place, also amid a segment; a vertex without one takes the elevation of the \
+surface. Parts of lines outside of the mesh are left out, with a notice. Lines with elevations extend the \
+mesh if spfinalize has them, too.
+
+Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Where a ring leaves the \
+mesh, the triangles stay whole that it divides between its last vertex inside and the border; --densify D \
+makes these ways shorter than D. Points inside of holes stay vertices, without triangles. --kill removes \
+triangles at edges of the border that are longer than a length, and goes on with those behind them, but \
+never across lines: a concave hull. Only triangles with such an edge wait for it.
+
+Triangles that no line changes pass at once. Memory is that of the lines, about 80 bytes a segment, and of \
+the triangles that a line changes, until the last of them has come.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
+memory, 6 input of another version of spmesh, 141 output closed by its reader.";
+
+/// The message when memory runs out.
+const OUT_OF_MEMORY: &str = "spconstrain: not enough memory: give fewer lines at once\n";
+
+/// Make lines edges of a triangle mesh while it streams.
+///
+/// Reads a triangle mesh stream, as spdelaunay2d writes it, and writes one.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+pub struct Flags {
+    /// Stream of the triangle mesh; - is stdin
+    #[arg(value_name = "STREAM", default_value = "-")]
+    input: PathBuf,
+
+    /// File for the mesh; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    /// Keep only what is inside of these polygons (GeoJSON, Shapefile or GeoPackage). May be given several
+    /// times
+    #[arg(long, value_name = "FILE")]
+    hull: Vec<PathBuf>,
+
+    /// Leave out what is inside of these polygons. May be given several times
+    #[arg(long, value_name = "FILE")]
+    holes: Vec<PathBuf>,
+
+    /// Remove triangles at edges of the border longer than this, until there are none
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    kill: Option<f64>,
+
+    /// Memory for triangles that --kill may remove; others wait in a temporary file
+    #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M", requires = "kill")]
+    memory: u64,
+
+    /// Folder for temporary files [default: TMPDIR, or /tmp]
+    #[arg(long, value_name = "FOLDER")]
+    temp_dir: Option<PathBuf>,
+
+    #[command(flatten)]
+    compression: Compression,
+
+    /// Print the counts of the run on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+
+    #[command(flatten)]
+    lines: LineFlags,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// If the lines cannot be read, the input is no triangle mesh or is malformed, or writing fails.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    let started = Instant::now();
+    flags.check()?;
+    let report = flags.lines.create_report()?;
+    let output = Output::create(&flags.output, true)?;
+    let mut reader = open_stream(&flags.input)?;
+    let target = Target::of(reader.header());
+    let (network, areas, changes) = flags.lines.read_with_areas(&flags.hull, &flags.holes, &target)?;
+    changes.notices.iter().chain(summary(&changes).as_ref()).for_each(|text| flags.notice(text));
+    let kill = length("--kill", flags.kill)?;
+    let cut = CutOptions { kill, memory: flags.memory, temp_dir: flags.temp_dir.clone() };
+    let options = Options { compress: flags.compression.of_stream(), cut };
+    let mut progress = Progress::new(&flags.common, "constraining", reader.header().points);
+    let (output, stats) =
+        constrain(&mut reader, &network, &areas, output, &options, |vertices| progress.set(vertices))?;
+    drop(progress);
+    let output_bytes = output.bytes_written();
+    write_report(report, &changes, None)?;
+    output.commit()?;
+    if stats.triangles[0] > 0 && stats.triangles[1] == 0 {
+        flags.notice("no triangles are left: --hull, --holes or --kill leave out all of them");
+    }
+    if stats.open_segments > 0 {
+        flags.notice(&about_open(&stats));
+    }
+    if stats.draped > 0 {
+        flags.notice(&about_draped(&stats));
+    }
+    if stats.divided > 0 {
+        flags.notice(&about_divided(&stats, flags.lines.densify));
+    }
+    if let Some(format) = flags.stats {
+        rows::print(format, started.elapsed(), counts(&stats, reader.bytes_read(), output_bytes));
+    }
+    Ok(())
+}
+
+/// The notice about segments that leave the mesh.
+fn about_open(stats: &Stats) -> String {
+    let all = if stats.open_segments == stats.segments { ", perhaps of another place or system" } else { "" };
+    format!(
+        "{} of {} segments leave the mesh and are no edges there{all}: lines with elevations extend the \
+         mesh if spfinalize --lines has them, too",
+        stats.open_segments, stats.segments
+    )
+}
+
+/// The notice about vertices that do not have the elevation of their line.
+fn about_draped(stats: &Stats) -> String {
+    format!(
+        "{} vertices that divide lines between vertices of the mesh took the elevation of the surface: \
+         shores of water are not level there. Give spfinalize the same lines and --densify, and the \
+         polygons of --hull and --holes as --lines",
+        stats.draped
+    )
+}
+
+/// The notice about triangles that rings divide.
+fn about_divided(stats: &Stats, densify: Option<f64>) -> String {
+    let remedy = match densify {
+        None => "with --densify D, rings have a vertex at least every D, and divide fewer",
+        Some(_) => "a lesser --densify leaves fewer of them, and --kill removes those with long edges",
+    };
+    format!(
+        "rings of --hull or --holes leave the mesh and divide {} triangles on the way, which stay whole: \
+         {remedy}",
+        stats.divided
+    )
+}
+
+fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 18] {
+    [
+        ("triangles read", "triangles_read", stats.triangles[0]),
+        ("triangles written", "triangles", stats.triangles[1]),
+        ("triangles cut off", "removed", stats.removed),
+        ("triangles that rings divide", "divided", stats.divided),
+        ("triangles that waited", "waited", stats.held),
+        ("most triangles waiting", "waited_max", stats.held_max),
+        ("strips", "strips", stats.strips),
+        ("segments", "segments", stats.segments),
+        ("segments that leave the mesh", "open_segments", stats.open_segments),
+        ("segments that were cut off", "cut_segments", stats.cut_segments),
+        ("line vertices in the mesh", "vertices_found", stats.found),
+        ("line vertices added", "vertices_added", stats.added),
+        ("line vertices off their line", "vertices_draped", stats.draped),
+        ("line vertices outside", "vertices_outside", stats.outside),
+        ("elevations taken from lines", "raised", stats.raised),
+        ("input (bytes)", "input_bytes", input_bytes),
+        ("output (bytes)", "output_bytes", output_bytes),
+        ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
+    ]
+}
+
+impl Flags {
+    fn notice(&self, text: &str) {
+        notice(TOOL, &self.common, text);
+    }
+
+    fn check(&self) -> Result<()> {
+        self.lines.check(!self.hull.is_empty() || !self.holes.is_empty())?;
+        let areas = self.hull.iter().chain(&self.holes).chain([&self.input]);
+        let paths: Vec<&Path> = self.lines.files.iter().chain(areas).map(PathBuf::as_path).collect();
+        if paths.len() == 1 && self.kill.is_none() {
+            return Err(Error::usage("nothing to do: give --lines, --hull, --holes or --kill (see --help)"));
+        }
+        if paths.iter().filter(|path| path.as_os_str() == "-").count() > 1 {
+            return Err(Error::usage("stdin can be one input only: give the lines or the mesh as a file"));
+        }
+        let report = self.lines.report.iter().map(|report| ("--report", report.as_path()));
+        let outputs: Vec<(&str, &Path)> =
+            [("--output", self.output.as_path())].into_iter().chain(report).collect();
+        check_apart(paths, &outputs)?;
+        endings::check(&self.output, &[endings::STREAM])
+    }
+}

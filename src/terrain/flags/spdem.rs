@@ -1,0 +1,338 @@
+//! `spdem`: flags, and the counts of `--stats`.
+
+mod contours;
+mod points;
+mod quantity;
+
+use std::iter;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{Parser, ValueEnum};
+
+use super::sheets::SheetFlags;
+use crate::contours::LineFormat;
+use crate::dem::{self, Options, Quantity, Stats};
+use crate::points::Options as PointOptions;
+use contours::{ContourFlags, Job};
+use quantity::QuantityFlags;
+use spmesh_base::error::{Error, ErrorKind};
+use spmesh_base::places::check_apart;
+use spmesh_base::system;
+use spmesh_formats::raster::RasterFormat;
+use spmesh_shell::cells::{self, CellFlags, RasterFlags};
+use spmesh_shell::crs::CrsFlag;
+use spmesh_shell::endings;
+use spmesh_shell::open_stream;
+use spmesh_shell::outline::OutlineFlags;
+use spmesh_shell::progress::Progress;
+use spmesh_shell::rows::{self, Row};
+use spmesh_shell::{Common, StatsFormat, notice, parse_size, peak_memory};
+
+const TOOL: &str = "spdem";
+
+/// Memory by default. Units: bytes.
+const MEMORY: u64 = 32 << 20;
+
+const EXAMPLES: &str = "\
+Examples:
+  A terrain model of the ground points of many tiles, with cells of half a metre:
+    spfinalize tiles/*.laz --keep-class 2 | spdelaunay2d | spdem --step 0.5 -o terrain.tif
+  No data where points are far apart, as on water:
+    spdem --step 1 --kill 30 ground.spm -o terrain.tif
+  No data outside of a survey that is no rectangle, but on all of its lakes; and only in a park:
+    spdem --step 1 --concave 30 ground.spm -o terrain.tif
+    spdem --step 1 --mask park.geojson ground.spm -o park.tif
+  Slopes, and a hillshade with light from the north-west:
+    spdem --step 1 --kind slope ground.spm -o slope.tif
+    spdem --step 1 --kind hillshade ground.spm -o shade.tif
+    spdem --step 1 --kind hillshade --multidirectional ground.spm -o shade.tif
+    spdem --step 1 --kind shaded-relief ground.spm -o relief.tif
+  The highest point and the number of points per square metre, from points:
+    spfinalize tiles/*.laz | spdem --points --kind max --step 1 -o highest.tif
+    spfinalize tiles/*.laz | spdem --points --kind density --step 5 -o density.tif
+  The intensity of the returns, and their classes:
+    spfinalize tiles/*.laz --attributes intensity,classification | spdelaunay2d > all.spm
+    spdem --step 1 --attribute intensity all.spm -o intensity.tif
+    spdem --step 1 --attribute classification --interpolation nearest all.spm -o classes.tif
+  For the web, with overviews, and gaps of up to 20 cells filled:
+    spdem --step 1 --fill 20 --cog ground.spm -o terrain.tif
+  Many rasters of 1000 by 1000 metres, each with a margin of 20 metres: dtm/ground_650000_4820000.tif and so on
+    spdem --step 1 --tiles 1000 --buffer 20 ground.spm -o dtm/ground.tif
+  A part as a text grid:
+    spdem --step 1 --bounds 4000,7000,5000,8000 ground.spm -o part.asc
+  Contour lines every five metres; then a raster and lines from one pipe:
+    spdem --contours 5 ground.spm -o lines.geojson
+    spdem --contours 1 --smooth --min-length 20 --concave 30 ground.spm -o lines.geojson
+    spfinalize tiles/*.laz | spdelaunay2d | tee >(spdem --step 1 -o terrain.tif) | spdem --contours 5 -o lines.geojson
+  Very many lines as a GeoPackage (the lines format cannot state the coordinate system):
+    spdem --contours 0.5 ground.spm -o lines.geojsonl
+    ogr2ogr -a_srs EPSG:2154 lines.gpkg lines.geojsonl
+  From a mesh of another program:
+    spconvert terrain.ply --to spm | spdem --step 1 --bounds 0,0,1000,1000 -o terrain.tif
+";
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "
+A cell has the value of the mesh at its centre; outside the mesh there is no data (-9999). Triangles are \
+drawn as they arrive. A tile of 256 by 256 cells is written as soon as it is full, so only incomplete tiles \
+take memory. Tiles beyond --memory wait in a temporary file. ESRI grids are written after the last triangle, \
+from the top, with 256 rows in memory.
+
+The outline is the convex hull. With --concave L, triangles are outside if a chain of triangles leads to them \
+from the hull in which every crossed edge, first one of the hull, is longer than L; all others stay, also with \
+long edges. Triangles with an edge longer than L wait for the end of the stream, in --memory and a temporary \
+file. With integer coordinates, lengths are compared exactly. --mask keeps cells whose centre is in a polygon or \
+on its border; rings of a polygon count by the even-odd rule. --fill fills holes inside of the outline and the \
+mask, also those of --kill.
+
+An attribute is drawn as elevations are, or with --interpolation nearest as the value of the nearest corner of \
+the triangle. With linear interpolation, triangles with a corner whose value is unknown are left out. A raster has \
+one band of 32-bit numbers; for a picture in colour, join those of red, green and blue (gdalbuildvrt -separate).
+
+Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north; \
+level ground has none. Hillshades are bytes from 1 to 255, and 0 for no data. They equal what gdaldem computes from \
+the raster of elevations: from a cell and its eight neighbours, so a cell without all of them has no value. A \
+shaded relief has the colours of elevations in that light, and is transparent where there are no data. \
+--method triangle takes the slope of one triangle instead. Where the coordinate reference system states the unit of elevations, slopes take it \
+into account; otherwise it must be that of x and y.
+
+--tiles writes many rasters in one pass. A cell belongs to the raster that has its centre; with --buffer, rasters \
+overlap. They have the same values as one raster: slopes have no seams. A raster gets its name when its cells are \
+complete. One without data is not written, and a file of its name is removed.
+
+--points draws points without a mesh: how many are in each cell, how dense they are, or the least, the \
+greatest, the range, the mean and the standard deviation of their elevations or of an attribute. A point on a \
+border is in the right or upper cell. Sums are exact.
+
+--contours D writes lines instead of a raster, at all multiples of D (starting at --contour-base), as \
+GeoJSON features with the properties elevation, unit (if it is known), is_closed and index (true for every fifth line from the base, \
+or every N-th with --index N). --mask cuts lines at the polygons. --smooth smooths them; they stay within 0.45 D of \
+their level and never cross. --min-length drops short lines. Higher ground is on the left of a line; a \
+vertex on a level counts as above it. Open lines are held in memory, 16 bytes for each point. \
+--contour-points bounds that: a line with that many points is cut and continued from its last point. \
+Coordinates are those of the mesh, not degrees as RFC 7946 requires; .geojson states their EPSG code as GDAL \
+and QGIS read it.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
+memory, 6 input of another version of spmesh, 141 output closed by its reader.";
+
+/// The message when memory runs out.
+const OUT_OF_MEMORY: &str = "spdem: not enough memory: take larger cells, or less --memory\n";
+
+/// Write the raster or the contour lines of a triangle mesh, in bounded memory.
+///
+/// Reads a triangle mesh stream with elevations and writes a GeoTIFF, an ESRI grid, or lines as GeoJSON. The
+/// triangle of each cell is decided exactly: there are no gaps along edges, and the raster does not depend on
+/// the order of triangles.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+pub struct Flags {
+    /// Stream of a triangle mesh; - is stdin
+    #[arg(value_name = "STREAM", default_value = "-")]
+    input: PathBuf,
+
+    /// File for the raster or the lines; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    cells: CellFlags,
+
+    #[command(flatten)]
+    sheets: SheetFlags,
+
+    #[command(flatten)]
+    contours: ContourFlags,
+
+    #[command(flatten)]
+    quantity: QuantityFlags,
+
+    #[command(flatten)]
+    outline: OutlineFlags,
+
+    /// Fill cells without data, inside of the outline and the mask alone, from the nearest data in eight
+    /// directions, at most this many cells away (1 to 256)
+    #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=256))]
+    fill: Option<u32>,
+
+    /// GeoTIFF or ESRI ASCII grid; for lines, GeoJSON as one collection, or one feature a line [default: by
+    /// the extension of the output, else tif or geojson]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    format: Option<FormatFlag>,
+
+    /// Memory for tiles, and for triangles that wait for the outline of --concave; others wait in temporary
+    /// files (see --temp-dir) [default: 32M]
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    memory: Option<u64>,
+
+    #[command(flatten)]
+    raster: RasterFlags,
+
+    #[command(flatten)]
+    crs: CrsFlag,
+
+    /// Print the counts of the run on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// The values of `--format`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum FormatFlag {
+    Tif,
+    Asc,
+    Geojson,
+    Geojsonl,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// As [`dem::rasterize`] or [`crate::contours::contour`], and if the input or the output cannot be
+/// opened.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    let started = Instant::now();
+    check_apart(flags.inputs(), &[("--output", &flags.output)])?;
+    if flags.format.is_none() {
+        endings::check(&flags.output, &[endings::RASTER, endings::LINES])?;
+    }
+    if let Some(options) = flags.contours.options(&flags.outline, flags.memory, flags.crs.system()?)? {
+        system::exit_at_abort(contours::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+        let job = Job {
+            input: &flags.input,
+            output: &flags.output,
+            format: flags.line_format()?,
+            stats: flags.stats,
+            common: &flags.common,
+        };
+        return contours::run(&job, &options, started, |message| notice(TOOL, &flags.common, message));
+    }
+    if flags.quantity.points {
+        system::exit_at_abort(points::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+        let job = points::Job {
+            input: &flags.input,
+            output: &flags.output,
+            cells: &flags.cells,
+            sheets: &flags.sheets,
+            stats: flags.stats,
+            common: &flags.common,
+        };
+        return Ok(points::run(&job, &flags.point_options()?, started)?);
+    }
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    let options = flags.options()?;
+    let mut output =
+        flags.sheets.create(&flags.output, options.raster.format, &flags.cells, flags.inputs())?;
+    let mut reader = open_stream(&flags.input)?;
+    dem::check(reader.header(), &options.quantity).map_err(|e| e.of_input(reader.name()))?;
+    let window = || dem::window(reader.header()).map_err(|e| e.of_input(reader.name()));
+    let grid = flags.cells.grid(options.crs.as_ref().unwrap_or(&reader.header().crs), window)?;
+    let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
+    let done = |vertices| progress.set(vertices);
+    let stats = dem::rasterize(&mut reader, output.destination(), &grid, &options, done)?;
+    drop(progress);
+    let committed = output.commit()?;
+    let messages = stats.notices.iter().cloned();
+    let messages =
+        messages.chain([cells::summary(&grid, stats.cells - stats.known)]).chain(committed.notice());
+    messages.for_each(|message| notice(TOOL, &flags.common, &message));
+    if let Some(format) = flags.stats {
+        rows::print(format, started.elapsed(), counts(&stats, committed.bytes));
+    }
+    Ok(())
+}
+
+impl Flags {
+    /// The files that are read.
+    fn inputs(&self) -> impl Iterator<Item = &Path> {
+        let inputs = iter::once(self.input.as_path());
+        inputs.chain(self.cells.like().map(PathBuf::as_path)).chain(self.outline.mask_path())
+    }
+
+    fn point_options(&self) -> Result<PointOptions, Error> {
+        Ok(PointOptions {
+            statistic: self.quantity.statistic()?,
+            attribute: self.quantity.attribute.clone(),
+            memory: self.memory.unwrap_or(MEMORY),
+            raster: self.raster.options(self.format()?)?,
+            crs: self.crs.system()?,
+        })
+    }
+
+    fn options(&self) -> Result<Options, Error> {
+        let quantity = self.quantity.quantity()?;
+        let format = self.format()?;
+        match quantity {
+            Quantity::Hillshade(_) => self.raster.check_bytes()?,
+            Quantity::ShadedRelief(..) if format == RasterFormat::Ascii => {
+                return Err(Error::usage(
+                    "a shaded relief has colours, which an ESRI grid cannot hold: write .tif",
+                ));
+            }
+            Quantity::ShadedRelief(..) => self.raster.check_bytes()?,
+            _ => {}
+        }
+        Ok(Options {
+            quantity,
+            sample: self.quantity.sample(),
+            method: self.quantity.method(),
+            kill: self.outline.kill()?,
+            concave: self.outline.concave()?,
+            mask: self.outline.mask()?,
+            fill: self.fill,
+            memory: self.memory.unwrap_or(MEMORY),
+            raster: self.raster.options(format)?,
+            crs: self.crs.system()?,
+        })
+    }
+
+    fn line_format(&self) -> Result<LineFormat, Error> {
+        match self.format {
+            Some(FormatFlag::Geojson) => Ok(LineFormat::GeoJson),
+            Some(FormatFlag::Geojsonl) => Ok(LineFormat::GeoJsonLines),
+            None if cells::format_of(&self.output).is_none() => {
+                Ok(contours::format_of(&self.output).unwrap_or(LineFormat::GeoJson))
+            }
+            _ => Err(Error::usage("lines are no raster: write them to NAME.geojson or NAME.geojsonl")),
+        }
+    }
+
+    fn format(&self) -> Result<RasterFormat, Error> {
+        match self.format {
+            Some(FormatFlag::Tif) => Ok(RasterFormat::GeoTiff),
+            Some(FormatFlag::Asc) => Ok(RasterFormat::Ascii),
+            None if contours::format_of(&self.output).is_none() => {
+                Ok(cells::format_of(&self.output).unwrap_or(RasterFormat::GeoTiff))
+            }
+            _ => Err(Error::usage("GeoJSON holds lines, not rasters: add --contours D")),
+        }
+    }
+}
+
+fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 19] {
+    [
+        ("input (bytes)", "input_bytes", stats.input_bytes),
+        ("vertices", "vertices", stats.vertices),
+        ("triangles", "triangles", stats.triangles),
+        ("triangles with a long edge", "killed", stats.killed),
+        ("triangles outside of the outline", "outside", stats.outside),
+        ("triangles with an unknown value", "unknown", stats.unknown),
+        ("width (live vertices)", "width", stats.width),
+        ("cells", "cells", stats.cells),
+        ("cells with data", "known", stats.known),
+        ("cells that were filled", "filled", stats.filled),
+        ("tiles sent to the disk", "spilled", stats.spilled),
+        ("temporary file (bytes)", "spilled_bytes", stats.spilled_bytes),
+        ("output (bytes)", "output_bytes", output_bytes),
+        ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
+        ("predicates: filter", "predicates_filter", stats.predicates.filter),
+        ("predicates: integer", "predicates_integer", stats.predicates.integer),
+        ("predicates: pairs", "predicates_pairs", stats.predicates.pairs),
+        ("predicates: residues", "predicates_residues", stats.predicates.residues),
+        ("predicates: big integer", "predicates_bigint", stats.predicates.bigint),
+    ]
+}

@@ -1,0 +1,212 @@
+//! Flags that say what cells hold.
+
+use clap::{Args, ValueEnum};
+
+use crate::dem::{Interpolation, Method, Quantity, Sample};
+use crate::points::Statistic;
+use spmesh_base::error::{Error, Result};
+use spmesh_formats::raster::{Differences, Light, Shading};
+use spmesh_shell::parse_numbers;
+
+/// Flags that say what cells hold.
+#[derive(Debug, Clone, Args)]
+pub(super) struct QuantityFlags {
+    /// Read points instead of a mesh, and draw the statistic of --kind of those in each cell: of their elevations, or of
+    /// an --attribute
+    #[arg(long, conflicts_with_all = ["contours", "OutlineFlags", "fill", "interpolation", "sample", "method", "light", "multidirectional", "range"])]
+    pub(super) points: bool,
+
+    /// The quantity in the cells; with --points, from count on [default: elevation; with --points, count]
+    #[arg(long, value_enum, value_name = "KIND")]
+    kind: Option<KindFlag>,
+
+    /// What of the surface over a cell its elevation is, also where slopes and the like follow from it: the elevation at
+    /// the centre, or the mean, the least or the greatest over the part that the mesh covers [default: centre]
+    #[arg(long, value_enum, value_name = "WHAT", conflicts_with_all = ["contours", "fill", "interpolation"])]
+    sample: Option<SampleFlag>,
+
+    /// What slopes, aspects and hillshades are those of: the cells around (Horn, or Zevenbergen and Thorne), or the
+    /// triangle at the centre [default: horn]
+    #[arg(long, value_enum, value_name = "METHOD")]
+    method: Option<MethodFlag>,
+
+    /// Draw an attribute of the points instead of elevations: its name, with :1, :2 ... for one of several
+    /// components; red, green and blue are those of rgb
+    #[arg(long, value_name = "NAME", conflicts_with = "contours")]
+    pub(super) attribute: Option<String>,
+
+    /// How an attribute varies between points: linear, or the value of the nearest corner of the triangle, as
+    /// classes need it [default: linear]
+    #[arg(long, value_enum, value_name = "HOW", requires = "attribute", conflicts_with = "contours")]
+    interpolation: Option<InterpolationFlag>,
+
+    /// Direction of the light of a hillshade, in degrees: clockwise from north, and above the horizon
+    /// [default: 315,45]
+    #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
+    light: Option<[f64; 2]>,
+
+    /// Light a hillshade from four sides, from south-west to north: from no side is a slope flat
+    #[arg(long)]
+    multidirectional: bool,
+
+    /// The elevations that the colours of a shaded relief span; those beyond have the colours of the ends [default: all]
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
+    range: Option<[f64; 2]>,
+}
+
+/// The values of `--kind`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum KindFlag {
+    Elevation,
+    Slope,
+    Aspect,
+    Hillshade,
+    ShadedRelief,
+    Count,
+    Density,
+    Min,
+    Max,
+    Range,
+    Mean,
+    Std,
+}
+
+impl KindFlag {
+    /// What is said of the points in a cell, if it is that.
+    fn statistic(self) -> Option<Statistic> {
+        Some(match self {
+            KindFlag::Count => Statistic::Count,
+            KindFlag::Density => Statistic::Density,
+            KindFlag::Min => Statistic::Min,
+            KindFlag::Max => Statistic::Max,
+            KindFlag::Range => Statistic::Range,
+            KindFlag::Mean => Statistic::Mean,
+            KindFlag::Std => Statistic::Std,
+            _ => return None,
+        })
+    }
+}
+
+/// The values of `--sample`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum SampleFlag {
+    Centre,
+    Mean,
+    Min,
+    Max,
+}
+
+/// The values of `--method`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MethodFlag {
+    Horn,
+    Zevenbergen,
+    Triangle,
+}
+
+/// The values of `--interpolation`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum InterpolationFlag {
+    Linear,
+    Nearest,
+}
+
+impl QuantityFlags {
+    /// What is said of the points in a cell.
+    ///
+    /// # Errors
+    /// Usage, if it is a quantity of a mesh.
+    pub(super) fn statistic(&self) -> Result<Statistic> {
+        self.kind.unwrap_or(KindFlag::Count).statistic().ok_or_else(|| {
+            Error::usage(
+                "points are counted, or have a min, max, range, mean or std: triangulate them for others",
+            )
+        })
+    }
+
+    /// The quantity of a mesh.
+    ///
+    /// # Errors
+    /// Usage, if it is one of points, or flags are for another one.
+    pub(super) fn quantity(&self) -> Result<Quantity> {
+        let kind = self.kind.unwrap_or(KindFlag::Elevation);
+        if kind.statistic().is_some() {
+            return Err(Error::usage(
+                "this --kind is one of points: add --points, and give a stream of spfinalize",
+            ));
+        }
+        self.check(kind)?;
+        let interpolation = match self.interpolation {
+            None | Some(InterpolationFlag::Linear) => Interpolation::Linear,
+            Some(InterpolationFlag::Nearest) => Interpolation::Nearest,
+        };
+        let [azimuth, altitude] = self.light.unwrap_or([315.0, 45.0]);
+        let shading = match self.multidirectional {
+            true => Shading::Many(altitude),
+            false => Shading::One(Light::from(azimuth, altitude)),
+        };
+        Ok(match (&self.attribute, kind) {
+            (Some(name), _) => Quantity::Attribute(name.clone(), interpolation),
+            (None, KindFlag::Slope) => Quantity::Slope,
+            (None, KindFlag::Aspect) => Quantity::Aspect,
+            (None, KindFlag::Hillshade) => Quantity::Hillshade(shading),
+            (None, KindFlag::ShadedRelief) => Quantity::ShadedRelief(shading, self.range),
+            (None, _) => Quantity::Elevation,
+        })
+    }
+
+    /// What of the surface over a cell its elevation is.
+    pub(super) fn sample(&self) -> Sample {
+        match self.sample.unwrap_or(SampleFlag::Centre) {
+            SampleFlag::Centre => Sample::Centre,
+            SampleFlag::Mean => Sample::Mean,
+            SampleFlag::Min => Sample::Min,
+            SampleFlag::Max => Sample::Max,
+        }
+    }
+
+    /// What slopes and the like are those of.
+    pub(super) fn method(&self) -> Method {
+        match self.method.unwrap_or(MethodFlag::Horn) {
+            MethodFlag::Horn => Method::Cells(Differences::Horn),
+            MethodFlag::Zevenbergen => Method::Cells(Differences::ZevenbergenThorne),
+            MethodFlag::Triangle => Method::Triangle,
+        }
+    }
+
+    /// Refuses flags that are for other kinds.
+    fn check(&self, kind: KindFlag) -> Result<()> {
+        if self.light.is_some_and(|light| !light.iter().all(|angle| angle.is_finite())) {
+            return Err(Error::usage("--light takes two angles in degrees"));
+        }
+        let is_lit = matches!(kind, KindFlag::Hillshade | KindFlag::ShadedRelief);
+        let is_relief = kind == KindFlag::ShadedRelief;
+        let is_triangle = self.method == Some(MethodFlag::Triangle);
+        let refusals = [
+            (
+                self.attribute.is_some() && self.kind.is_some(),
+                "--attribute is drawn instead of a --kind: leave out one of them",
+            ),
+            (self.light.is_some() && !is_lit, "--light is for a hillshade: add --kind hillshade"),
+            (self.multidirectional && !is_lit, "--multidirectional is for a hillshade: add --kind hillshade"),
+            (self.range.is_some() && !is_relief, "--range is for a shaded relief: add --kind shaded-relief"),
+            (
+                self.method.is_some() && kind == KindFlag::Elevation,
+                "--method is for slopes, aspects and hillshades: add --kind",
+            ),
+            (is_triangle && self.sample().is_whole(), "--sample is of cells: leave out --method triangle"),
+            (is_triangle && is_relief, "a shaded relief follows from cells: leave out --method triangle"),
+        ];
+        match refusals.iter().find(|(is_wrong, _)| *is_wrong) {
+            Some((_, what)) => Err(Error::usage(*what)),
+            None => self.check_range(),
+        }
+    }
+
+    fn check_range(&self) -> Result<()> {
+        if self.range.is_some_and(|[low, high]| !(low < high && low.is_finite() && high.is_finite())) {
+            return Err(Error::usage("--range takes the least elevation and the greatest"));
+        }
+        Ok(())
+    }
+}

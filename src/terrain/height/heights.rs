@@ -1,0 +1,150 @@
+//! The heights of points above the ground.
+
+use std::num::NonZeroUsize;
+
+use super::blocks::{Blocks, LoadedBlock, Triangle};
+use super::boxes::Box2;
+use super::ground::Ground;
+use super::nearest::Nearest;
+use super::point_grid::{PointGrid, Rows, height_of, set_height};
+use super::surface::{PLAIN_MAX, height, plain_shares, rounded, shares};
+use spmesh_base::error::Result;
+use spmesh_delaunay::parallel;
+use spmesh_stream::model::bounds::Point;
+
+/// Fewest points for which a thread is worth starting.
+const SHARE_MIN: usize = 1 << 12;
+
+/// The unit of heights.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unit {
+    /// Integers that count this many steps of the ground's z, from 1 to 2^21, rounded half away from zero:
+    /// once, and exactly. Domain: the ground has integer coordinates, and so have the points.
+    Steps(f64),
+    /// The unit of the ground's stored z, not rounded to integers.
+    Stored,
+}
+
+impl Unit {
+    /// A height in the ground's stored unit, which is exact but for roundings, in this unit.
+    fn rounded(self, height: f64) -> f64 {
+        match self {
+            Unit::Steps(steps) => (height / steps).round(),
+            Unit::Stored => height,
+        }
+    }
+}
+
+/// The heights of points that are outside of the mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outside {
+    /// None.
+    NoData,
+    /// Those above the nearest place of the mesh.
+    Nearest,
+}
+
+/// Finds heights above a ground, batch by batch, on several threads.
+///
+/// Cost of a batch: a few nanoseconds for each pair of a point and a triangle in neighbouring cells of a grid
+/// over the batch; blocks of triangles without a point nearby are not read.
+///
+/// Memory: 36 bytes for each point of a batch; one block of triangles for each thread.
+#[derive(Debug)]
+pub struct Heights<'g> {
+    blocks: &'g Blocks,
+    unit: Unit,
+    outside: Outside,
+    threads: NonZeroUsize,
+    grid: PointGrid,
+    nearest: Nearest<'g>,
+}
+
+impl<'g> Heights<'g> {
+    /// Prepares to find heights above `ground` on `threads` threads.
+    #[must_use]
+    pub fn new(ground: &'g Ground, unit: Unit, outside: Outside, threads: NonZeroUsize) -> Heights<'g> {
+        let (blocks, grid) = (ground.blocks(), PointGrid::default());
+        Heights { blocks, unit, outside, threads, grid, nearest: Nearest::new(blocks) }
+    }
+
+    /// Replaces `heights` with those of points in stored coordinates of the ground, which may be between its
+    /// steps; NaN for a point without one. Returns the number of points outside of the mesh.
+    ///
+    /// A point on an edge or a vertex has the same height in all triangles there, but for rounding: the first
+    /// triangle counts, whatever the number of threads. Which triangles these are is decided exactly.
+    ///
+    /// # Errors
+    /// If the temporary file fails; usage, if coordinates are too great or too small to interpolate between.
+    pub fn of(&mut self, points: &[Point], heights: &mut Vec<f64>) -> Result<u64> {
+        self.grid.fill(points);
+        let parts = self.threads.get().min(points.len() / SHARE_MIN).max(1);
+        let (blocks, unit) = (self.blocks, self.unit);
+        let work = |(rows, points)| search(blocks, &rows, points, unit);
+        parallel::map(self.threads, self.grid.split(parts), work)?;
+        heights.clear();
+        heights.resize(points.len(), f64::NAN);
+        let mut outside = 0;
+        for (number, point) in self.grid.numbered() {
+            let height = &mut heights[number as usize];
+            if let Some(found) = height_of(point) {
+                *height = found;
+                continue;
+            }
+            outside += 1;
+            if self.outside == Outside::Nearest {
+                let above = point[2] - self.nearest.elevation(point)?.unwrap_or(f64::NAN);
+                *height = unit.rounded(above);
+            }
+        }
+        Ok(outside)
+    }
+}
+
+/// Finds the heights of points in some rows.
+fn search(blocks: &Blocks, rows: &Rows, points: &mut [Point], unit: Unit) -> Result<()> {
+    let (mut block, mut cells) = (LoadedBlock::default(), Vec::new());
+    for number in blocks.that(|bounds| rows.has_points_in(bounds)) {
+        blocks.read(number, &mut block)?;
+        cells.clear();
+        cells.extend(block.vertices().iter().map(|vertex| rows.cell_of(vertex)));
+        for &corners in block.corners() {
+            let [a, b, c] = corners.map(|corner| cells[usize::from(corner)]);
+            let min = [0, 1].map(|axis| a[axis].min(b[axis]).min(c[axis]));
+            let max = [0, 1].map(|axis| a[axis].max(b[axis]).max(c[axis]));
+            let triangle = block.triangle(corners);
+            for range in rows.ranges(min, max) {
+                meet(&triangle, &mut points[range], unit)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Sets the heights of waiting points in a triangle.
+#[inline]
+fn meet(triangle: &Triangle, points: &mut [Point], unit: Unit) -> Result<()> {
+    let bounds = Box2::of(triangle);
+    for point in points {
+        if bounds.contains(point) {
+            meet_point(triangle, &bounds, point, unit)?;
+        }
+    }
+    Ok(())
+}
+
+/// Sets the height of a point, if the triangle contains it. What it needs of the triangle is computed for
+/// each point: most triangles need it for a point or two.
+#[inline(never)]
+fn meet_point(triangle: &Triangle, bounds: &Box2, point: &mut Point, unit: Unit) -> Result<()> {
+    let is_plain = matches!(unit, Unit::Steps(_)) && bounds.longer_side() <= PLAIN_MAX;
+    let shares = if is_plain { plain_shares(triangle, point) } else { shares(triangle, point) };
+    let Some(shares) = shares else { return Ok(()) };
+    let above = height(triangle, shares, point)?;
+    let height = match unit {
+        Unit::Steps(steps) => rounded(triangle, point, above, steps),
+        Unit::Stored => above,
+    };
+    set_height(point, height);
+    Ok(())
+}

@@ -1,0 +1,22 @@
+//! Terrain of triangle meshes: rasters and contour lines, drawn while triangles arrive; rasters of points;
+//! heights above the ground; breaklines.
+//!
+//! | module | program |
+//! |---|---|
+//! | [`dem`], [`contours`], [`points`], [`files`] | `spdem` |
+//! | [`height`] | `spheight`, `spcanopy` |
+//! | [`constrain`] | `spconstrain` |
+//!
+//! `flags`, with the feature of this name, has their command lines.
+
+mod accumulators;
+pub mod constrain;
+pub mod contours;
+mod counterclockwise;
+pub mod dem;
+pub mod files;
+#[cfg(feature = "flags")]
+pub mod flags;
+pub mod height;
+pub mod points;
+mod surface;
