@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use spmesh_formats::source::structure::{Class, Models, Selection, Structure, read_structure};
+use spmesh_formats::molecules::{Class, Models, Selection, Structure, read_structure};
 
 fn main() -> std::io::Result<()> {
     let mut files: Vec<String> = std::env::args().skip(1).collect();
@@ -45,7 +45,7 @@ fn print(structure: &Structure, output: &mut impl Write) -> std::io::Result<()> 
     for warning in &structure.warnings {
         writeln!(output, "warning\t{warning}")?;
     }
-    let altlocs = spmesh_formats::source::structure::Altlocs::All;
+    let altlocs = spmesh_formats::molecules::Altlocs::All;
     let all = Selection { models: Models::All, altlocs, ..Selection::default() };
     let selected = structure.select(&all).expect("all atoms can be selected");
     for index in 0..selected.points().len() {

@@ -1,10 +1,22 @@
 //! Files of other programs: points, meshes, molecules, volumes and rasters, read and written.
 
-mod cell_index;
+mod cad;
 pub mod crs;
 pub mod detect;
+mod historical;
 pub mod las;
+mod lines;
+pub mod molecules;
+mod npy;
+mod obj;
 pub mod outline;
+mod ply;
 pub mod raster;
+mod raw;
 pub mod sink;
 pub mod source;
+mod tables;
+mod text;
+mod twin;
+pub mod volumes;
+mod vtk;

@@ -190,8 +190,18 @@ fn extreme_tetrahedra_are_never_claimed() {
     let tiny = [[0.0; 3], [1.0, 1e-310, 0.0], [0.0, 1.0, 1e-310], [1e-310, 0.0, 1.0]];
     assert!(SphereBounds::FLOAT.ball_inside(tiny, finite.sides()));
     for greatest in [f64::NAN, f64::INFINITY, 1e300] {
-        assert!(!SphereBounds::FLOAT.power_ball_inside(corner(1.0), [0.0; 4], greatest, Region::EVERYTHING.sides()));
+        assert!(!SphereBounds::FLOAT.power_ball_inside(
+            corner(1.0),
+            [0.0; 4],
+            greatest,
+            Region::EVERYTHING.sides()
+        ));
     }
-    assert!(!SphereBounds::FLOAT.power_ball_inside(corner(1.0), [0.0, 1e300, 0.0, 0.0], 1e300, finite.sides()));
+    assert!(!SphereBounds::FLOAT.power_ball_inside(
+        corner(1.0),
+        [0.0, 1e300, 0.0, 0.0],
+        1e300,
+        finite.sides()
+    ));
     assert!(SphereBounds::FLOAT.power_ball_inside(corner(1.0), [1.0, 2.0, 3.0, -7.0], 3.0, finite.sides()));
 }

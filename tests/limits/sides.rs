@@ -5,8 +5,8 @@ use spmesh_base::limits::{
     GEOJSON_LEN_MAX, LIST_FILES_MAX, NPY_HEADER_MAX, NRRD_FILES_MAX, NRRD_HEADER_MAX, NUMBER_LEN_MAX,
     STRUCTURE_LINE_MAX, TEXT_LINE_MAX, XML_DEPTH_MAX, XML_TAG_MAX,
 };
-use spmesh_formats::source::points4::Condition;
 use spmesh_formats::source::{read_mask, read_polylines};
+use spmesh_formats::volumes::Condition;
 
 use crate::programs::{Folder, outcome, run};
 

@@ -1,7 +1,7 @@
 //! Grids without values.
 
 use spmesh_base::error::ErrorKind;
-use spmesh_formats::source::points4::{From4, Request, Selection, Share, Spacing, read_points4};
+use spmesh_formats::volumes::{From4, Request, Selection, Share, Spacing, read_points4};
 
 use super::{all, assert_fails, with_condition};
 

@@ -13,7 +13,7 @@ use std::io::Write;
 use std::path::Path;
 
 use spmesh_base::error::{ErrorKind, Result};
-use spmesh_formats::source::points4::{From4, Request, Selected4, Selection, Spacing, read_points4};
+use spmesh_formats::volumes::{From4, Request, Selected4, Selection, Spacing, read_points4};
 use spmesh_stream::model::cells4::Point4;
 
 use crate::programs::Folder;

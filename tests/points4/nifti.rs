@@ -1,7 +1,7 @@
 //! NIfTI-1 volumes.
 
 use spmesh_base::error::{ErrorKind, Result};
-use spmesh_formats::source::points4::{From4, Request, Selected4, Spacing, read_points4};
+use spmesh_formats::volumes::{From4, Request, Selected4, Spacing, read_points4};
 
 use super::{all, assert_fails, gzip, read, sample, value_at, with_condition};
 use crate::programs::Folder;

@@ -1,7 +1,7 @@
 //! NRRD volumes.
 
 use spmesh_base::error::Result;
-use spmesh_formats::source::points4::{From4, Request, Selected4, Spacing, read_points4};
+use spmesh_formats::volumes::{From4, Request, Selected4, Spacing, read_points4};
 
 use super::{all, gzip, read, sample, value_at, with_condition};
 use crate::programs::Folder;

@@ -1,7 +1,7 @@
 //! Damaged NRRD headers and data.
 
 use spmesh_base::error::ErrorKind;
-use spmesh_formats::source::points4::{From4, read_points4};
+use spmesh_formats::volumes::{From4, read_points4};
 
 use super::{all, assert_fails, gzip, read};
 use crate::programs::Folder;

@@ -1,7 +1,7 @@
 //! Volumes of raw numbers without a header.
 
 use spmesh_base::error::{ErrorKind, Result};
-use spmesh_formats::source::points4::{From4, RawLayout, Selected4, parse_sizes, read_points4};
+use spmesh_formats::volumes::{From4, RawLayout, Selected4, parse_sizes, read_points4};
 
 use super::{all, assert_fails, gzip};
 use crate::programs::Folder;

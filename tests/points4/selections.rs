@@ -1,6 +1,6 @@
 //! Points of volumes, selected by their values and at random.
 
-use spmesh_formats::source::points4::{From4, Share, read_points4};
+use spmesh_formats::volumes::{From4, Share, read_points4};
 
 use super::{all, with_condition};
 use crate::programs::Folder;

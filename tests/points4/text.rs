@@ -1,7 +1,7 @@
 //! Lines of x y z t.
 
 use spmesh_base::error::ErrorKind;
-use spmesh_formats::source::points4::{From4, read_points4};
+use spmesh_formats::volumes::{From4, read_points4};
 
 use super::{all, assert_fails, gzip, read, with_condition};
 use crate::programs::Folder;

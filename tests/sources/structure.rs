@@ -5,7 +5,7 @@ use std::io::{Cursor, Write};
 use std::path::Path;
 
 use spmesh_base::error::{ErrorKind, Result};
-use spmesh_formats::source::structure::{
+use spmesh_formats::molecules::{
     Altlocs, Atom, Format, Models, Selection, Structure, read_structure, read_structure_from,
 };
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};

@@ -5,7 +5,7 @@ use super::structure::{atoms, gzip, read};
 use crate::allocation::largest_during;
 use crate::programs::Folder;
 use spmesh_base::error::ErrorKind;
-use spmesh_formats::source::structure::read_structure;
+use spmesh_formats::molecules::read_structure;
 
 /// Largest single allocation that a damaged small file may cause: buffers for reading.
 const ALLOCATION_MAX: usize = 1 << 18;

@@ -1,7 +1,7 @@
 //! Radii of atoms: tables of the literature, files of the user, and elements that only names tell.
 
 use spmesh_base::error::{ErrorKind, Result};
-use spmesh_formats::source::structure::{Radii, Structure};
+use spmesh_formats::molecules::{Radii, Structure};
 
 use super::assert_fails;
 use super::structure::read;

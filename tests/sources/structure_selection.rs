@@ -1,7 +1,7 @@
 //! Selections: which atoms are kept, and how the points are labelled.
 
 use spmesh_base::error::ErrorKind;
-use spmesh_formats::source::structure::{Altlocs, Atoms, Models, Selection, Structure, read_structure};
+use spmesh_formats::molecules::{Altlocs, Atoms, Models, Selection, Structure, read_structure};
 
 use super::structure::read;
 use super::{assert_fails, sample};

@@ -1,8 +1,8 @@
 //! Whether two systems mean the same, and in what they differ.
 
-use super::epsg;
-use super::names::is_same_datum;
-use super::system::{Ellipsoid, Geographic, Horizontal, Kind, Projection, System, Vertical};
+use crate::crs::epsg;
+use crate::crs::names::is_same_datum;
+use crate::crs::system::{Ellipsoid, Geographic, Horizontal, Kind, Projection, System, Vertical};
 
 /// Degrees: a tenth of a millimetre on the ground.
 const ANGLE_TOLERANCE: f64 = 1e-9;
@@ -116,7 +116,7 @@ impl Differences {
             return self.add("projection", of_a.name, of_b.name);
         }
         for &(role, _) in of_a.parameters {
-            use super::methods::Dimension::{Angle, Length, Ratio};
+            use crate::crs::methods::Dimension::{Angle, Length, Ratio};
             let tolerance = match role.dimension() {
                 Angle => ANGLE_TOLERANCE,
                 Length => LENGTH_TOLERANCE,

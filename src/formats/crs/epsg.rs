@@ -2,10 +2,10 @@
 
 use std::sync::LazyLock;
 
-use super::from_wkt;
-use super::names::{is_empty, is_same_datum};
-use super::system::{Geographic, Kind, System, Vertical};
-use super::units::Unit;
+use crate::crs::from_wkt;
+use crate::crs::names::{is_empty, is_same_datum};
+use crate::crs::system::{Geographic, Kind, System, Vertical};
+use crate::crs::units::Unit;
 
 /// Codes of coordinate reference systems lie below.
 const CODES: std::ops::Range<u32> = 1024..33_000;

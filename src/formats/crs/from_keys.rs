@@ -2,11 +2,11 @@
 //!
 //! Sources: OGC GeoTIFF 1.1; GeoTIFF 1.0, section 6.3, for codes of older files.
 
-use super::epsg;
-use super::keys::{self, GeoKeys};
-use super::methods::{Dimension, Method, Role};
-use super::system::{Ellipsoid, Geographic, Horizontal, Kind, Projection, System, Vertical};
-use super::units::Unit;
+use crate::crs::epsg;
+use crate::crs::keys::{self, GeoKeys};
+use crate::crs::methods::{Dimension, Method, Role};
+use crate::crs::system::{Ellipsoid, Geographic, Horizontal, Kind, Projection, System, Vertical};
+use crate::crs::units::Unit;
 
 /// Codes of ellipsoids that GeoTIFF 1.0 used for heights above them.
 const ELLIPSOIDAL_HEIGHTS: std::ops::RangeInclusive<u16> = 5001..=5033;

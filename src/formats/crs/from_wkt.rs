@@ -1,11 +1,11 @@
 //! Systems from well-known text: WKT 1 of OGC, GDAL and ESRI, and WKT 2.
 
-use super::epsg;
-use super::methods::{Dimension, Method, Role};
-use super::names::{is_empty, letters};
-use super::system::{Ellipsoid, Geographic, Horizontal, Kind, Projection, System, Vertical};
-use super::units::Unit;
-use super::wkt::{Node, parse};
+use crate::crs::epsg;
+use crate::crs::methods::{Dimension, Method, Role};
+use crate::crs::names::{is_empty, letters};
+use crate::crs::system::{Ellipsoid, Geographic, Horizontal, Kind, Projection, System, Vertical};
+use crate::crs::units::Unit;
+use crate::crs::wkt::{Node, parse};
 
 const COMPOUND: [&str; 2] = ["COMPD_CS", "COMPOUNDCRS"];
 const PROJECTED: [&str; 3] = ["PROJCS", "PROJCRS", "PROJECTEDCRS"];

@@ -3,7 +3,7 @@
 //! Sources: EPSG Guidance Note 7-2; GeoTIFF 1.1, annexes B and C; for the keys that readers expect with each
 //! method, the GeoTIFF pages on projections (geotiff.maptools.org/proj_list).
 
-use super::names::letters;
+use crate::crs::names::letters;
 
 /// What a parameter is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

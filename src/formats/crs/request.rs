@@ -6,8 +6,8 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::CRS_LEN_MAX;
 use spmesh_stream::Crs;
 
-use super::epsg;
-use super::from_wkt;
+use crate::crs::epsg;
+use crate::crs::from_wkt;
 
 /// The system of an argument: `EPSG:n`, `EPSG:n+m` (n for x and y, m for heights), well-known text, or the
 /// name of a file with such text, as `.prj` files have it.

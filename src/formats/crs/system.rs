@@ -1,7 +1,7 @@
 //! What a coordinate reference system means, whatever it is written in.
 
-use super::methods::{Method, Role};
-use super::units::Unit;
+use crate::crs::methods::{Method, Role};
+use crate::crs::units::Unit;
 
 /// The meaning of a coordinate reference system.
 ///
@@ -80,7 +80,7 @@ pub struct Ellipsoid {
 pub struct Projection {
     /// The name of its method.
     pub method_name: String,
-    /// Its method, if it is one of [`METHODS`](super::methods).
+    /// Its method, if it is one of [`METHODS`](crate::crs::methods).
     pub(crate) method: Option<&'static Method>,
     /// Its parameters: in degrees, metres, or without a unit.
     pub(crate) parameters: Vec<(Role, f64)>,

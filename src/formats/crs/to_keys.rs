@@ -3,12 +3,12 @@
 //! Source: OGC GeoTIFF 1.1. Systems with a code are written as their code, others with user-defined keys. What
 //! keys cannot say is reported.
 
-use super::compare::contradictions;
-use super::epsg;
-use super::keys::{self, GeoKeys, USER_DEFINED};
-use super::methods::Dimension;
-use super::system::{Geographic, Horizontal, Kind, Projection, System, Vertical};
-use super::units::Unit;
+use crate::crs::compare::contradictions;
+use crate::crs::epsg;
+use crate::crs::keys::{self, GeoKeys, USER_DEFINED};
+use crate::crs::methods::Dimension;
+use crate::crs::system::{Geographic, Horizontal, Kind, Projection, System, Vertical};
+use crate::crs::units::Unit;
 
 /// The header of a directory: version, revision, minor revision. Readers such as GDAL take vertical keys into
 /// account from minor revision 1 on.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::names::letters;
+use crate::crs::names::letters;
 
 /// Two sizes of units are the same if they differ by less than this part. The closest kinds of feet differ by
 /// eight parts in ten million; files state at least eight digits.

@@ -2,7 +2,7 @@
 
 use spmesh_base::error::{Error, Result};
 
-use super::{Format, HEAD_LEN, detect};
+use crate::detect::{Format, HEAD_LEN, detect};
 
 /// A tool that reads inputs of several formats.
 #[derive(Debug)]

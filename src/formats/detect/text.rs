@@ -1,6 +1,6 @@
 //! Recognizes text formats by a line that no other format has.
 
-use super::Format;
+use crate::detect::Format;
 
 /// Record names of PDB except ATOM and HETATM: words that rarely start a line of another text.
 const PDB_RECORDS: [&[u8]; 22] = [

@@ -6,7 +6,7 @@ use laz::laszip::{ChunkTable, ChunkTableEntry};
 use laz::record::{LayeredPointRecordCompressor, RecordCompressor, SequentialPointRecordCompressor};
 use laz::{LazItem, LazItemRecordBuilder, LazVlr, LazVlrBuilder};
 
-use super::file::LasFile;
+use crate::las::file::LasFile;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::parallel::OrderedPool;
 
@@ -20,7 +20,7 @@ const LAYERED_FORMAT: u8 = 6;
 ///
 /// # Errors
 /// If the library does not compress records of this format.
-pub(super) fn laszip(file: &LasFile, extra_len: usize) -> Result<LazVlr> {
+pub(crate) fn laszip(file: &LasFile, extra_len: usize) -> Result<LazVlr> {
     let format = file.header.format;
     let too_many = || Error::usage(format!("{extra_len} extra bytes are too many for LAZ"));
     let extra_len = u16::try_from(extra_len).map_err(|_| too_many())?;
@@ -35,7 +35,7 @@ pub(super) fn laszip(file: &LasFile, extra_len: usize) -> Result<LazVlr> {
 /// Takes records, and writes compressed chunks.
 ///
 /// Memory: the records under way, at most `ahead_max` bytes of them and one more chunk.
-pub(super) struct ChunkWriter {
+pub(crate) struct ChunkWriter {
     vlr: LazVlr,
     chunk_len: usize,
     /// The records of the next chunk.
@@ -57,7 +57,7 @@ impl ChunkWriter {
     ///
     /// # Errors
     /// If the system refuses a thread.
-    pub(super) fn start(
+    pub(crate) fn start(
         vlr: &LazVlr,
         is_layered: bool,
         threads: usize,
@@ -79,7 +79,7 @@ impl ChunkWriter {
     }
 
     /// Whether points of a format are compressed in layers.
-    pub(super) fn is_layered(format: u8) -> bool {
+    pub(crate) fn is_layered(format: u8) -> bool {
         format >= LAYERED_FORMAT
     }
 
@@ -87,7 +87,7 @@ impl ChunkWriter {
     ///
     /// # Errors
     /// If compressing or writing fails.
-    pub(super) fn take(&mut self, mut records: &[u8], output: &mut impl Write) -> Result<()> {
+    pub(crate) fn take(&mut self, mut records: &[u8], output: &mut impl Write) -> Result<()> {
         while !records.is_empty() {
             let room = self.chunk_len - self.records.len();
             let (now, later) = records.split_at(room.min(records.len()));
@@ -104,7 +104,7 @@ impl ChunkWriter {
     ///
     /// # Errors
     /// If compressing or writing fails.
-    pub(super) fn finish(mut self, output: &mut impl Write) -> Result<Vec<u8>> {
+    pub(crate) fn finish(mut self, output: &mut impl Write) -> Result<Vec<u8>> {
         if !self.records.is_empty() {
             self.give(output)?;
         }

@@ -2,10 +2,10 @@
 
 use std::io::{Seek, SeekFrom, Write};
 
-use super::chunks::{ChunkWriter, laszip};
-use super::field::{ExtraField, with_field};
-use super::file::LasFile;
-use super::records::{RecordList, copy_range};
+use crate::las::chunks::{ChunkWriter, laszip};
+use crate::las::field::{ExtraField, with_field};
+use crate::las::file::LasFile;
+use crate::las::records::{RecordList, copy_range};
 use crate::source::origin::FileView;
 use spmesh_base::error::{Error, Result};
 

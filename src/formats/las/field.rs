@@ -3,7 +3,7 @@
 use spmesh_base::error::{Error, Result};
 
 /// Length of the description of a field.
-pub(super) const DESCRIPTION_LEN: usize = 192;
+pub(crate) const DESCRIPTION_LEN: usize = 192;
 /// Longest name, and longest text about it. Units: bytes.
 const TEXT_LEN: usize = 32;
 
@@ -48,7 +48,7 @@ impl ExtraField {
     pub const LEN: usize = 4;
 
     /// The description in the record LASF_Spec 4.
-    pub(super) fn description(&self) -> [u8; DESCRIPTION_LEN] {
+    pub(crate) fn description(&self) -> [u8; DESCRIPTION_LEN] {
         let mut bytes = [0; DESCRIPTION_LEN];
         let mut put = |at: usize, value: &[u8]| bytes[at..at + value.len()].copy_from_slice(value);
         put(KIND, &[KIND_I32]);
@@ -71,7 +71,7 @@ fn short(text: &str) -> &[u8] {
 ///
 /// # Errors
 /// Usage, if there is a field of that name.
-pub(super) fn with_field(
+pub(crate) fn with_field(
     described: &[u8],
     extra_len: usize,
     field: &ExtraField,

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use laz::DecompressionSelection;
 
 use crate::detect::{Format, SPHEIGHT, read_head};
-use crate::source::las_header::{LasHeader, RECORD_LENS};
-use crate::source::laz::LazRecords;
+use crate::las::header::{LasHeader, RECORD_LENS};
+use crate::las::laz::LazRecords;
 use crate::source::name_of;
 use crate::source::origin::{Admitted, FileView, Origin};
 use crate::source::record_reader::RecordReader;
@@ -19,7 +19,7 @@ use spmesh_stream::{Coordinates, Crs};
 pub struct LasFile {
     name: String,
     origin: Origin,
-    pub(super) header: LasHeader,
+    pub(crate) header: LasHeader,
     notices: Vec<String>,
 }
 
@@ -96,11 +96,11 @@ impl LasFile {
     }
 
     /// Bytes of a point record that its format states; extra bytes follow them.
-    pub(super) fn core_len(&self) -> usize {
+    pub(crate) fn core_len(&self) -> usize {
         RECORD_LENS[usize::from(self.header.format)]
     }
 
-    pub(super) fn view(&self) -> Result<FileView> {
+    pub(crate) fn view(&self) -> Result<FileView> {
         self.origin.view()
     }
 

@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::ops::Range;
 
-use crate::source::las_header::{EVLR_HEADER_LEN, VLR_HEADER_LEN};
+use crate::las::header::{EVLR_HEADER_LEN, VLR_HEADER_LEN};
 use crate::source::origin::FileView;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::HEADER_BODY_MAX;
@@ -21,10 +21,10 @@ const COPC: &[u8] = b"copc";
 
 /// A record with its head.
 #[derive(Debug, Clone)]
-pub(super) struct Record {
+pub(crate) struct Record {
     head: Vec<u8>,
     /// First byte of the record in the file that it is from.
-    pub(super) start: u64,
+    pub(crate) start: u64,
     body: Body,
 }
 
@@ -37,10 +37,10 @@ enum Body {
 
 /// Records that follow each other in a file.
 #[derive(Debug, Default)]
-pub(super) struct RecordList {
-    pub(super) records: Vec<Record>,
+pub(crate) struct RecordList {
+    pub(crate) records: Vec<Record>,
     /// The byte after the last one.
-    pub(super) end: u64,
+    pub(crate) end: u64,
     is_extended: bool,
 }
 
@@ -49,7 +49,7 @@ impl RecordList {
     ///
     /// # Errors
     /// If reading fails.
-    pub(super) fn read(
+    pub(crate) fn read(
         file: &FileView,
         start: u64,
         end: u64,
@@ -80,7 +80,7 @@ impl RecordList {
 
     /// Removes the records of COPC, which are of use only while points are in its order, and the record of
     /// the compression. Returns whether it was COPC.
-    pub(super) fn drop_arrangement(&mut self) -> bool {
+    pub(crate) fn drop_arrangement(&mut self) -> bool {
         let before = self.records.len();
         self.records.retain(|record| record.user() != COPC);
         let was_copc = self.records.len() < before;
@@ -93,7 +93,7 @@ impl RecordList {
     ///
     /// # Errors
     /// If reading fails, or a record is too long.
-    pub(super) fn take_descriptions(&mut self, file: &FileView) -> Result<(Vec<u8>, Option<usize>)> {
+    pub(crate) fn take_descriptions(&mut self, file: &FileView) -> Result<(Vec<u8>, Option<usize>)> {
         let first = self.records.iter().position(|record| record.id() == EXTRA_BYTES);
         let mut descriptions = Vec::new();
         for record in self.records.iter().filter(|record| record.id() == EXTRA_BYTES) {
@@ -107,7 +107,7 @@ impl RecordList {
     ///
     /// # Errors
     /// Usage, if they are too long.
-    pub(super) fn put_descriptions(&mut self, place: usize, descriptions: Vec<u8>) -> Result<()> {
+    pub(crate) fn put_descriptions(&mut self, place: usize, descriptions: Vec<u8>) -> Result<()> {
         self.insert(place, EXTRA_BYTES, "extra bytes", descriptions)
     }
 
@@ -115,7 +115,7 @@ impl RecordList {
     ///
     /// # Errors
     /// If it is too long.
-    pub(super) fn push_laszip(&mut self, body: Vec<u8>) -> Result<()> {
+    pub(crate) fn push_laszip(&mut self, body: Vec<u8>) -> Result<()> {
         self.insert(self.records.len(), LASZIP, laz::LazVlr::DESCRIPTION, body)
     }
 
@@ -141,7 +141,7 @@ impl RecordList {
     }
 
     /// Bytes of all records.
-    pub(super) fn len(&self) -> u64 {
+    pub(crate) fn len(&self) -> u64 {
         self.records.iter().map(Record::len).sum()
     }
 
@@ -149,7 +149,7 @@ impl RecordList {
     ///
     /// # Errors
     /// If reading or writing fails.
-    pub(super) fn write(&self, file: &FileView, output: &mut impl Write) -> Result<()> {
+    pub(crate) fn write(&self, file: &FileView, output: &mut impl Write) -> Result<()> {
         for record in &self.records {
             output.write_all(&record.head).map_err(|e| Error::io("writing", e))?;
             match &record.body {
@@ -170,7 +170,7 @@ impl Record {
         (self.user(), u16::from_le_bytes([self.head[NUMBER.start], self.head[NUMBER.start + 1]]))
     }
 
-    pub(super) fn len(&self) -> u64 {
+    pub(crate) fn len(&self) -> u64 {
         let body = match &self.body {
             Body::Same(range) => range.end - range.start,
             Body::New(bytes) => bytes.len() as u64,
@@ -199,7 +199,7 @@ impl Record {
 ///
 /// # Errors
 /// If reading or writing fails.
-pub(super) fn copy_range(file: &FileView, range: Range<u64>, output: &mut impl Write) -> Result<()> {
+pub(crate) fn copy_range(file: &FileView, range: Range<u64>, output: &mut impl Write) -> Result<()> {
     let mut from = file.range(range.start, range.end);
     let mut buffer = vec![0; 1 << 16];
     loop {

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use bytemuck::{Pod, Zeroable};
 use foldhash::{HashMap, HashMapExt, HashSet, HashSetExt};
 
-use super::limit::EdgeLimit;
+use crate::outline::limit::EdgeLimit;
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::temporary::TemporaryFile;
 use spmesh_stream::Coordinates;

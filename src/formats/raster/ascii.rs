@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::{Grid, NoData, RasterFile};
+use crate::raster::{Grid, NoData, RasterFile};
 use spmesh_base::error::{Error, Result};
 
 /// Writes rows as lines of text.

@@ -1,6 +1,6 @@
 //! Colour maps that are perceptually uniform and ordered by lightness.
 
-use super::Light;
+use crate::raster::Light;
 
 /// Red, green and blue.
 pub type Colour = [u8; 3];

@@ -6,9 +6,9 @@ use std::path::Path;
 use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
-use super::Grid;
-use super::geotiff::{KEY_DIRECTORY, KEY_DOUBLES, KEY_TEXTS, PIXEL_SCALE, TIEPOINT};
 use crate::crs::{GeoKeys, System, differences};
+use crate::raster::Grid;
+use crate::raster::geotiff::{KEY_DIRECTORY, KEY_DOUBLES, KEY_TEXTS, PIXEL_SCALE, TIEPOINT};
 use crate::source::open_file;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::Crs;

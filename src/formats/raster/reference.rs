@@ -1,7 +1,7 @@
 //! What a raster says of its coordinates.
 
-use super::RasterFormat;
 use crate::crs::{GeoKeys, System, geotiff_keys};
+use crate::raster::RasterFormat;
 use spmesh_stream::Crs;
 
 /// A coordinate reference system, as files of a format hold it.

@@ -1,6 +1,6 @@
 //! What formats of surveyors take from a mesh: triangles with coordinates, and the edges on lines.
 
-use super::world::world_of;
+use crate::sink::world::world_of;
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{ConstraintEdges, Event, Header, LiveVertices, Patch};
@@ -8,7 +8,7 @@ use spmesh_stream::{ConstraintEdges, Event, Header, LiveVertices, Patch};
 /// Vertices that are live, and the lines of segments.
 ///
 /// Memory: the width of the stream, 4 bytes per segment, and the edges of the border on segments.
-pub(super) struct Surveyed {
+pub(crate) struct Surveyed {
     header: Header,
     live: LiveVertices<Point>,
     edges: ConstraintEdges,
@@ -17,31 +17,31 @@ pub(super) struct Surveyed {
 }
 
 /// An edge on a line.
-pub(super) struct LineEdge {
+pub(crate) struct LineEdge {
     /// The number of the line in its file.
-    pub(super) line: u32,
+    pub(crate) line: u32,
     /// Local indices.
-    pub(super) ends: [u32; 2],
+    pub(crate) ends: [u32; 2],
 }
 
 /// A patch with world coordinates.
-pub(super) struct SurveyedPatch<'a> {
-    pub(super) patch: &'a Patch,
+pub(crate) struct SurveyedPatch<'a> {
+    pub(crate) patch: &'a Patch,
     /// World coordinates of the local vertices.
-    pub(super) places: Vec<Point>,
+    pub(crate) places: Vec<Point>,
     /// Edges on lines that no earlier triangle stated.
-    pub(super) edges: Vec<LineEdge>,
+    pub(crate) edges: Vec<LineEdge>,
 }
 
 impl SurveyedPatch<'_> {
     /// The places of the ends of an edge.
-    pub(super) fn ends(&self, edge: &LineEdge) -> [Point; 2] {
+    pub(crate) fn ends(&self, edge: &LineEdge) -> [Point; 2] {
         edge.ends.map(|local| self.places[local as usize])
     }
 }
 
 impl Surveyed {
-    pub(super) fn new(header: &Header) -> Self {
+    pub(crate) fn new(header: &Header) -> Self {
         Surveyed {
             header: header.clone(),
             live: LiveVertices::new(),
@@ -50,7 +50,7 @@ impl Surveyed {
         }
     }
 
-    pub(super) fn header(&self) -> &Header {
+    pub(crate) fn header(&self) -> &Header {
         &self.header
     }
 
@@ -58,7 +58,7 @@ impl Surveyed {
     ///
     /// # Errors
     /// Malformed, if a patch uses a vertex that is final.
-    pub(super) fn event<'a>(&mut self, event: &'a Event) -> Result<Option<SurveyedPatch<'a>>> {
+    pub(crate) fn event<'a>(&mut self, event: &'a Event) -> Result<Option<SurveyedPatch<'a>>> {
         match event {
             Event::Segments(segments) => self.lines.extend(segments.iter().map(|segment| segment.line)),
             Event::Patch(patch) => {

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::write_error;
+use crate::sink::write_error;
 use spmesh_base::error::Result;
 
 const ELEMENTS_PER_BLOCK: u32 = 32;
@@ -11,7 +11,7 @@ const ELEMENTS_PER_BLOCK: u32 = 32;
 ///
 /// A block is a u32 whose bit i tells whether element i is a point (1) or of the other type (0), then the
 /// elements. All blocks but the last have 32 elements; the last has fewer, possibly none.
-pub(super) struct ElementBlocks<W> {
+pub(crate) struct ElementBlocks<W> {
     output: W,
     descriptor: u32,
     count: u32,
@@ -19,12 +19,12 @@ pub(super) struct ElementBlocks<W> {
 }
 
 impl<W: Write> ElementBlocks<W> {
-    pub(super) fn new(output: W) -> Self {
+    pub(crate) fn new(output: W) -> Self {
         ElementBlocks { output, descriptor: 0, count: 0, elements: Vec::new() }
     }
 
     /// Appends an element.
-    pub(super) fn push(&mut self, is_point: bool, element: &[u8]) -> Result<()> {
+    pub(crate) fn push(&mut self, is_point: bool, element: &[u8]) -> Result<()> {
         self.descriptor |= u32::from(is_point) << self.count;
         self.count += 1;
         self.elements.extend_from_slice(element);
@@ -32,13 +32,13 @@ impl<W: Write> ElementBlocks<W> {
     }
 
     /// Writes the last block and flushes.
-    pub(super) fn end(&mut self) -> Result<()> {
+    pub(crate) fn end(&mut self) -> Result<()> {
         self.write_block()?;
         self.output.flush().map_err(write_error)
     }
 
     /// What the blocks are written to.
-    pub(super) fn output(&mut self) -> &mut W {
+    pub(crate) fn output(&mut self) -> &mut W {
         &mut self.output
     }
 

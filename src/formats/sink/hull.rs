@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use foldhash::{HashMap, HashMapExt};
 
-use super::{EventSink, lost_attributes};
+use crate::sink::{EventSink, lost_attributes};
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind, LiveVertices, Patch, Totals};

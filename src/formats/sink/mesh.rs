@@ -2,9 +2,9 @@
 
 use std::io::Write;
 
-use super::ply_properties::{self as properties, Properties};
-use super::vtu::{Cells, Content, Data, END, POLYGON, TETRAHEDRON, TRIANGLE, arrays, head};
-use super::write_error;
+use crate::ply::properties::{self as properties, Properties};
+use crate::sink::write_error;
+use crate::vtk::vtu::{Cells, Content, Data, END, POLYGON, TETRAHEDRON, TRIANGLE, arrays, head};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::attributes::Attributes;
 use spmesh_stream::model::bounds::Point;

@@ -1,59 +1,37 @@
 //! Writers of every format that a stream can be converted to. Their input is the events of a stream.
 //! Tables, and arrays and sparse matrices for numpy, get their rows from their caller.
 
-mod constrained;
-mod constraint_geojson;
-mod dxf;
-mod elements;
-mod historical_cells;
-mod hull;
-mod landxml;
-mod medit;
-mod mesh;
-mod npy;
-mod obj;
-mod ply;
-mod ply_properties;
-mod rows;
-mod sma;
-mod smb;
-mod spa;
-mod sparse_matrix;
-mod spb;
-mod spm;
-mod spool;
-mod table;
-mod triangles;
-mod twin;
-mod twin4;
-mod twin_configurations;
-mod twin_constraints;
-mod twin_functions;
-mod volume;
-mod vtu;
-mod world;
+pub(crate) mod constrained;
+pub(crate) mod elements;
+pub(crate) mod hull;
+pub(crate) mod mesh;
+pub(crate) mod rows;
+pub(crate) mod spm;
+pub(crate) mod spool;
+pub(crate) mod triangles;
+pub(crate) mod world;
 
-pub use constraint_geojson::GeoJsonSink;
-pub use dxf::DxfSink;
+pub use crate::cad::dxf::DxfSink;
+pub use crate::cad::landxml::LandXmlSink;
+pub use crate::cad::medit::MeditSink;
+pub use crate::historical::write_sma::SmaSink;
+pub use crate::historical::write_smb::SmbSink;
+pub use crate::historical::write_spa::SpaSink;
+pub use crate::historical::write_spb::SpbSink;
+pub use crate::lines::write_geojson::GeoJsonSink;
+pub use crate::npy::sparse_matrix::{MatrixFormat, SparseRows};
+pub use crate::npy::write::{NPY_F64, NpyRows, npy_header};
+pub use crate::obj::write::ObjSink;
+pub use crate::ply::write::{PlyEncoding, PlySink};
+pub use crate::tables::{Column, ColumnKind, TableFormat, TableSink};
+pub use crate::twin::write::TwinSink;
+pub use crate::volumes::write::write_volume;
+pub use crate::vtk::vtu::VtuSink;
 pub use hull::{HullSink, surface_header};
-pub use landxml::LandXmlSink;
-pub use medit::MeditSink;
 pub use mesh::{Mesh, Shape, Table};
-pub use npy::{NPY_F64, NpyRows, npy_header};
-pub use obj::ObjSink;
-pub use ply::{PlyEncoding, PlySink};
-pub use sma::SmaSink;
-pub use smb::SmbSink;
-pub use spa::SpaSink;
-pub use sparse_matrix::{MatrixFormat, SparseRows};
-pub use spb::SpbSink;
 pub use spm::SpmSink;
-pub use table::{Column, ColumnKind, TableFormat, TableSink};
-pub use twin::TwinSink;
-pub use volume::write_volume;
-pub use vtu::VtuSink;
 
-use historical_cells::HistoricalCells;
+use crate::historical::write_cells::HistoricalCells;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::{Coordinates, Crs, Event, Header, Kind};
 
@@ -70,12 +48,12 @@ pub trait EventSink {
     fn notices(&self) -> Vec<String>;
 }
 
-fn write_error(cause: std::io::Error) -> Error {
+pub(crate) fn write_error(cause: std::io::Error) -> Error {
     Error::io("writing", cause)
 }
 
 /// Rejects a stream of a kind that `format` does not hold.
-fn expect_kind(header: &Header, format: &str, kinds: &[Kind]) -> Result<()> {
+pub(crate) fn expect_kind(header: &Header, format: &str, kinds: &[Kind]) -> Result<()> {
     if kinds.contains(&header.kind) {
         return Ok(());
     }
@@ -88,7 +66,7 @@ fn expect_kind(header: &Header, format: &str, kinds: &[Kind]) -> Result<()> {
 }
 
 /// Notices about header fields that the format cannot hold.
-fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
+pub(crate) fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
     let crs = (header.crs != Crs::Unknown).then(|| format!("{format} holds no CRS: dropped"));
     let is_grid = header.coordinates != Coordinates::F64;
     let grid = is_grid.then(|| {
@@ -102,7 +80,7 @@ fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
 }
 
 /// Notices about scales and unknown numbers of attributes, in a format that holds the stored numbers.
-fn lost_of_attributes(header: &Header, format: &str) -> Vec<String> {
+pub(crate) fn lost_of_attributes(header: &Header, format: &str) -> Vec<String> {
     let scaled = header.attributes.iter().filter_map(|attribute| {
         let [scale, offset] = attribute.scale?;
         let name = &attribute.name;
@@ -118,13 +96,13 @@ fn lost_of_attributes(header: &Header, format: &str) -> Vec<String> {
 }
 
 /// The notice about the attributes of a format that holds none.
-fn lost_attributes(header: &Header, format: &str) -> Option<String> {
+pub(crate) fn lost_attributes(header: &Header, format: &str) -> Option<String> {
     let attributes = &header.attributes;
     (!attributes.is_empty()).then(|| format!("{format} holds no attributes: {} dropped", attributes.names()))
 }
 
 /// Notices about what a historical points format cannot hold.
-fn lost_of_points(header: &Header, format: &str, cells: Option<&HistoricalCells>) -> Vec<String> {
+pub(crate) fn lost_of_points(header: &Header, format: &str, cells: Option<&HistoricalCells>) -> Vec<String> {
     let mut lost = lost_of_header(header, format);
     lost.extend(lost_attributes(header, format));
     match cells {

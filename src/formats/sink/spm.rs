@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::EventSink;
+use crate::sink::EventSink;
 use spmesh_base::error::Result;
 use spmesh_stream::{Event, Header, StreamWriter};
 

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, Write};
 use std::path::Path;
 
-use super::world::world_of;
+use crate::sink::world::world_of;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::temporary::TemporaryFile;
 use spmesh_stream::{Event, Header};
@@ -12,27 +12,27 @@ use spmesh_stream::{Event, Header};
 const BUFFER_LEN: usize = 1 << 16;
 
 /// A temporary file.
-pub(super) struct Spool(BufWriter<File>);
+pub(crate) struct Spool(BufWriter<File>);
 
 impl Spool {
     /// An empty file in `temp_dir`, or in the system's folder for temporary files.
-    pub(super) fn new(temp_dir: Option<&Path>) -> Result<Self> {
+    pub(crate) fn new(temp_dir: Option<&Path>) -> Result<Self> {
         let file = TemporaryFile::create(temp_dir)?;
         Ok(Spool(BufWriter::with_capacity(BUFFER_LEN, file.into_file())))
     }
 
     /// Appends bytes.
-    pub(super) fn bytes(&mut self, bytes: &[u8]) -> Result<()> {
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) -> Result<()> {
         self.0.write_all(bytes).map_err(spool_error)
     }
 
     /// Appends text.
-    pub(super) fn text(&mut self, text: std::fmt::Arguments) -> Result<()> {
+    pub(crate) fn text(&mut self, text: std::fmt::Arguments) -> Result<()> {
         self.0.write_fmt(text).map_err(spool_error)
     }
 
     /// Copies all to the output.
-    pub(super) fn copy_to(&mut self, output: &mut impl Write) -> Result<()> {
+    pub(crate) fn copy_to(&mut self, output: &mut impl Write) -> Result<()> {
         let mut input = self.rewound()?;
         std::io::copy(&mut input, output)
             .map_err(|e| Error::io("copying a temporary file to the output", e))?;
@@ -40,7 +40,7 @@ impl Spool {
     }
 
     /// Reads all bytes as records of `N` bytes.
-    pub(super) fn records<const N: usize>(&mut self) -> Result<Records<'_, N>> {
+    pub(crate) fn records<const N: usize>(&mut self) -> Result<Records<'_, N>> {
         Ok(Records(self.rewound()?))
     }
 
@@ -62,11 +62,11 @@ impl Write for Spool {
 }
 
 /// The records of a temporary file.
-pub(super) struct Records<'a, const N: usize>(BufReader<&'a File>);
+pub(crate) struct Records<'a, const N: usize>(BufReader<&'a File>);
 
 impl<const N: usize> Records<'_, N> {
     /// The next record, which must be there.
-    pub(super) fn next(&mut self) -> Result<[u8; N]> {
+    pub(crate) fn next(&mut self) -> Result<[u8; N]> {
         let mut record = [0; N];
         self.0.read_exact(&mut record).map_err(|e| Error::io("reading a temporary file", e))?;
         Ok(record)
@@ -81,24 +81,24 @@ fn spool_error(cause: std::io::Error) -> Error {
 /// vertices before all simplices. Points are vertices without simplices.
 ///
 /// Memory: buffers only. Disk: 24 bytes per vertex, 8 per corner of a simplex and per label.
-pub(super) struct MeshSpool {
+pub(crate) struct MeshSpool {
     header: Header,
     /// World coordinates, three f64 each, little-endian.
-    pub(super) vertices: Spool,
+    pub(crate) vertices: Spool,
     /// Ids, a u64 per corner, little-endian.
-    pub(super) corners: Spool,
+    pub(crate) corners: Spool,
     /// Labels, a u64 each, little-endian.
-    pub(super) labels: Spool,
+    pub(crate) labels: Spool,
     /// The numbers of each attribute, as they are stored.
-    pub(super) columns: Vec<Spool>,
+    pub(crate) columns: Vec<Spool>,
     /// Number of labels, and the greatest one.
-    pub(super) label_count: u64,
-    pub(super) label_max: u64,
+    pub(crate) label_count: u64,
+    pub(crate) label_max: u64,
 }
 
 impl MeshSpool {
     /// Opens the temporary files.
-    pub(super) fn new(header: &Header, temp_dir: Option<&Path>) -> Result<Self> {
+    pub(crate) fn new(header: &Header, temp_dir: Option<&Path>) -> Result<Self> {
         Ok(MeshSpool {
             header: header.clone(),
             vertices: Spool::new(temp_dir)?,
@@ -111,18 +111,18 @@ impl MeshSpool {
     }
 
     /// Takes attributes, too.
-    pub(super) fn with_attributes(mut self, temp_dir: Option<&Path>) -> Result<Self> {
+    pub(crate) fn with_attributes(mut self, temp_dir: Option<&Path>) -> Result<Self> {
         self.columns = self.header.attributes.iter().map(|_| Spool::new(temp_dir)).collect::<Result<_>>()?;
         Ok(self)
     }
 
     /// The header of the stream.
-    pub(super) fn header(&self) -> &Header {
+    pub(crate) fn header(&self) -> &Header {
         &self.header
     }
 
     /// Takes an event that is not the end, with the rows of its points.
-    pub(super) fn event(&mut self, event: &Event, rows: &[u8]) -> Result<()> {
+    pub(crate) fn event(&mut self, event: &Event, rows: &[u8]) -> Result<()> {
         let points = match event {
             Event::Points(points) => points,
             Event::Patch(patch) => &patch.new,

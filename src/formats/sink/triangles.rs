@@ -4,14 +4,14 @@ use spmesh_stream::Patch;
 
 /// A corner of a triangle: the vertex, and whether the triangle is the last that uses it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Corner {
-    pub(super) id: u64,
-    pub(super) is_final: bool,
+pub(crate) struct Corner {
+    pub(crate) id: u64,
+    pub(crate) is_final: bool,
 }
 
 /// The triangles of a patch with their final corners, and the vertices that it finalizes but that no triangle
 /// uses.
-pub(super) fn final_corners(patch: &Patch) -> (Vec<[Corner; 3]>, Vec<u64>) {
+pub(crate) fn final_corners(patch: &Patch) -> (Vec<[Corner; 3]>, Vec<u64>) {
     let mut ends = vec![false; patch.vertices()];
     patch.finalized.iter().for_each(|&local| ends[local as usize] = true);
     let mut triangles: Vec<[Corner; 3]> = Vec::with_capacity(patch.simplices.len() / 3);

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::write_error;
+use crate::sink::write_error;
 use spmesh_base::error::Result;
 use spmesh_stream::Header;
 use spmesh_stream::model::bounds::{Bounds, Point};
@@ -10,7 +10,7 @@ use spmesh_stream::model::decimal::Decimal;
 
 /// World coordinates of a stored point, as the numbers with the shortest decimals that stand for it; z is 0
 /// where points have none, whatever scale and offset say.
-pub(super) fn world_of(header: &Header, stored: Point) -> Point {
+pub(crate) fn world_of(header: &Header, stored: Point) -> Point {
     let mut world = header.coordinates.to_decimal(stored);
     if header.coordinates_per_point() == 2 {
         world[2] = 0.0;
@@ -19,12 +19,12 @@ pub(super) fn world_of(header: &Header, stored: Point) -> Point {
 }
 
 /// World coordinates of a box of stored points.
-pub(super) fn world_bounds(header: &Header, bounds: &Bounds) -> Bounds {
+pub(crate) fn world_bounds(header: &Header, bounds: &Bounds) -> Bounds {
     Bounds { min: world_of(header, bounds.min), max: world_of(header, bounds.max) }
 }
 
 /// A line of `start` and numbers, each the shortest decimal that reads back as the same f64.
-pub(super) fn write_numbers(output: &mut impl Write, start: &str, numbers: &[f64]) -> Result<()> {
+pub(crate) fn write_numbers(output: &mut impl Write, start: &str, numbers: &[f64]) -> Result<()> {
     output.write_all(start.as_bytes()).map_err(write_error)?;
     for number in numbers {
         write!(output, " {}", Decimal(*number)).map_err(write_error)?;

@@ -1,6 +1,6 @@
 //! Streams and text twins with the rules whose check takes memory.
 
-use super::events::EventSource;
+use crate::source::events::EventSource;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::{Event, Header, MemoryRules};
 

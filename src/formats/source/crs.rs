@@ -6,7 +6,7 @@ use spmesh_base::limits::CRS_LEN_MAX;
 use spmesh_stream::Crs;
 
 /// `crs`, or [`Crs::Unknown`] with a notice if it is too long for the header of a stream.
-pub(super) fn fitting(crs: Crs, notices: &mut Vec<String>) -> Crs {
+pub(crate) fn fitting(crs: Crs, notices: &mut Vec<String>) -> Crs {
     let len = match &crs {
         Crs::Unknown => 0,
         Crs::Wkt(text) => text.len(),
@@ -23,7 +23,7 @@ pub(super) fn fitting(crs: Crs, notices: &mut Vec<String>) -> Crs {
 
 /// The system of a LAS file: that of the well-known text if the header promises text, else that of the GeoTIFF
 /// keys; the other one if that is missing or defines no system of x and y.
-pub(super) fn of_records(
+pub(crate) fn of_records(
     wkt: Option<Vec<u8>>,
     keys: [Option<Vec<u8>>; 3],
     promises_wkt: bool,
@@ -69,7 +69,7 @@ fn preferred([(first, crs), (second, other)]: [(&str, Crs); 2], notices: &mut Ve
 ///
 /// # Errors
 /// Usage, if two systems do not mean the same.
-pub(super) fn common<'s>(
+pub(crate) fn common<'s>(
     files: impl Iterator<Item = (&'s str, &'s Crs)>,
     notices: &mut Vec<String>,
 ) -> Result<Crs> {

@@ -2,16 +2,16 @@
 
 /// What a file has before it was cut off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Cut {
+pub(crate) struct Cut {
     /// Whole points before the cut.
-    pub(super) read: u64,
+    pub(crate) read: u64,
     /// Points after the cut, if the file states how many it had.
-    pub(super) lost: Option<u64>,
+    pub(crate) lost: Option<u64>,
 }
 
 impl Cut {
     /// A message for the user.
-    pub(super) fn describe(&self, file: &str) -> String {
+    pub(crate) fn describe(&self, file: &str) -> String {
         match self.lost {
             Some(lost) => format!("{file} was cut off: read {} points, lost {lost}", self.read),
             None => format!("{file} was cut off: read {} points, lost an unknown number", self.read),

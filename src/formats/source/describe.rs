@@ -1,28 +1,28 @@
 //! What the files of an input have in common.
 
-use super::crs;
-use super::grid::{self, Member};
-use super::options::SourceOptions;
-use super::pass::Stated;
-use super::placement::Placement;
-use super::reader::Description;
-use super::row_plan::{self, RowPlan};
+use crate::source::crs;
+use crate::source::grid::{self, Member};
+use crate::source::options::SourceOptions;
+use crate::source::pass::Stated;
+use crate::source::placement::Placement;
+use crate::source::reader::Description;
+use crate::source::row_plan::{self, RowPlan};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::Bounds;
 
 /// A file and what it states.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct File<'a> {
-    pub(super) name: &'a str,
-    pub(super) stated: &'a Stated,
+pub(crate) struct File<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) stated: &'a Stated,
 }
 
 /// What all files have in common, and how the rows of each are made.
 ///
 /// # Errors
 /// Usage, if the files do not go together.
-pub(super) fn describe(
+pub(crate) fn describe(
     files: &[File],
     options: &SourceOptions,
     notices: &mut Vec<String>,

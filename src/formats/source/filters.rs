@@ -41,7 +41,7 @@ pub struct Filters {
 
 impl Filters {
     /// What a filter needs that only points of LAS and LAZ files have.
-    pub(super) fn needs(&self) -> Option<&'static str> {
+    pub(crate) fn needs(&self) -> Option<&'static str> {
         let needs = [
             (self.drop_synthetic || self.drop_overlap || self.keep_keypoint, "flags are"),
             (!self.keep_class.is_empty() || !self.drop_class.is_empty(), "classes are"),
@@ -76,7 +76,7 @@ impl Interval {
     }
 
     /// The part of the world whose z is in the interval.
-    pub(super) fn of_z(&self) -> Bounds {
+    pub(crate) fn of_z(&self) -> Bounds {
         let infinite = f64::INFINITY;
         Bounds { min: [-infinite, -infinite, self.min], max: [infinite, infinite, self.max] }
     }
@@ -187,12 +187,12 @@ impl Dropped {
     }
 
     /// Counts a point.
-    pub(super) fn count(&mut self, reason: DropReason) {
+    pub(crate) fn count(&mut self, reason: DropReason) {
         self.0[reason as usize] += 1;
     }
 
     /// Adds the counts of another part of the input.
-    pub(super) fn add(&mut self, other: &Dropped) {
+    pub(crate) fn add(&mut self, other: &Dropped) {
         self.0.iter_mut().zip(other.0).for_each(|(sum, count)| *sum += count);
     }
 }

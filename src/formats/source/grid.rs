@@ -4,8 +4,8 @@
 //! exact predicates can work on the integers themselves. Files are brought to a common grid only where
 //! nothing is rounded.
 
-use super::decimal_grid::common_scales;
-use super::placement::{RATIO_TOLERANCE, whole_steps};
+use crate::source::placement::{RATIO_TOLERANCE, whole_steps};
+use crate::text::decimal_grid::common_scales;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::{Bounds, Point};
@@ -15,11 +15,11 @@ const MULTIPLIER_MAX: f64 = 10_000.0;
 
 /// A file that the common grid must serve.
 #[derive(Debug, Clone)]
-pub(super) struct Member {
-    pub(super) name: String,
-    pub(super) coordinates: Coordinates,
+pub(crate) struct Member {
+    pub(crate) name: String,
+    pub(crate) coordinates: Coordinates,
     /// Bounding box that the file states, in its stored coordinates.
-    pub(super) bounds: Option<Bounds>,
+    pub(crate) bounds: Option<Bounds>,
 }
 
 /// Coordinates that all members can be converted to without rounding; world coordinates if one has no grid,
@@ -27,7 +27,7 @@ pub(super) struct Member {
 ///
 /// # Errors
 /// [`spmesh_base::error::ErrorKind::Usage`] if each member has a grid, but together they have none.
-pub(super) fn common(members: &[Member], dims: u8) -> Result<Coordinates> {
+pub(crate) fn common(members: &[Member], dims: u8) -> Result<Coordinates> {
     if members.is_empty() || members.iter().any(|member| one_quantum(&member.coordinates, dims).is_none()) {
         return Ok(Coordinates::F64);
     }

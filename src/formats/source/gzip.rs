@@ -46,7 +46,7 @@ impl<R: Read> Plain<R> {
         Plain::of_use(input, Use::Held)
     }
 
-    pub(super) fn of_use(mut input: R, purpose: Use) -> io::Result<Self> {
+    pub(crate) fn of_use(mut input: R, purpose: Use) -> io::Result<Self> {
         let mut start = Vec::new();
         (&mut input).take(MAGIC.len() as u64).read_to_end(&mut start)?;
         let is_gzip = start == MAGIC;
@@ -84,7 +84,7 @@ pub(crate) enum Use {
 /// Decompresses gzip data of any number of members. Damaged data is an error that names the byte.
 ///
 /// The checksum and the length of a member are verified when reading goes on after its last byte.
-pub(super) struct Gunzip<R> {
+pub(crate) struct Gunzip<R> {
     /// `None` only while the next member begins.
     member: Option<Member<R>>,
     purpose: Use,
@@ -96,7 +96,7 @@ pub(super) struct Gunzip<R> {
 type Member<R> = GzDecoder<BufReader<Counted<R>>>;
 
 impl<R: Read> Gunzip<R> {
-    pub(super) fn new(input: R) -> Self {
+    pub(crate) fn new(input: R) -> Self {
         Gunzip::of_use(input, Use::Passed)
     }
 

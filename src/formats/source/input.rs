@@ -4,38 +4,42 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use super::atoms::{self, AtomPass, Atoms};
-use super::crs;
-use super::cut::Cut;
-use super::describe::{File, describe};
-use super::filters::{DropReason, Dropped};
-use super::index;
-use super::input_reader::{InputReader, Passed};
-use super::las_header::LasHeader;
-use super::npy::{NpyArray, NpyPass};
-use super::options::SourceOptions;
-use super::origin::{Origin, name_of};
-use super::pass::{Pass, Stated};
-use super::point_arrays::{self, ArrayPass, PointArray};
-use super::reader::{Description, PointReader};
-use super::records::RecordPass;
-use super::row_plan::RowPlan;
-use super::text_columns::{self, Columns};
-use super::{raw, spa, spb, stream, text, vtk};
 use crate::detect::{Format, read_head};
+use crate::historical::{read_spa, read_spb};
+use crate::las::header::LasHeader;
+use crate::las::index;
+use crate::molecules::atoms::{self, AtomPass, Atoms};
+use crate::npy::read::{NpyArray, NpyPass};
+use crate::raw::read as raw;
+use crate::source::crs;
+use crate::source::cut::Cut;
+use crate::source::describe::{File, describe};
+use crate::source::filters::{DropReason, Dropped};
+use crate::source::input_reader::{InputReader, Passed};
+use crate::source::options::SourceOptions;
+use crate::source::origin::{Origin, name_of};
+use crate::source::pass::{Pass, Stated};
+use crate::source::point_arrays::{self, ArrayPass, PointArray};
+use crate::source::reader::{Description, PointReader};
+use crate::source::records::RecordPass;
+use crate::source::row_plan::RowPlan;
+use crate::source::stream;
+use crate::text::columns::{self, Columns};
+use crate::text::read::TextPass;
+use crate::vtk;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Bounds;
 
 /// One file of an input.
 #[derive(Debug)]
-pub(super) struct Source {
-    pub(super) name: String,
-    pub(super) stated: Stated,
+pub(crate) struct Source {
+    pub(crate) name: String,
+    pub(crate) stated: Stated,
     origin: Origin,
     is_compressed: bool,
     content: Content,
     /// What is left of the file, if it was cut off; of a text, that is known after a pass.
-    pub(super) cut: OnceLock<Cut>,
+    pub(crate) cut: OnceLock<Cut>,
 }
 
 /// The format of a file, with the parts of its header that a pass needs.
@@ -100,7 +104,7 @@ impl Input {
     }
 
     /// As `open`, from the bytes of one file. Messages call it `name`.
-    pub(super) fn of_origin(origin: Origin, name: String, options: &SourceOptions) -> Result<Input> {
+    pub(crate) fn of_origin(origin: Origin, name: String, options: &SourceOptions) -> Result<Input> {
         check_options(&[PathBuf::from(&name)], options)?;
         let mut notices = Vec::new();
         let source = Source::new(origin, name, options, &mut notices)?;
@@ -278,14 +282,14 @@ impl Source {
     }
 
     /// Starts a pass, with the rows of `plan`.
-    pub(super) fn pass(&self, options: &SourceOptions, plan: RowPlan) -> Result<Box<dyn Pass>> {
+    pub(crate) fn pass(&self, options: &SourceOptions, plan: RowPlan) -> Result<Box<dyn Pass>> {
         let origin = &self.origin;
         Ok(match &self.content {
             Content::Las(header) => Box::new(RecordPass::new(origin.view()?, header, options, plan)?),
             Content::Stream => Box::new(stream::pass(origin.plain()?, &self.name, plan)?),
             Content::Twin => Box::new(stream::pass_of_twin(origin.plain()?, &self.name, plan)?),
-            Content::Spa => Box::new(spa::pass(origin.plain()?)?),
-            Content::Spb => Box::new(spb::pass(origin.plain()?)?),
+            Content::Spa => Box::new(read_spa::pass(origin.plain()?)?),
+            Content::Spb => Box::new(read_spb::pass(origin.plain()?)?),
             Content::Ply => Box::new(stream::pass_of_ply(origin.plain()?, &self.name, plan)?),
             Content::Obj => Box::new(stream::pass_of_obj(origin.plain()?, &self.name)),
             Content::Arrays(arrays) => Box::new(ArrayPass::new(origin.view()?, Arc::clone(arrays), plan)),
@@ -293,7 +297,7 @@ impl Source {
             Content::Npy(array) => Box::new(NpyPass::new(&origin.view()?, array.clone())),
             Content::Text(columns) => {
                 let (file, columns) = (origin.plain()?, columns.clone());
-                Box::new(text::TextPass::new(file, columns, plan, options.salvage))
+                Box::new(TextPass::new(file, columns, plan, options.salvage))
             }
         })
     }
@@ -361,8 +365,8 @@ impl Content {
             }
             Format::Stream => (Content::Stream, stream::state(origin.plain()?, name)?),
             Format::Twin => (Content::Twin, stream::state_of_twin(origin.plain()?, name)?),
-            Format::Spa => (Content::Spa, spa::state(origin.plain()?)?),
-            Format::Spb => (Content::Spb, spb::state(origin.plain()?)?),
+            Format::Spa => (Content::Spa, read_spa::state(origin.plain()?)?),
+            Format::Spb => (Content::Spb, read_spb::state(origin.plain()?)?),
             Format::Ply => (Content::Ply, stream::state_of_ply(origin.plain()?, name)?),
             // Vertex lines of SMA are those of OBJ; its other lines are skipped.
             Format::Obj | Format::Sma | Format::VertexLines => {
@@ -376,7 +380,7 @@ impl Content {
             Format::VtkLegacy => Content::of_arrays(vec![vtk::read_legacy(&origin.view()?, name)?]),
             Format::VtkXml => Content::of_arrays(vtk::read_xml(&origin.view()?)?),
             Format::Text | Format::OtherText => {
-                let (columns, stated) = text_columns::state(origin.plain()?, layout, notices)?;
+                let (columns, stated) = columns::state(origin.plain()?, layout, notices)?;
                 (Content::Text(columns), stated)
             }
             other => {
@@ -404,11 +408,11 @@ impl Content {
 ///
 /// # Errors
 /// As [`Input::open`].
-pub(super) fn stated_of(path: &Path, options: &SourceOptions, notices: &mut Vec<String>) -> Result<Stated> {
+pub(crate) fn stated_of(path: &Path, options: &SourceOptions, notices: &mut Vec<String>) -> Result<Stated> {
     Source::open(path, options, notices).map(|source| source.stated)
 }
 
-pub(super) fn check_options(paths: &[PathBuf], options: &SourceOptions) -> Result<()> {
+pub(crate) fn check_options(paths: &[PathBuf], options: &SourceOptions) -> Result<()> {
     if paths.is_empty() {
         return Err(Error::usage("no input"));
     }

@@ -2,30 +2,30 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::filters::Dropped;
-use super::input::Source;
-use super::options::SourceOptions;
-use super::pass::{Pass, Stated};
-use super::placement::Placement;
-use super::reader::PointReader;
-use super::row_plan::RowPlan;
+use crate::source::filters::Dropped;
+use crate::source::input::Source;
+use crate::source::options::SourceOptions;
+use crate::source::pass::{Pass, Stated};
+use crate::source::placement::Placement;
+use crate::source::reader::PointReader;
+use crate::source::row_plan::RowPlan;
 use spmesh_base::error::Result;
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::Point;
 
 /// What a whole pass has seen.
 #[derive(Debug)]
-pub(super) struct Passed {
+pub(crate) struct Passed {
     /// Points that filters dropped.
-    pub(super) dropped: Dropped,
+    pub(crate) dropped: Dropped,
     /// Points dropped because a coordinate is not finite.
-    pub(super) invalid: u64,
+    pub(crate) invalid: u64,
     /// Points of each file in the part of the input that is wanted, dropped ones included.
-    pub(super) counts: Vec<u64>,
+    pub(crate) counts: Vec<u64>,
 }
 
 /// One pass over all files.
-pub(super) struct InputReader {
+pub(crate) struct InputReader {
     sources: Arc<[Source]>,
     plans: Arc<[RowPlan]>,
     /// Rows of the last batch.
@@ -51,7 +51,7 @@ impl InputReader {
     ///
     /// # Errors
     /// If the file cannot be opened.
-    pub(super) fn new(
+    pub(crate) fn new(
         sources: Arc<[Source]>,
         plans: Arc<[RowPlan]>,
         options: SourceOptions,

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::gzip::Plain;
-use super::origin::open_file;
+use crate::source::gzip::Plain;
+use crate::source::origin::open_file;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::{self, MANIFEST_LEN_MAX};
 use spmesh_stream::model::bounds::Bounds;

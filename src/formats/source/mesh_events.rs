@@ -1,14 +1,14 @@
 //! Converts a mesh read element by element to the events of a stream.
 
-use super::events::EventSource;
-use super::patches::{Order, PatchBuilder};
+use crate::source::events::EventSource;
+use crate::source::patches::{Order, PatchBuilder};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Event, Header, Kind};
 
 /// One element of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Element {
+pub(crate) enum Element {
     Vertex(Point),
     /// Three vertices, counted from 0, and whether no later triangle uses them.
     Triangle([u64; 3], [bool; 3]),
@@ -17,7 +17,7 @@ pub(super) enum Element {
 }
 
 /// A mesh format that is read element by element.
-pub(super) trait Elements {
+pub(crate) trait Elements {
     /// When vertices are final.
     fn order(&self) -> Order;
 
@@ -46,7 +46,7 @@ enum State {
 /// A mesh read element by element, as events. Vertices have world coordinates in f64, with z as elevation.
 ///
 /// Memory: one patch; if the input says when vertices are final, also the vertices that are not final yet.
-pub(super) struct MeshEvents<E> {
+pub(crate) struct MeshEvents<E> {
     elements: E,
     header: Header,
     builder: PatchBuilder,
@@ -55,7 +55,7 @@ pub(super) struct MeshEvents<E> {
 }
 
 impl<E: Elements> MeshEvents<E> {
-    pub(super) fn new(elements: E) -> Self {
+    pub(crate) fn new(elements: E) -> Self {
         let builder = PatchBuilder::new(elements.order());
         let header = Header::new(Kind::TriangleMesh, Coordinates::F64, 2, true);
         MeshEvents { elements, header, builder, state: State::Reading, finals: 0 }
@@ -150,7 +150,7 @@ impl<E: Elements> EventSource for MeshEvents<E> {
 
 /// Converts a vertex number that counts from 1, or is negative and relative to the number of vertices so far,
 /// to one that counts from 0.
-pub(super) fn resolve(number: i64, vertices: u64) -> Result<u64> {
+pub(crate) fn resolve(number: i64, vertices: u64) -> Result<u64> {
     let resolved = match number {
         1.. => Some(number as u64 - 1),
         0 => None,

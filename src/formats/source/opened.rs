@@ -3,13 +3,13 @@
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use super::checked::Checked;
-use super::events::EventSource;
-use super::input::Input;
-use super::options::SourceOptions;
-use super::origin::{Origin, name_of};
-use super::twin::TwinSource;
 use crate::detect::{Format, read_head};
+use crate::source::checked::Checked;
+use crate::source::events::EventSource;
+use crate::source::input::Input;
+use crate::source::options::SourceOptions;
+use crate::source::origin::{Origin, name_of};
+use crate::twin::read::TwinSource;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::{Kind, StreamReader};
 

@@ -4,14 +4,14 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::filters::{DropReason, Filters};
-use super::gzip::Use;
-use super::origin::Admitted;
-use super::raw_type::RawType;
-use super::row_plan::AttributeChoice;
-use super::structure::Radii;
-use super::text_options::TextOptions;
 use crate::detect::Reader;
+use crate::molecules::Radii;
+use crate::raw::number::RawType;
+use crate::source::filters::{DropReason, Filters};
+use crate::source::gzip::Use;
+use crate::source::origin::Admitted;
+use crate::source::row_plan::AttributeChoice;
+use crate::text::options::TextOptions;
 use spmesh_base::parallel::available_threads;
 use spmesh_stream::model::bounds::{Bounds, Region};
 use spmesh_stream::{Coordinates, Crs};
@@ -30,7 +30,7 @@ pub enum InvalidAdvice {
 
 impl InvalidAdvice {
     /// The advice, for messages.
-    pub(super) fn text(self) -> &'static str {
+    pub(crate) fn text(self) -> &'static str {
         match self {
             InvalidAdvice::Spfinalize => "spfinalize --skip-invalid drops and counts such points",
             InvalidAdvice::SkipInvalid => "--skip-invalid drops and counts such points",
@@ -89,29 +89,29 @@ pub struct SourceOptions {
 
 impl SourceOptions {
     /// The parts of the world that points must lie in, with the reason for which others are dropped.
-    pub(super) fn windows(&self) -> Vec<(DropReason, Bounds)> {
+    pub(crate) fn windows(&self) -> Vec<(DropReason, Bounds)> {
         let bounds = self.bounds.map(|bounds| (DropReason::Bounds, bounds));
         let z = self.filters.z.map(|z| (DropReason::Z, z.of_z()));
         bounds.into_iter().chain(z).collect()
     }
 
     /// The folder of spools.
-    pub(super) fn temp_dir(&self) -> PathBuf {
+    pub(crate) fn temp_dir(&self) -> PathBuf {
         self.temp_dir.clone().unwrap_or_else(std::env::temp_dir)
     }
 
     /// What may be spooled.
-    pub(super) fn admitted(&self) -> Admitted {
+    pub(crate) fn admitted(&self) -> Admitted {
         if self.raw.is_some() { Admitted::Everything } else { Admitted::Formats(self.reader) }
     }
 
     /// What the program does with the points.
-    pub(super) fn purpose(&self) -> Use {
+    pub(crate) fn purpose(&self) -> Use {
         if self.holds_points { Use::Held } else { Use::Passed }
     }
 
     /// How many threads decompress points.
-    pub(super) fn threads(&self) -> usize {
+    pub(crate) fn threads(&self) -> usize {
         self.threads.unwrap_or_else(available_threads).get()
     }
 }

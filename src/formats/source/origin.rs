@@ -7,8 +7,8 @@ use std::os::unix::fs::{FileExt, FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::gzip::{Plain, Use};
 use crate::detect::{HEAD_LEN, Reader, read_head};
+use crate::source::gzip::{Plain, Use};
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::system;
 use spmesh_base::temporary::TemporaryFile;
@@ -30,7 +30,7 @@ pub(crate) struct Origin {
 }
 
 #[derive(Debug)]
-enum Place {
+pub(crate) enum Place {
     /// A regular file, opened anew by each pass, so that an input of many tiles needs only one descriptor at
     /// a time.
     Path(PathBuf),

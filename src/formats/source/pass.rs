@@ -2,18 +2,18 @@
 
 use std::sync::Arc;
 
-use super::cut::Cut;
-use super::placement::Placement;
-use super::row_plan::Offer;
+use crate::source::cut::Cut;
+use crate::source::placement::Placement;
+use crate::source::row_plan::Offer;
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Crs};
 
 /// Approximate number of points in a batch: few enough to stay in a core's cache between stages.
-pub(super) const BATCH_POINTS: usize = 1 << 14;
+pub(crate) const BATCH_POINTS: usize = 1 << 14;
 
 /// One pass over the points of one file.
-pub(super) trait Pass: Send {
+pub(crate) trait Pass: Send {
     /// Appends the next points to `batch`, about `BATCH_POINTS` of them, possibly none after filters, and their
     /// rows to `rows`, if points carry attributes. Returns false at the end of the file, without appending any.
     fn next_batch(
@@ -36,14 +36,14 @@ pub(super) trait Pass: Send {
 
 /// What a file states about itself.
 #[derive(Debug)]
-pub(super) struct Stated {
-    pub(super) coordinates: Coordinates,
+pub(crate) struct Stated {
+    pub(crate) coordinates: Coordinates,
     /// Whether points have a third coordinate; `None` if the file has no point to show it.
-    pub(super) has_z: Option<bool>,
-    pub(super) crs: Arc<Crs>,
+    pub(crate) has_z: Option<bool>,
+    pub(crate) crs: Arc<Crs>,
     /// Bounding box, in stored coordinates.
-    pub(super) bounds: Option<Bounds>,
-    pub(super) points: Option<u64>,
+    pub(crate) bounds: Option<Bounds>,
+    pub(crate) points: Option<u64>,
     /// What points can carry beside their coordinates.
-    pub(super) offers: Arc<Vec<Offer>>,
+    pub(crate) offers: Arc<Vec<Offer>>,
 }

@@ -15,7 +15,7 @@ const FINALIZED_MAX: usize = 4096;
 
 /// When the vertices of an input are final.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Order {
+pub(crate) enum Order {
     /// Vertices come before their triangles, and the input says when they are final (pre-order).
     Stated,
     /// Vertices come after all their triangles, so that they are final on arrival (post-order).
@@ -37,7 +37,7 @@ struct Live {
 
 /// Collects elements into patches. Memory: a patch, the live vertices (the width of the input), and the
 /// triangles that wait for their vertices. With [`Order::AtEnd`] no live vertices are held.
-pub(super) struct PatchBuilder {
+pub(crate) struct PatchBuilder {
     order: Order,
     first_id: u64,
     new: Vec<Point>,
@@ -57,7 +57,7 @@ pub(super) struct PatchBuilder {
 }
 
 impl PatchBuilder {
-    pub(super) fn new(order: Order) -> Self {
+    pub(crate) fn new(order: Order) -> Self {
         PatchBuilder {
             order,
             first_id: 0,
@@ -75,17 +75,17 @@ impl PatchBuilder {
     }
 
     /// Number of vertices read so far, which is also the id of the next one.
-    pub(super) fn vertices(&self) -> u64 {
+    pub(crate) fn vertices(&self) -> u64 {
         self.first_id + self.new.len() as u64
     }
 
     /// Number of triangles read so far.
-    pub(super) fn triangles(&self) -> u64 {
+    pub(crate) fn triangles(&self) -> u64 {
         self.triangles_read
     }
 
     /// Adds the next vertex.
-    pub(super) fn vertex(&mut self, point: Point) {
+    pub(crate) fn vertex(&mut self, point: Point) {
         let id = self.vertices();
         self.new.push(point);
         let waiting = self.awaited.remove(&id).unwrap_or_default();
@@ -106,7 +106,7 @@ impl PatchBuilder {
     }
 
     /// Adds a triangle of the vertices with these ids.
-    pub(super) fn triangle(&mut self, triangle: [u64; 3]) -> Result<()> {
+    pub(crate) fn triangle(&mut self, triangle: [u64; 3]) -> Result<()> {
         let [a, b, c] = triangle;
         if a == b || b == c || c == a {
             return Err(Error::malformed(format!(
@@ -151,7 +151,7 @@ impl PatchBuilder {
     }
 
     /// Records that no later triangle uses a vertex.
-    pub(super) fn finalize(&mut self, id: u64) -> Result<()> {
+    pub(crate) fn finalize(&mut self, id: u64) -> Result<()> {
         let vertices = self.vertices();
         match self.live.get_mut(&id) {
             Some(live) if !live.closed => live.closed = true,
@@ -165,12 +165,12 @@ impl PatchBuilder {
     }
 
     /// Number of vertices that a triangle uses and that the input has not declared final so far.
-    pub(super) fn open(&self) -> usize {
+    pub(crate) fn open(&self) -> usize {
         self.live.values().filter(|live| live.used && !live.closed).count()
     }
 
     /// Whether the patch should be taken before more is added.
-    pub(super) fn is_full(&self) -> bool {
+    pub(crate) fn is_full(&self) -> bool {
         self.new.len() >= NEW_MAX
             || self.triangles.len() >= TRIANGLES_MAX
             || self.finalized.len() >= FINALIZED_MAX
@@ -180,7 +180,7 @@ impl PatchBuilder {
     ///
     /// # Errors
     /// If a triangle still waits for a vertex.
-    pub(super) fn end(&mut self) -> Result<()> {
+    pub(crate) fn end(&mut self) -> Result<()> {
         if let Some(id) = self.awaited.keys().min() {
             let vertices = self.vertices();
             return Err(Error::malformed(format!("a triangle uses vertex {} of {vertices}", id + 1)));
@@ -192,7 +192,7 @@ impl PatchBuilder {
     }
 
     /// The next patch after [`PatchBuilder::end`]; `None` when nothing is left.
-    pub(super) fn take_remaining(&mut self) -> Option<Patch> {
+    pub(crate) fn take_remaining(&mut self) -> Option<Patch> {
         let room = FINALIZED_MAX.saturating_sub(self.finalized.len());
         let from_list = self.remaining.len().saturating_sub(room);
         self.finalized.extend(self.remaining.drain(from_list..));
@@ -208,7 +208,7 @@ impl PatchBuilder {
     }
 
     /// Totals of the input, for the END block.
-    pub(super) fn totals(&self) -> Totals {
+    pub(crate) fn totals(&self) -> Totals {
         let vertices = self.vertices();
         Totals { points: vertices, vertices, simplices: self.triangles_read, ..Totals::default() }
     }
@@ -216,7 +216,7 @@ impl PatchBuilder {
     /// Returns the patch so far and starts a new one. One vertex can complete any number of triangles: those
     /// beyond the size of a patch stay for the next one, and finalizations wait for the triangles before
     /// them.
-    pub(super) fn take(&mut self) -> Patch {
+    pub(crate) fn take(&mut self) -> Patch {
         let first_id = self.first_id;
         let new = std::mem::take(&mut self.new);
         let triangles: Vec<_> = drain_at_most(&mut self.triangles, TRIANGLES_MAX);
@@ -244,7 +244,7 @@ impl PatchBuilder {
 
 /// The patch of the vertices `new`, whose ids count from `first_id`. `simplices` (concatenated) and
 /// `finalized` are ids of these or earlier vertices.
-pub(super) fn patch_of_ids(first_id: u64, new: Vec<Point>, simplices: &[u64], finalized: &[u64]) -> Patch {
+pub(crate) fn patch_of_ids(first_id: u64, new: Vec<Point>, simplices: &[u64], finalized: &[u64]) -> Patch {
     let used = simplices.iter().chain(finalized);
     let mut imported: Vec<u64> = used.copied().filter(|&id| id < first_id).collect();
     imported.sort_unstable();

@@ -1,7 +1,7 @@
 //! Moves points from the coordinates of their file to those of the whole input, and drops points by filters.
 
-use super::filters::{DropReason, Dropped};
-use super::options::{InvalidAdvice, SourceOptions};
+use crate::source::filters::{DropReason, Dropped};
+use crate::source::options::{InvalidAdvice, SourceOptions};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::{Bounds, Point, Region};
@@ -9,7 +9,7 @@ use spmesh_stream::model::bounds::{Bounds, Point, Region};
 /// Greatest relative deviation of a ratio of scales from the fraction that it stands for: 2^-40. Division and
 /// decimal notation of scales cause deviations of about 2^-51. Over the range of 32 bits a coordinate moves
 /// by at most 2^-9 of its file's step.
-pub(super) const RATIO_TOLERANCE: f64 = 1.0 / (1u64 << 40) as f64;
+pub(crate) const RATIO_TOLERANCE: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Greatest factor between steps: a stored integer times the factor, plus a shift, is exact in f64.
 const FACTOR_MAX: f64 = (1u64 << 21) as f64;
@@ -20,7 +20,7 @@ const QUANTA_TOLERANCE: f64 = 1e-6;
 
 /// How the points of one file become points of the input.
 #[derive(Debug)]
-pub(super) struct Placement {
+pub(crate) struct Placement {
     step: Step,
     /// Boxes that keep points, in the file's stored coordinates, and why they drop others.
     windows: Vec<(DropReason, Bounds)>,
@@ -29,9 +29,9 @@ pub(super) struct Placement {
     skip_invalid: bool,
     advice: InvalidAdvice,
     /// Points that filters dropped so far.
-    pub(super) dropped: Dropped,
+    pub(crate) dropped: Dropped,
     /// Points dropped so far because a coordinate is not finite.
-    pub(super) invalid: u64,
+    pub(crate) invalid: u64,
 }
 
 #[derive(Debug)]
@@ -53,7 +53,7 @@ enum Step {
 }
 
 impl Placement {
-    pub(super) fn new(from: &Coordinates, to: &Coordinates, options: &SourceOptions) -> Self {
+    pub(crate) fn new(from: &Coordinates, to: &Coordinates, options: &SourceOptions) -> Self {
         let step = if from == to {
             Step::Same
         } else if *to == Coordinates::F64 {
@@ -72,7 +72,7 @@ impl Placement {
 
     /// Says that all points of the file are in this box of its stored coordinates, so that none may have to be
     /// looked at.
-    pub(super) fn within(self, stated: Option<Bounds>) -> Self {
+    pub(crate) fn within(self, stated: Option<Bounds>) -> Self {
         let contains = |window: &Region<3>, bounds: &Bounds| {
             [bounds.min, bounds.max].iter().all(|&corner| window.contains(self.place(corner)))
         };
@@ -95,17 +95,17 @@ impl Placement {
 
     /// Whether a point of the file is one of another part of the input.
     #[inline]
-    pub(super) fn is_elsewhere(&self, stored: Point) -> bool {
+    pub(crate) fn is_elsewhere(&self, stored: Point) -> bool {
         self.window.is_some_and(|window| !window.contains(self.place(stored)))
     }
 
     /// Points that filters dropped so far, and those that are not finite.
-    pub(super) fn left_out(&self) -> u64 {
+    pub(crate) fn left_out(&self) -> u64 {
         self.dropped.total() + self.invalid
     }
 
     /// Whether all points with integer coordinates stay unchanged. Integer coordinates are finite.
-    pub(super) fn keeps_integers(&self) -> bool {
+    pub(crate) fn keeps_integers(&self) -> bool {
         matches!(self.step, Step::Same) && self.windows.is_empty() && self.window.is_none()
     }
 
@@ -116,7 +116,7 @@ impl Placement {
     /// If a coordinate is not finite (unless such points are skipped), or does not fit the input's grid. The
     /// caller adds the record's position.
     #[inline]
-    pub(super) fn put(&mut self, stored: Point, batch: &mut Vec<Point>) -> Result<bool> {
+    pub(crate) fn put(&mut self, stored: Point, batch: &mut Vec<Point>) -> Result<bool> {
         if self.is_elsewhere(stored) {
             return Ok(false);
         }
@@ -204,7 +204,7 @@ impl Alignment {
 
 /// Factor and shift per axis that convert stored integers of `from` to those of `to`; `None` if there are
 /// none. In the world, a point moves by at most 2^-9 steps of `from` and 10^-6 steps of `to`.
-pub(super) fn whole_steps(from: &Coordinates, to: &Coordinates) -> Option<(Point, Point)> {
+pub(crate) fn whole_steps(from: &Coordinates, to: &Coordinates) -> Option<(Point, Point)> {
     let (Coordinates::I32 { scale, offset }, Coordinates::I32 { scale: to_scale, offset: to_offset }) =
         (from, to)
     else {

@@ -4,13 +4,13 @@ use std::io::{BufRead, BufReader};
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::numbers::{NumberReader, Writing};
-use super::origin::FileView;
-use super::pass::{BATCH_POINTS, Pass, Stated};
-use super::placement::Placement;
-use super::row_plan::{RowPlan, offers_of};
-use super::sample_type::SampleType;
-use super::vtk::Framed;
+use crate::raw::sample::SampleType;
+use crate::source::origin::FileView;
+use crate::source::pass::{BATCH_POINTS, Pass, Stated};
+use crate::source::placement::Placement;
+use crate::source::row_plan::{RowPlan, offers_of};
+use crate::text::numbers::{NumberReader, Writing};
+use crate::vtk::Framed;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::attributes::Attribute;
 use spmesh_stream::model::bounds::Point;
@@ -21,24 +21,24 @@ const BUFFER_LEN: usize = 1 << 18;
 
 /// An array of numbers of points: x, y and z of one point after the other, or those of an attribute.
 #[derive(Debug, Clone)]
-pub(super) struct PointArray {
+pub(crate) struct PointArray {
     /// Number of the array's piece of the file, if the format has pieces.
-    pub(super) piece: Option<u64>,
-    pub(super) points: u64,
+    pub(crate) piece: Option<u64>,
+    pub(crate) points: u64,
     /// Numbers per point.
-    pub(super) components: u8,
-    pub(super) sample: SampleType,
-    pub(super) writing: Writing,
-    pub(super) place: Place,
+    pub(crate) components: u8,
+    pub(crate) sample: SampleType,
+    pub(crate) writing: Writing,
+    pub(crate) place: Place,
     /// Whether the place must end with the last coordinate.
-    pub(super) is_exact: bool,
+    pub(crate) is_exact: bool,
     /// Attributes of the same points, with their names.
-    pub(super) data: Vec<(String, PointArray)>,
+    pub(crate) data: Vec<(String, PointArray)>,
 }
 
 /// Where the numbers of an array are.
 #[derive(Debug, Clone)]
-pub(super) enum Place {
+pub(crate) enum Place {
     /// Between these bytes of the file, unpacked.
     Plain { start: u64, end: u64 },
     /// Packed as in the XML formats of VTK.
@@ -46,14 +46,14 @@ pub(super) enum Place {
 }
 
 /// An input of numbers that a pass reads.
-pub(super) type Numbers = Box<dyn BufRead + Send>;
+pub(crate) type Numbers = Box<dyn BufRead + Send>;
 
 impl PointArray {
     /// Length in bytes of the binary numbers of `points` points.
     ///
     /// # Errors
     /// If the length is beyond that of any file.
-    pub(super) fn len_of(points: u64, components: u8, sample: SampleType) -> Result<u64> {
+    pub(crate) fn len_of(points: u64, components: u8, sample: SampleType) -> Result<u64> {
         let too_many = || Error::malformed(format!("{points} points are stated: no file holds as many"));
         // The limit serves text too: a number of text takes at least two bytes, with its separator.
         points
@@ -91,12 +91,12 @@ impl PointArray {
 }
 
 /// Whether reading `arrays` takes more than copying bytes.
-pub(super) fn are_costly(arrays: &[PointArray]) -> bool {
+pub(crate) fn are_costly(arrays: &[PointArray]) -> bool {
     arrays.iter().any(PointArray::is_costly)
 }
 
 /// What a file with `arrays` states about itself.
-pub(super) fn state(arrays: &[PointArray]) -> Stated {
+pub(crate) fn state(arrays: &[PointArray]) -> Stated {
     Stated {
         coordinates: Coordinates::F64,
         has_z: Some(true),
@@ -133,7 +133,7 @@ struct RecordField {
 }
 
 /// One pass over the arrays of a file. Memory: one batch.
-pub(super) struct ArrayPass {
+pub(crate) struct ArrayPass {
     view: FileView,
     arrays: Arc<[PointArray]>,
     /// Index of the current array, and its reader once it is open.
@@ -148,7 +148,7 @@ pub(super) struct ArrayPass {
 }
 
 impl ArrayPass {
-    pub(super) fn new(view: FileView, arrays: Arc<[PointArray]>, plan: RowPlan) -> Self {
+    pub(crate) fn new(view: FileView, arrays: Arc<[PointArray]>, plan: RowPlan) -> Self {
         let attributes = if plan.is_empty() { Vec::new() } else { attributes_of(&arrays) };
         let mut record_len = 0;
         let field = |attribute: &Attribute| {

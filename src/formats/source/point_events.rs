@@ -1,8 +1,8 @@
 //! Points of any source, as the events of a stream without finalization.
 
-use super::events::EventSource;
-use super::input::Input;
-use super::reader::PointReader;
+use crate::source::events::EventSource;
+use crate::source::input::Input;
+use crate::source::reader::PointReader;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::{Event, Header, Kind, Totals};
 

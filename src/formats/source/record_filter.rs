@@ -4,7 +4,7 @@
 
 use laz::DecompressionSelection;
 
-use super::filters::{DropReason, Filters, Interval};
+use crate::source::filters::{DropReason, Filters, Interval};
 
 /// Place of the class in formats 0 to 5, and of the flags in all formats.
 const FLAGS: usize = 15;
@@ -35,7 +35,7 @@ impl Range {
 
 /// Which records of a format to keep.
 #[derive(Debug, Clone)]
-pub(super) struct RecordFilter {
+pub(crate) struct RecordFilter {
     is_extended: bool,
     /// Bits of the flags' byte that drop a point. Each is 0 if it does not count.
     withheld: u8,
@@ -59,7 +59,7 @@ fn bit(is_counted: bool, is_extended: bool, number: u8) -> u8 {
 }
 
 impl RecordFilter {
-    pub(super) fn new(filters: &Filters, format: u8) -> Self {
+    pub(crate) fn new(filters: &Filters, format: u8) -> Self {
         let is_extended = format >= 6;
         let mut keep = [filters.keep_class.is_empty(); 256];
         filters.keep_class.iter().for_each(|&class| keep[usize::from(class)] = true);
@@ -81,23 +81,23 @@ impl RecordFilter {
     }
 
     /// Whether the filter keeps every record that is not withheld.
-    pub(super) fn keeps_others(&self) -> bool {
+    pub(crate) fn keeps_others(&self) -> bool {
         self.keeps_others
     }
 
     /// The byte that tells, together with those of other records, whether [`RecordFilter::is_withheld`].
-    pub(super) fn flags(record: &[u8]) -> u8 {
+    pub(crate) fn flags(record: &[u8]) -> u8 {
         record[FLAGS]
     }
 
     /// Whether one of the records is withheld, by the bits that their flags have in all.
-    pub(super) fn is_withheld(&self, flags: u8) -> bool {
+    pub(crate) fn is_withheld(&self, flags: u8) -> bool {
         flags & self.withheld != 0
     }
 
     /// Why to drop `record`; `None` to keep it. Formats 0 to 5 have 5 bits for the class and 3 for each return
     /// number, formats 6 to 10 have 8 and 4. A return number of 0 means none: it counts as both first and last.
-    pub(super) fn reason(&self, record: &[u8]) -> Option<DropReason> {
+    pub(crate) fn reason(&self, record: &[u8]) -> Option<DropReason> {
         let (flags, returns) = (record[FLAGS], record[14]);
         let (class, number, of) = if self.is_extended {
             (record[16], returns & 15, returns >> 4)
@@ -122,7 +122,7 @@ impl RecordFilter {
 
     /// The fields to decompress: coordinates, class, return numbers, and what the filters look at. Class and
     /// return numbers cost little, as they share layers with other fields or are short.
-    pub(super) fn selection(&self) -> DecompressionSelection {
+    pub(crate) fn selection(&self) -> DecompressionSelection {
         let places = DecompressionSelection::xy_returns_channel().decompress_z().decompress_classification();
         let counts_flags = self.withheld | self.synthetic | self.overlap | self.keypoint != 0;
         let start = if counts_flags { places.decompress_flags() } else { places };

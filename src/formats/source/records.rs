@@ -4,16 +4,16 @@ use std::ops::Range;
 
 use laz::DecompressionSelection;
 
-use super::index;
-use super::las_header::LasHeader;
-use super::laz::LazRecords;
-use super::options::SourceOptions;
-use super::origin::FileView;
-use super::pass::{BATCH_POINTS, Pass};
-use super::placement::Placement;
-use super::record_filter::RecordFilter;
-use super::record_reader::RecordReader;
-use super::row_plan::RowPlan;
+use crate::las::header::LasHeader;
+use crate::las::index;
+use crate::las::laz::LazRecords;
+use crate::source::options::SourceOptions;
+use crate::source::origin::FileView;
+use crate::source::pass::{BATCH_POINTS, Pass};
+use crate::source::placement::Placement;
+use crate::source::record_filter::RecordFilter;
+use crate::source::record_reader::RecordReader;
+use crate::source::row_plan::RowPlan;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 
@@ -21,7 +21,7 @@ use spmesh_stream::model::bounds::Point;
 const READ_LEN: usize = 1 << 18;
 
 /// One pass over the points of a LAS file.
-pub(super) struct RecordPass {
+pub(crate) struct RecordPass {
     reader: Box<dyn RecordReader>,
     filter: RecordFilter,
     plan: RowPlan,
@@ -34,7 +34,7 @@ pub(super) struct RecordPass {
 }
 
 impl RecordPass {
-    pub(super) fn new(
+    pub(crate) fn new(
         file: FileView,
         header: &LasHeader,
         options: &SourceOptions,
@@ -114,7 +114,7 @@ impl Pass for RecordPass {
 }
 
 /// The stored integers of a record, of which the first 12 bytes are enough.
-pub(super) fn raw_point(record: &[u8]) -> Point {
+pub(crate) fn raw_point(record: &[u8]) -> Point {
     let value = |at: usize| {
         f64::from(i32::from_le_bytes(
             record[at..at + 4].try_into().expect("records are longer than 12 bytes"),

@@ -5,7 +5,7 @@ use spmesh_stream::model::attributes::{Attribute, Attributes};
 
 /// Where the numbers of an attribute are in a record of the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Field {
+pub(crate) enum Field {
     /// These bytes, as they are.
     Bytes { at: usize, len: usize },
     /// Some bits of one byte: `byte >> shift & mask`.
@@ -14,13 +14,13 @@ pub(super) enum Field {
 
 /// An attribute that a file has.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Offer {
-    pub(super) attribute: Attribute,
-    pub(super) field: Field,
+pub(crate) struct Offer {
+    pub(crate) attribute: Attribute,
+    pub(crate) field: Field,
 }
 
 /// Attributes whose rows are records as they are.
-pub(super) fn offers_of<'a>(attributes: impl IntoIterator<Item = &'a Attribute>) -> Vec<Offer> {
+pub(crate) fn offers_of<'a>(attributes: impl IntoIterator<Item = &'a Attribute>) -> Vec<Offer> {
     let mut at = 0;
     let offer = |attribute: &Attribute| {
         let len = attribute.width();
@@ -32,22 +32,22 @@ pub(super) fn offers_of<'a>(attributes: impl IntoIterator<Item = &'a Attribute>)
 
 /// The fields of a row, in their order.
 #[derive(Debug, Clone, Default)]
-pub(super) struct RowPlan(Vec<Field>);
+pub(crate) struct RowPlan(Vec<Field>);
 
 impl RowPlan {
     /// Whether points have no rows.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
     /// Whether a row has the field that starts at this byte of a record.
-    pub(super) fn uses(&self, start: usize) -> bool {
+    pub(crate) fn uses(&self, start: usize) -> bool {
         self.0.iter().any(|field| matches!(*field, Field::Bytes { at, .. } if at == start))
     }
 
     /// Appends the row of a record.
     #[inline]
-    pub(super) fn append(&self, record: &[u8], rows: &mut Vec<u8>) {
+    pub(crate) fn append(&self, record: &[u8], rows: &mut Vec<u8>) {
         for field in &self.0 {
             match *field {
                 Field::Bytes { at, len } => rows.extend_from_slice(&record[at..at + len]),
@@ -86,7 +86,7 @@ impl AttributeChoice {
 ///
 /// # Errors
 /// Usage, if a file lacks an attribute that is named, or states another type, scale or unit for it.
-pub(super) fn choose(
+pub(crate) fn choose(
     choice: &AttributeChoice,
     files: &[(&str, &[Offer])],
     notices: &mut Vec<String>,

@@ -3,38 +3,38 @@
 
 use std::io::BufReader;
 
-use super::checked::Checked;
-use super::events::EventSource;
-use super::obj::{self, ObjVertices};
-use super::origin::Bytes;
-use super::pass::{Pass, Stated};
-use super::placement::Placement;
-use super::ply::{self, PlyVertices};
-use super::row_plan::{RowPlan, offers_of};
-use super::twin::TwinSource;
-use super::vertices::VertexPoints;
+use crate::obj::read::{self as obj, ObjVertices};
+use crate::ply::read::{self as ply, PlyVertices};
+use crate::source::checked::Checked;
+use crate::source::events::EventSource;
+use crate::source::origin::Bytes;
+use crate::source::pass::{Pass, Stated};
+use crate::source::placement::Placement;
+use crate::source::row_plan::{RowPlan, offers_of};
+use crate::source::vertices::VertexPoints;
+use crate::twin::read::TwinSource;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::attributes::Attribute;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader, Weighted};
 
 /// Reads the header of a stream.
-pub(super) fn state(file: Bytes, name: &str) -> Result<Stated> {
+pub(crate) fn state(file: Bytes, name: &str) -> Result<Stated> {
     state_of(&StreamReader::new(BufReader::new(file), name)?)
 }
 
 /// Reads the header of a text twin.
-pub(super) fn state_of_twin(file: Bytes, name: &str) -> Result<Stated> {
+pub(crate) fn state_of_twin(file: Bytes, name: &str) -> Result<Stated> {
     state_of(&TwinSource::new(file, name)?)
 }
 
 /// Reads the header of a PLY, whose vertices are the points.
-pub(super) fn state_of_ply(file: Bytes, name: &str) -> Result<Stated> {
+pub(crate) fn state_of_ply(file: Bytes, name: &str) -> Result<Stated> {
     state_of(&ply::open_vertices(file, name)?)
 }
 
 /// What is known of an OBJ, whose vertices are the points, before it is read.
-pub(super) fn state_of_obj(file: Bytes, name: &str) -> Result<Stated> {
+pub(crate) fn state_of_obj(file: Bytes, name: &str) -> Result<Stated> {
     state_of(&obj::open_vertices(file, name))
 }
 
@@ -65,7 +65,7 @@ fn attributes_of(header: &Header) -> Vec<Attribute> {
 }
 
 /// One pass over the points of a stream, of a text twin, or of a mesh.
-pub(super) struct EventPass<S> {
+pub(crate) struct EventPass<S> {
     source: S,
     plan: RowPlan,
     row_len: usize,
@@ -80,7 +80,7 @@ impl<S: EventSource> EventPass<S> {
 }
 
 /// Starts a pass over a stream.
-pub(super) fn pass(
+pub(crate) fn pass(
     file: Bytes,
     name: &str,
     plan: RowPlan,
@@ -90,7 +90,7 @@ pub(super) fn pass(
 }
 
 /// Starts a pass over a text twin.
-pub(super) fn pass_of_twin(
+pub(crate) fn pass_of_twin(
     file: Bytes,
     name: &str,
     plan: RowPlan,
@@ -99,7 +99,7 @@ pub(super) fn pass_of_twin(
 }
 
 /// Starts a pass over the vertices of a PLY.
-pub(super) fn pass_of_ply(
+pub(crate) fn pass_of_ply(
     file: Bytes,
     name: &str,
     plan: RowPlan,
@@ -108,7 +108,7 @@ pub(super) fn pass_of_ply(
 }
 
 /// Starts a pass over the vertices of an OBJ.
-pub(super) fn pass_of_obj(file: Bytes, name: &str) -> EventPass<VertexPoints<ObjVertices<Bytes>>> {
+pub(crate) fn pass_of_obj(file: Bytes, name: &str) -> EventPass<VertexPoints<ObjVertices<Bytes>>> {
     EventPass::new(obj::open_vertices(file, name), RowPlan::default())
 }
 

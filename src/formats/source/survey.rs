@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::describe::{File, describe};
-use super::input::{Input, check_options, stated_of};
-use super::options::SourceOptions;
-use super::pass::Stated;
-use super::placement::Placement;
-use super::reader::Description;
+use crate::source::describe::{File, describe};
+use crate::source::input::{Input, check_options, stated_of};
+use crate::source::options::SourceOptions;
+use crate::source::pass::Stated;
+use crate::source::placement::Placement;
+use crate::source::reader::Description;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::parallel::OrderedPool;
 use spmesh_stream::Coordinates;

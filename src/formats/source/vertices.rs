@@ -1,15 +1,15 @@
 //! The vertices of mesh files of other programs, as points.
 
-use super::events::EventSource;
+use crate::source::events::EventSource;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, Header, Totals};
 
 /// Points per event.
-const BATCH_POINTS: usize = 1 << 12;
+pub(crate) const BATCH_POINTS: usize = 1 << 12;
 
 /// Reads vertices one after the other.
-pub(super) trait Vertices {
+pub(crate) trait Vertices {
     /// The next vertex; everything before it is skipped.
     ///
     /// # Errors
@@ -26,7 +26,7 @@ pub(super) trait Vertices {
 }
 
 /// Vertices as a stream of points. Memory: one batch.
-pub(super) struct VertexPoints<V> {
+pub(crate) struct VertexPoints<V> {
     vertices: V,
     header: Header,
     rows: Vec<u8>,
@@ -36,7 +36,7 @@ pub(super) struct VertexPoints<V> {
 
 impl<V: Vertices> VertexPoints<V> {
     /// The points of `vertices`, described by `header`.
-    pub(super) fn new(vertices: V, header: Header) -> Self {
+    pub(crate) fn new(vertices: V, header: Header) -> Self {
         VertexPoints { vertices, header, rows: Vec::new(), points: 0, ended: false }
     }
 }

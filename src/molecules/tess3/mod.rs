@@ -30,8 +30,8 @@ pub use spheres::{Measure, measure};
 use std::time::Duration;
 
 use spmesh_delaunay::predicates::PredicateCounts;
+use spmesh_formats::molecules::Selection;
 use spmesh_formats::sink::TableFormat;
-use spmesh_formats::source::structure::Selection;
 
 /// The output made of a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use spmesh_formats::source::structure::{AtomView, Selected};
+use spmesh_formats::molecules::{AtomView, Selected};
 
 /// The names of all selected atoms, one behind the other.
 #[derive(Debug, Default)]

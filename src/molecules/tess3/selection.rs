@@ -1,7 +1,7 @@
 //! Selects atoms; if none is left, the error tells what other flags would select.
 
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::source::structure::{Altlocs, Atoms, Models, Selected, Selection, Structure};
+use spmesh_formats::molecules::{Altlocs, Atoms, Models, Selected, Selection, Structure};
 
 /// Index of the model to triangulate: the first one by default.
 ///

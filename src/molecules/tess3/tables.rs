@@ -10,8 +10,8 @@ use super::spheres::measure;
 use spmesh_base::error::Result;
 use spmesh_delaunay::delaunay3::Tetrahedralization;
 use spmesh_delaunay::predicates::Point3;
+use spmesh_formats::molecules::Selected;
 use spmesh_formats::sink::TableSink;
-use spmesh_formats::source::structure::Selected;
 
 /// Columns of the table of tetrahedra.
 pub(super) const TETRAHEDRA: &str = "model\tatom1\tatom2\tatom3\tatom4\tserial1\tserial2\tserial3\tserial4\t\

@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 
 use crate::diagram4::{Route, Stats, diagram_by};
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::source::points4::Selected4;
+use spmesh_formats::volumes::Selected4;
 use spmesh_stream::model::cells4::Point4;
 use spmesh_stream::model::diagram4::Diagram4;
 

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use crate::slices::{Slice, Surface};
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::source::points4::Orientation;
+use spmesh_formats::volumes::Orientation;
 use spmesh_stream::model::cells4::Point4;
 
 /// The factor that scales times against space: positive and finite.

@@ -9,7 +9,7 @@ use super::write::write_cells;
 use super::{Counts, Options, Placement, Product, Report, checked};
 use crate::diagram4::{Room, sweep};
 use spmesh_base::error::{Error, ErrorKind, Result};
-use spmesh_formats::source::points4::Selected4;
+use spmesh_formats::volumes::Selected4;
 
 /// Bytes of a point, from the first to the last stage.
 const POINT_BYTES: u64 = 96;

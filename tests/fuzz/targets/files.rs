@@ -6,13 +6,13 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use spmesh_formats::las::{Changes, LasCopy, LasFile};
-use spmesh_formats::source::points4::{
-    Condition, From4, RawLayout, Request, Selection, Spacing, parse_sizes, read_points4,
-};
-use spmesh_formats::source::structure::{Format, Radii, read_structure_from};
+use spmesh_formats::molecules::{Format, Radii, read_structure_from};
 use spmesh_formats::source::{
     AttributeChoice, Column, EventSource, Input, Interval, Plain, RawType, Separator, SourceOptions,
     open_obj, open_ply, open_sma, open_smb, read_ply_surface, read_polylines, read_values,
+};
+use spmesh_formats::volumes::{
+    Condition, From4, RawLayout, Request, Selection, Spacing, parse_sizes, read_points4,
 };
 use spmesh_molecules::tess3::Radius;
 use spmesh_pipeline::finalize::Thin;

@@ -1,7 +1,7 @@
 //! Compresses tiles in order, on a separate thread.
 
-use super::overviews::TileName;
-use super::tile_code::TileCode;
+use crate::raster::geotiff::overviews::TileName;
+use crate::raster::geotiff::tile_code::TileCode;
 use spmesh_base::error::Result;
 use spmesh_base::parallel::OrderedPool;
 

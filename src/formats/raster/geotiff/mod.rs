@@ -18,8 +18,8 @@ pub use overviews::Reduction;
 use overviews::{Overviews, TileName, level_sizes, tiles_of};
 use store::{Extent, Store};
 
-use super::{Grid, RasterFile, RasterOptions, Samples};
 use crate::crs::GeoKeys;
+use crate::raster::{Grid, RasterFile, RasterOptions, Samples};
 use spmesh_base::error::{Error, Result};
 use tile_code::TileCode;
 
@@ -168,7 +168,7 @@ impl Tiles<'_> {
         decoded.map_err(|error| Error::io("reading tiles back", error)).map(|()| true)
     }
 
-    /// Writes all rows, as [`super::write_rows`].
+    /// Writes all rows, as [`crate::raster::write_rows`].
     pub(super) fn rows(&mut self, row: &mut impl FnMut(u32, &mut [f32]) -> Result<()>) -> Result<()> {
         let [columns, rows] = self.levels[0].size;
         let [across, down] = tiles_of([columns, rows]);

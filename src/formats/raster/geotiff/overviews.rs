@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::TILE;
+use crate::raster::geotiff::TILE;
 use spmesh_base::error::Result;
 use spmesh_base::temporary::Records;
 

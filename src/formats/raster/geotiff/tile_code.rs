@@ -10,7 +10,7 @@ use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 
-use super::TILE;
+use crate::raster::geotiff::TILE;
 use crate::raster::{NoData, Samples};
 use spmesh_base::system::{expect_deflate_memory, expect_inflate_memory};
 

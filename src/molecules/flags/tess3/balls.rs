@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 
 use crate::tess3::{BallOptions, ContactFilter, Level, NamedRadii, Product};
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::source::structure::Radii;
+use spmesh_formats::molecules::Radii;
 
 /// Steps of a probe in 1 Å.
 const STEPS: f64 = 1000.0;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use clap::{Args, ValueEnum};
 
-use spmesh_formats::source::structure::{Altlocs, Atoms, Class, Models, Selection};
+use spmesh_formats::molecules::{Altlocs, Atoms, Class, Models, Selection};
 
 /// Which atoms are triangulated.
 #[derive(Debug, Clone, Args)]

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::Level;
 use crate::tess3::names::AtomNames;
-use spmesh_formats::source::structure::{AtomView, Name, Residue, Selected};
+use spmesh_formats::molecules::{AtomView, Name, Residue, Selected};
 
 /// The groups of the selected atoms, numbered as they first appear.
 pub(super) struct Groups {

@@ -20,8 +20,8 @@ use super::{Product, Report};
 use crate::balls::{Balls, Cells, measure, molecular_surface, pockets};
 use groups::Groups;
 use spmesh_base::error::{Error, Result};
+use spmesh_formats::molecules::{AtomView, Radii, Selected};
 use spmesh_formats::sink::TableSink;
-use spmesh_formats::source::structure::{AtomView, Radii, Selected};
 use tables::{CellTable, ContactTable};
 
 /// Steps of a radius in 1 Å.

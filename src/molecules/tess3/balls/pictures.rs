@@ -10,8 +10,8 @@ use crate::balls::{Balls, Cell, FINEST, faces, linings, measure, pockets, surfac
 use crate::tess3::Product;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point3;
+use spmesh_formats::molecules::{AtomView, Name};
 use spmesh_formats::sink::{Mesh, Shape, Table};
-use spmesh_formats::source::structure::{AtomView, Name};
 use spmesh_stream::model::attributes::{Attribute, Attributes, NumberType};
 
 /// Kinds of pockets.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use data_encoding::HEXLOWER;
 use sha2::{Digest, Sha256};
 use spmesh_base::error::Result;
-use spmesh_formats::source::structure::Radii;
+use spmesh_formats::molecules::Radii;
 
 /// Radii, and what they were called.
 #[derive(Debug, Clone)]

@@ -13,8 +13,8 @@ use crate::tess3::{ModelName, Options, Product, Report, job};
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::Inputs;
+use spmesh_formats::molecules::{Models, Structure, read_structure};
 use spmesh_formats::source::panic_guard::guarded;
-use spmesh_formats::source::structure::{Models, Structure, read_structure};
 use spmesh_stream::ends_with_end;
 
 /// A file to triangulate.

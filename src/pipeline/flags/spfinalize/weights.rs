@@ -7,8 +7,8 @@ use clap::Args;
 
 use crate::finalize::WeightSource;
 use spmesh_base::error::Result;
+use spmesh_formats::molecules::Radii;
 use spmesh_formats::source::AttributeChoice;
-use spmesh_formats::source::structure::Radii;
 
 /// The attribute that atoms with radii have.
 const RADIUS: &str = "radius";

@@ -9,7 +9,7 @@ use crate::dd4::{Form, Product};
 use crate::slices::Rule;
 use spmesh_base::error::{Error, Result};
 use spmesh_convert::Format;
-use spmesh_formats::source::points4::{From4, Request, Selection, Spacing, read_points4};
+use spmesh_formats::volumes::{From4, Request, Selection, Spacing, read_points4};
 use spmesh_stream::model::cells4::Point4;
 
 /// Examples for the end of the help.

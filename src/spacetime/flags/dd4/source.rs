@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::source::points4::{
+use spmesh_formats::volumes::{
     Condition, From4, RawLayout, Request, Selected4, Selection, Share, Spacing, parse_sizes, read_points4,
 };
 use spmesh_shell::refuse_terminal;

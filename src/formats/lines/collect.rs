@@ -1,0 +1,88 @@
+//! Lines as they are read, with their limits.
+
+use std::sync::Arc;
+
+use crate::lines::{Breakline, Breaklines, Properties};
+use spmesh_base::error::{Error, Result};
+use spmesh_base::limits::check_line_vertices;
+use spmesh_stream::Crs;
+
+/// What the parts of a geometry are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// Each vertex is a line of its own.
+    Points,
+    Line,
+    /// A ring of the polygon that [`Collector::polygon`] has started.
+    Ring,
+}
+
+/// Collects lines.
+#[derive(Default)]
+pub(crate) struct Collector {
+    lines: Vec<Breakline>,
+    polygons: u32,
+    vertices: usize,
+    /// Those of the feature whose lines are entered.
+    properties: Arc<Properties>,
+}
+
+impl Collector {
+    /// Starts a feature.
+    pub(crate) fn feature(&mut self, properties: Properties) {
+        self.properties = Arc::new(properties);
+    }
+
+    /// Starts a polygon.
+    pub(crate) fn polygon(&mut self) {
+        self.polygons += 1;
+    }
+
+    /// Enters a part of a geometry: x, y and z of each vertex; a z that is not finite is unknown. `position`
+    /// is asked for once a line.
+    ///
+    /// # Errors
+    /// Malformed, if x or y is not finite, or there are too many vertices.
+    pub(crate) fn add(
+        &mut self,
+        shape: Shape,
+        vertices: &[[f64; 3]],
+        position: impl Fn() -> String,
+    ) -> Result<()> {
+        self.vertices += vertices.len();
+        check_line_vertices(self.vertices).map_err(|error| error.at(position()))?;
+        if let Some(index) = vertices.iter().position(|[x, y, _]| !(x.is_finite() && y.is_finite())) {
+            let [x, y, _] = vertices[index];
+            let message = format!("vertex {index} is at {x}, {y}, expected finite coordinates");
+            return Err(Error::malformed(message).at(position()));
+        }
+        if shape == Shape::Points {
+            let position = position().into();
+            vertices.chunks(1).for_each(|vertex| self.push(shape, vertex, &position));
+        } else if !vertices.is_empty() {
+            self.push(shape, vertices, &position().into());
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, shape: Shape, vertices: &[[f64; 3]], position: &Arc<str>) {
+        self.lines.push(Breakline {
+            vertices: vertices.iter().map(|&[x, y, _]| [x, y]).collect(),
+            elevations: vertices.iter().map(|&[_, _, z]| Some(z).filter(|z| z.is_finite())).collect(),
+            polygon: (shape == Shape::Ring).then(|| self.polygons - 1),
+            properties: Arc::clone(&self.properties),
+            position: Arc::clone(position),
+        });
+    }
+
+    /// The lines.
+    ///
+    /// # Errors
+    /// Malformed, if there is none.
+    pub(crate) fn finish(self, crs: Crs) -> Result<Breaklines> {
+        if self.lines.is_empty() {
+            return Err(Error::malformed("found no lines"));
+        }
+        Ok(Breaklines { lines: self.lines, crs })
+    }
+}

@@ -1,0 +1,103 @@
+//! The table beside a Shapefile (`.dbf`), of which few columns have a meaning here.
+//!
+//! Source: dBASE III, as the ESRI Shapefile Technical Description, 1998, uses it: records of text of fixed
+//! length, in the order of the shapes.
+
+use std::fs::File;
+use std::io::{BufReader, ErrorKind, Read};
+use std::path::Path;
+
+use crate::lines::Properties;
+use spmesh_base::error::{Error, Result};
+
+const HEADER_LEN: usize = 32;
+const FIELD_LEN: usize = 32;
+/// Ends the list of fields.
+const FIELDS_END: u8 = 0x0d;
+
+/// A column: its name, and its bytes in a record.
+struct Column {
+    name: String,
+    bytes: std::ops::Range<usize>,
+}
+
+/// A table that is read record by record.
+pub(crate) struct Table {
+    name: String,
+    input: BufReader<File>,
+    columns: Vec<Column>,
+    record: Vec<u8>,
+}
+
+impl Table {
+    /// The table beside a Shapefile; `None` if there is none, or none of its columns has a meaning.
+    ///
+    /// # Errors
+    /// If reading fails; malformed, if its header is damaged.
+    pub(crate) fn beside(path: &Path) -> Result<Option<Table>> {
+        for ending in ["dbf", "DBF"] {
+            let beside = path.with_extension(ending);
+            let name = beside.display().to_string();
+            match File::open(&beside) {
+                Ok(file) => {
+                    let table = Table::read_header(BufReader::new(file), name.clone());
+                    let table = table.map_err(|error| error.of_input(name))?;
+                    return Ok(Some(table).filter(|table| !table.columns.is_empty()));
+                }
+                Err(error) if error.kind() == ErrorKind::NotFound => {}
+                Err(error) => return Err(Error::io("opening", error).of_input(name)),
+            }
+        }
+        Ok(None)
+    }
+
+    fn read_header(mut input: BufReader<File>, name: String) -> Result<Table> {
+        let mut header = [0; HEADER_LEN];
+        fill(&mut input, &mut header)?;
+        let number = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
+        let (header_len, record_len) = (number(8), number(10));
+        let mut fields = vec![0; header_len.saturating_sub(HEADER_LEN)];
+        fill(&mut input, &mut fields)?;
+        let (mut columns, mut start) = (Vec::new(), 1);
+        for field in fields.chunks_exact(FIELD_LEN).take_while(|field| field[0] != FIELDS_END) {
+            let bytes = start..start + usize::from(field[16]);
+            start = bytes.end;
+            let name: Vec<u8> = field[..11].iter().copied().take_while(|&byte| byte != 0).collect();
+            let name = String::from_utf8_lossy(&name).into_owned();
+            if Properties::default().of_name(&name).is_some() {
+                columns.push(Column { name, bytes });
+            }
+        }
+        if start > record_len.max(1) {
+            let message = format!("fields of {start} bytes in records of {record_len}");
+            return Err(Error::malformed(message));
+        }
+        Ok(Table { name, input, columns, record: vec![0; record_len] })
+    }
+
+    /// The properties of the next record.
+    ///
+    /// # Errors
+    /// If reading fails; malformed, if there is no other record.
+    pub(crate) fn next(&mut self) -> Result<Properties> {
+        fill(&mut self.input, &mut self.record).map_err(|error| error.of_input(&self.name))?;
+        let mut found = Properties::default();
+        for column in &self.columns {
+            let text = String::from_utf8_lossy(&self.record[column.bytes.clone()]);
+            let text = text.trim_matches([' ', '\0']);
+            // Asterisks stand for a number that is not known.
+            let is_known = !text.is_empty() && !text.bytes().all(|byte| byte == b'*');
+            if let Some(property) = found.of_name(&column.name) {
+                *property = is_known.then(|| text.to_string());
+            }
+        }
+        Ok(found)
+    }
+}
+
+fn fill(input: &mut impl Read, bytes: &mut [u8]) -> Result<()> {
+    input.read_exact(bytes).map_err(|error| match error.kind() {
+        ErrorKind::UnexpectedEof => Error::malformed("the table of attributes is cut off: copy it again"),
+        _ => Error::io("reading", error),
+    })
+}

@@ -1,0 +1,172 @@
+//! Lines that become edges of a mesh: text, GeoJSON, Shapefiles and GeoPackages, each recognized by its
+//! content.
+
+pub(crate) mod collect;
+pub(crate) mod dbase;
+pub(crate) mod geojson;
+pub(crate) mod geojson_polygons;
+#[cfg(feature = "geopackage")]
+pub(crate) mod geopackage;
+pub(crate) mod mask;
+pub(crate) mod polygon;
+pub(crate) mod polylines;
+pub(crate) mod shapefile;
+pub(crate) mod text;
+#[cfg(feature = "geopackage")]
+pub(crate) mod wkb;
+pub(crate) mod wkt;
+pub(crate) mod wkt_polygons;
+pub(crate) mod write_geojson;
+
+use std::io::{BufReader, Read};
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::detect::{self, Format, read_head};
+use crate::lines::geojson_polygons::is_json;
+use crate::source::gzip::Plain;
+use crate::source::origin::{name_of, open_file, open_stdin};
+use spmesh_base::error::{Error, Result};
+use spmesh_stream::Crs;
+use spmesh_stream::model::points::Point2;
+
+use collect::Collector;
+
+/// First bytes of a GeoPackage, which is an SQLite database.
+const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
+
+/// First bytes of the main file of a Shapefile.
+const SHAPEFILE_MAGIC: &[u8] = &[0, 0, 0x27, 0x0a];
+
+/// A line, or a ring of a polygon.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Breakline {
+    /// Its vertices, in world coordinates; at least one. The first vertex of a ring is also its last.
+    pub vertices: Vec<Point2>,
+    /// Elevation of each vertex, where the file states one.
+    pub elevations: Vec<Option<f64>>,
+    /// Number of the polygon in the file that it is a ring of.
+    pub polygon: Option<u32>,
+    /// Those of its feature, which all of its lines share.
+    pub properties: Arc<Properties>,
+    /// Position in the file, for messages.
+    pub position: Arc<str>,
+}
+
+/// What a feature says about water, as text.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Properties {
+    /// Elevation of a lake.
+    pub level: Option<String>,
+    /// Name that the lines and polygons of a river have in common.
+    pub river: Option<String>,
+    /// Side of a river that a line is the bank of.
+    pub bank: Option<String>,
+}
+
+impl Properties {
+    /// The property of this name, in any case; `None` if it has no meaning here.
+    fn of_name(&mut self, name: &str) -> Option<&mut Option<String>> {
+        match name {
+            _ if name.eq_ignore_ascii_case("level") => Some(&mut self.level),
+            _ if name.eq_ignore_ascii_case("river") => Some(&mut self.river),
+            _ if name.eq_ignore_ascii_case("bank") => Some(&mut self.bank),
+            _ => None,
+        }
+    }
+}
+
+/// The lines of a file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Breaklines {
+    /// In the order of the file.
+    pub lines: Vec<Breakline>,
+    /// Coordinate reference system, if the file states one.
+    pub crs: Crs,
+}
+
+/// Reads the lines of a file; `-` is stdin, from which text and GeoJSON are read. Both may be compressed with
+/// gzip.
+///
+/// In a line of text, the word `line` starts a line with X Y Z of each vertex, and the word `soft` one with X
+/// Y. The vertices of a line may continue on the next lines of text. `nan` stands for an unknown Z.
+///
+/// In GeoJSON, third coordinates are elevations. Points are lines of one vertex. A Shapefile may have Z; its
+/// system is in the `.prj` file beside it. Of a GeoPackage, all tables of features are read.
+///
+/// # Errors
+/// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a
+/// coordinate is not finite, or there are more than `LINE_VERTICES_MAX` vertices.
+pub fn read_breaklines(path: &Path) -> Result<Breaklines> {
+    read(path, false).map_err(|error| error.of_input(name_of(path)))
+}
+
+/// Reads the polygons of a file as [`read_breaklines`], also from WKT, of which third coordinates are
+/// ignored.
+///
+/// # Errors
+/// As there. Lines that are no rings are no error.
+pub fn read_polygons(path: &Path) -> Result<Breaklines> {
+    read(path, true).map_err(|error| error.of_input(name_of(path)))
+}
+
+fn read(path: &Path, takes_wkt: bool) -> Result<Breaklines> {
+    let (input, is_file): (Box<dyn Read>, bool) = if path.as_os_str() == "-" {
+        (Box::new(open_stdin()?), false)
+    } else {
+        let (file, kind) = open_file(path)?;
+        (Box::new(file), kind.is_file())
+    };
+    let mut input = Plain::held(input).map_err(|e| Error::io("reading", e))?;
+    // Other formats are read by their names again, or with files beside them.
+    let is_plain = is_file && !input.is_compressed();
+    let head = read_head(&mut input).map_err(|e| Error::io("reading", e))?;
+    if head.starts_with(SQLITE_MAGIC) {
+        return if is_plain { read_geopackage(path) } else { Err(not_in_pipe("GeoPackage")) };
+    }
+    let is_shapefile = head.starts_with(SHAPEFILE_MAGIC);
+    if is_shapefile && !is_plain {
+        return Err(not_in_pipe("Shapefile"));
+    }
+    let is_json = is_json(&head);
+    if takes_wkt && wkt::is_wkt(&head) {
+        return wkt::read(head, input);
+    }
+    if !is_json && !is_shapefile {
+        check_text(&head)?;
+    }
+    let rest = BufReader::with_capacity(1 << 17, head.chain(input));
+    if is_shapefile {
+        return shapefile::read(rest, path);
+    }
+    if is_json { geojson::read(rest) } else { text::read(rest) }
+}
+
+/// Checks that a file that starts with `head` may be text.
+fn check_text(head: &[u8]) -> Result<()> {
+    const REMEDY: &str =
+        "write the lines as GeoJSON, Shapefile, GeoPackage or text first, for example with ogr2ogr";
+    match detect::detect(head)? {
+        Format::OtherText | Format::Text | Format::VertexLines => Ok(()),
+        other => Err(Error::malformed(format!("found {}, expected lines: {REMEDY}", other.name()))),
+    }
+}
+
+fn not_in_pipe(format: &str) -> Error {
+    let message =
+        format!("a {format} is read from a plain file, not from a pipe or compressed: give its path");
+    Error::usage(message)
+}
+
+#[cfg(feature = "geopackage")]
+fn read_geopackage(path: &Path) -> Result<Breaklines> {
+    geopackage::read(path)
+}
+
+#[cfg(not(feature = "geopackage"))]
+fn read_geopackage(_: &Path) -> Result<Breaklines> {
+    Err(Error::usage(
+        "this program was built without the feature `geopackage`: convert the file first, for example with ogr2ogr \
+         lines.geojson lines.gpkg",
+    ))
+}

@@ -1,0 +1,159 @@
+//! Molecular structures in memory, compact enough for millions of atoms.
+
+use crate::molecules::assemblies::Assemblies;
+use crate::molecules::classes::Class;
+use crate::molecules::names::{Name, Names};
+use spmesh_stream::Coordinates;
+use spmesh_stream::model::points::Point3;
+
+/// A molecular structure, or points without names.
+#[derive(Debug, Clone)]
+pub struct Structure {
+    /// Name in messages: the path of the file, or "stdin".
+    pub name: String,
+    /// How the points of all models are stored: as 32-bit integers in units of 0.001 Å (or of a smaller power
+    /// of ten of which all coordinates of the input are multiples), or else as world coordinates.
+    pub coordinates: Coordinates,
+    /// The models that have atoms, at least one, in the order of the file. A file without models has one with
+    /// number 1.
+    pub models: Vec<Model>,
+    /// The residues that atoms refer to.
+    pub residues: Vec<Residue>,
+    /// The texts that residues and atoms refer to.
+    pub names: Names,
+    /// The biological assemblies that the file states.
+    pub assemblies: Assemblies,
+    /// Oddities of the input, as sentences.
+    pub warnings: Vec<String>,
+}
+
+impl Structure {
+    /// Whether an atom is a hydrogen or deuterium: by the element or, if it is not stated, by the name without
+    /// leading digits. An atom with the name of its residue is an ion.
+    #[must_use]
+    pub fn is_hydrogen(&self, atom: &Atom) -> bool {
+        match self.names.text(atom.element) {
+            "" => {
+                let name = self.names.text(atom.name).trim_start_matches(|c: char| c.is_ascii_digit());
+                name.starts_with(['H', 'h']) && atom.name != self.residues[atom.residue as usize].name
+            }
+            element => matches!(element, "H" | "h" | "D" | "d"),
+        }
+    }
+}
+
+/// One model: in ensembles another copy of the same molecule, in other files anything.
+#[derive(Debug, Clone, Default)]
+pub struct Model {
+    /// Number stated by the file.
+    pub number: i64,
+    /// Positions of the atoms, in stored coordinates; all finite.
+    pub points: Vec<Point3>,
+    /// The atoms, one per point; empty if the input has points without names.
+    pub atoms: Vec<Atom>,
+    /// Labels of points without names, if the input has any.
+    pub labels: Vec<u64>,
+}
+
+/// The data of an atom, in 32 bytes. Its position is the point with the same index.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Atom {
+    /// Serial number; if the file states none that can be parsed, the serial number of the atom before plus
+    /// one.
+    pub serial: u64,
+    /// Index of its residue in [`Structure::residues`].
+    pub residue: u32,
+    /// Name within the residue ("CA"), without the blanks around it.
+    pub name: Name,
+    /// Element symbol as the file states it; empty if it does not.
+    pub element: Name,
+    /// Alternate location; empty if the atom has only one.
+    pub altloc: Name,
+    /// Share of the molecules in which the atom is here; 1 if not stated.
+    pub occupancy: f32,
+    /// Whether the record is HETATM: ligands, ions, water, modified residues.
+    pub is_hetatm: bool,
+    /// Letters of the element's symbol at the start of the name, as the columns of the name in a PDB record
+    /// tell; 0 if they do not, and in other formats.
+    pub symbol_len: u8,
+}
+
+/// A residue: the data that the atoms of a monomer, ligand or water molecule share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Residue {
+    /// Chain, as named by the authors.
+    pub chain: Name,
+    /// Name ("ALA", "HOH").
+    pub name: Name,
+    /// Number within the chain, as counted by the authors; `None` if not stated.
+    pub number: Option<i32>,
+    /// Insertion code; mostly empty.
+    pub insertion_code: Name,
+    /// Part of the chain, as mmCIF names it (`label_asym_id`); otherwise the chain.
+    pub subchain: Name,
+    /// What it belongs to.
+    pub class: Class,
+}
+
+/// All data of one atom, with its texts.
+#[derive(Debug, Clone, Copy)]
+pub struct AtomView<'s> {
+    /// The structure it belongs to.
+    pub structure: &'s Structure,
+    /// Number of its model.
+    pub model: i64,
+    /// The atom.
+    pub atom: &'s Atom,
+    /// Its position, in stored coordinates.
+    pub point: Point3,
+}
+
+impl<'s> AtomView<'s> {
+    /// Its residue.
+    #[must_use]
+    pub fn residue(&self) -> &'s Residue {
+        &self.structure.residues[self.atom.residue as usize]
+    }
+
+    /// Name of its chain.
+    #[must_use]
+    pub fn chain(&self) -> &'s str {
+        self.structure.names.text(self.residue().chain)
+    }
+
+    /// Name of its residue.
+    #[must_use]
+    pub fn residue_name(&self) -> &'s str {
+        self.structure.names.text(self.residue().name)
+    }
+
+    /// Number of its residue.
+    #[must_use]
+    pub fn residue_number(&self) -> Option<i32> {
+        self.residue().number
+    }
+
+    /// Insertion code of its residue.
+    #[must_use]
+    pub fn insertion_code(&self) -> &'s str {
+        self.structure.names.text(self.residue().insertion_code)
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &'s str {
+        self.structure.names.text(self.atom.name)
+    }
+
+    /// Its element.
+    #[must_use]
+    pub fn element(&self) -> &'s str {
+        self.structure.names.text(self.atom.element)
+    }
+
+    /// Its alternate location.
+    #[must_use]
+    pub fn altloc(&self) -> &'s str {
+        self.structure.names.text(self.atom.altloc)
+    }
+}

@@ -1,0 +1,202 @@
+//! Van der Waals radii of atoms, from tables of the literature and from files.
+//!
+//! Radii are exact multiples of 0.001 Å. Those of the tables "protor" and "united" belong to heavy atoms with
+//! their hydrogens, so hydrogens are usually left out with them; those of "bondi" and "charmm" belong to
+//! single atoms.
+
+mod charmm;
+mod elements;
+mod file;
+mod finder;
+mod guess;
+mod residues;
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+pub use finder::RadiusFinder;
+
+use self::charmm::CHARMM;
+use self::elements::Element;
+use self::guess::Labels;
+use self::residues::{Group, PROTOR, UNITED, UNITED_ELEMENTS};
+use crate::molecules::model::{AtomView, Structure};
+use crate::molecules::selection::Selected;
+use crate::source::origin::open_file;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::limits::RADII_LEN_MAX;
+
+/// Number of steps of a radius in 1 Å.
+const STEPS: f64 = 1000.0;
+
+/// Stands for any residue or any atom.
+const ANY: &str = "*";
+
+/// Van der Waals radii by residue and atom, or by element.
+#[derive(Debug, Clone, Default)]
+pub struct Radii {
+    /// Radii in steps of 0.001 Å, by the names of residue and atom, either of which may be [`ANY`].
+    by_name: HashMap<[String; 2], u32>,
+    by_element: HashMap<Element, u32>,
+    /// Where atoms are looked up that have no radius above.
+    fallback: Fallback,
+}
+
+/// Radii of atoms that a table does not have.
+#[derive(Debug, Clone, Default)]
+enum Fallback {
+    /// None: such an atom is an error.
+    #[default]
+    None,
+    /// Those of elements.
+    Elements,
+    /// Those of another table.
+    Table(Box<Radii>),
+}
+
+/// Radii, and the file that they are from.
+#[derive(Debug, Clone)]
+pub struct LoadedRadii {
+    /// The radii.
+    pub radii: Radii,
+    /// The content of the file; `None` for a table.
+    pub file: Option<Vec<u8>>,
+}
+
+impl Radii {
+    /// Names of the tables.
+    pub const NAMES: [&str; 4] = ["protor", "bondi", "united", "charmm"];
+
+    /// The table of a name:
+    ///
+    /// * `protor`: by residue and atom for amino acids, nucleotides and water (Tsai, Taylor, Chothia and
+    ///   Gerstein 1999); other atoms, and hydrogens, as in `bondi`.
+    /// * `bondi`: by element, including hydrogen (Bondi 1964, Mantina and others 2009; metals that neither
+    ///   has from Hu, Zhou and Robertson 2009).
+    /// * `united`: by residue and atom for amino acids, by element for other heavy atoms (Chothia 1976, as in
+    ///   the program NACCESS); other elements, and hydrogens, as in `bondi`.
+    /// * `charmm`: by residue and atom, hydrogens too, for amino acids, nucleotides, water and ions (the
+    ///   force field CHARMM36m); other atoms as in `bondi`.
+    ///
+    /// The radii of `protor` and `united` include those of hydrogens, which are usually left out with them
+    /// ([`Atoms::Heavy`](crate::molecules::Atoms::Heavy)).
+    #[must_use]
+    pub fn named(name: &str) -> Option<Radii> {
+        Some(match name {
+            "protor" => Radii::of_tables(PROTOR, &[]),
+            "bondi" => Radii::of_tables(&[], &[]),
+            "united" => Radii::of_tables(UNITED, UNITED_ELEMENTS),
+            "charmm" => Radii::of_tables(CHARMM, &[]),
+            _ => return None,
+        })
+    }
+
+    fn of_tables(groups: &[Group], elements: &[(&str, u32)]) -> Radii {
+        let mut by_name = HashMap::new();
+        for group in groups {
+            for residue in group.residues() {
+                by_name
+                    .extend(group.atoms().map(|(atom, radius)| ([residue, atom].map(String::from), radius)));
+            }
+        }
+        let element = |&(symbol, radius): &(&str, u32)| Some((Element::of_symbol(symbol)?, radius));
+        let by_element = elements.iter().filter_map(element).collect();
+        Radii { by_name, by_element, fallback: Fallback::Elements }
+    }
+
+    /// Reads the radii in the file `path`. Each line has one of these forms, with radii in Å; text after `#`
+    /// is a comment.
+    ///
+    /// * `RESIDUE ATOM RADIUS`: of an atom by its name. `*` or `ANY` stands for any residue or any atom.
+    ///   `* ATOM` leaves out ions, whose atom has the name of the residue, so that `* CA` is no calcium.
+    /// * `ELEMENT RADIUS`: of an element. Deuterium is hydrogen.
+    /// * `table NAME`: for all atoms that the file has no radius for, the table of this name.
+    ///
+    /// Lines may have any order. Where several fit an atom, the first of these counts: residue and atom, the
+    /// residue with any atom, the atom of any residue, the element, any atom of any residue. Upper and lower
+    /// case are the same.
+    ///
+    /// # Errors
+    /// If the file cannot be read; [`spmesh_base::error::ErrorKind::Malformed`], with file and line, if a
+    /// line has another form, a radius has more than three decimal places, is negative or above 100 Å, or two
+    /// lines give different radii to the same atoms.
+    pub fn read(path: &Path) -> Result<Radii> {
+        let name = path.display().to_string();
+        let (input, _) = open_file(path).map_err(|e| e.of_input(&name))?;
+        Radii::read_from(input, &name)
+    }
+
+    /// As [`Radii::read`], from any reader. Messages call the input `name`.
+    ///
+    /// # Errors
+    /// As [`Radii::read`].
+    pub fn read_from(input: impl Read, name: &str) -> Result<Radii> {
+        file::read(input).map_err(|e| e.of_input(name))
+    }
+
+    /// The table of this name, or the radii in the file of this name, which is read once.
+    ///
+    /// # Errors
+    /// Usage, if it is neither; those of [`Radii::read`].
+    pub fn load(name: &str) -> Result<LoadedRadii> {
+        if let Some(radii) = Radii::named(name) {
+            return Ok(LoadedRadii { radii, file: None });
+        }
+        let input = File::open(name).map_err(|e| {
+            let tables = Radii::NAMES.join(", ");
+            Error::usage(format!("--radii {name}: {e}; expected a file of radii, or one of {tables}"))
+        })?;
+        let mut content = Vec::new();
+        let reading = |e| Error::io("reading", e).of_input(name);
+        input.take(RADII_LEN_MAX + 1).read_to_end(&mut content).map_err(reading)?;
+        if content.len() as u64 > RADII_LEN_MAX {
+            let message = format!("more than {} MB: this is no file of radii", RADII_LEN_MAX >> 20);
+            return Err(Error::malformed(message).of_input(name));
+        }
+        let radii = Radii::read_from(&content[..], name)?;
+        Ok(LoadedRadii { radii, file: Some(content) })
+    }
+
+    /// Finds the radii of the atoms of `structure`.
+    #[must_use]
+    pub fn finder<'s>(&'s self, structure: &'s Structure) -> RadiusFinder<'s> {
+        RadiusFinder::new(self, structure)
+    }
+
+    /// The selected atoms, each with its radius in steps of 0.001 Å; `None` if they are points without names.
+    ///
+    /// An item is an error as [`RadiusFinder::steps_of`].
+    pub fn of_atoms<'s>(
+        &'s self,
+        selected: &'s Selected<'s>,
+    ) -> Option<impl Iterator<Item = Result<(AtomView<'s>, u32)>>> {
+        let mut finder = self.finder(selected.atom(0)?.structure);
+        let atoms = (0..selected.points().len()).filter_map(|index| selected.atom(index));
+        Some(atoms.map(move |atom| Ok((atom, finder.steps_of(&atom)?))))
+    }
+
+    /// The radius of an atom, in steps of 0.001 Å.
+    fn find(&self, labels: &Labels, element: Option<Element>) -> Option<u32> {
+        let named = |residue: &str, atom: &str| self.by_name.get(&[residue, atom].map(String::from)).copied();
+        let of_element = || element.and_then(|element| self.by_element.get(&element).copied());
+        let Labels { residue, atom, .. } = *labels;
+        named(residue, atom)
+            .or_else(|| named(residue, ANY))
+            .or_else(|| if labels.is_single() { None } else { named(ANY, atom) })
+            .or_else(of_element)
+            .or_else(|| named(ANY, ANY))
+            .or_else(|| match &self.fallback {
+                Fallback::None => None,
+                Fallback::Elements => element?.radius(),
+                Fallback::Table(table) => table.find(labels, element),
+            })
+    }
+}
+
+/// A name of a residue or an atom as it is looked up: in upper case, and with the prime of atoms of sugars
+/// that older files write as an asterisk.
+fn looked_up(name: &str) -> String {
+    name.to_ascii_uppercase().replace('*', "'")
+}

@@ -1,0 +1,291 @@
+//! Selects atoms of a structure.
+
+use std::borrow::Cow;
+use std::collections::HashSet;
+
+use crate::molecules::classes::Class;
+use crate::molecules::conformers::{Preference, one_conformer};
+use crate::molecules::model::{Atom, AtomView, Model, Residue, Structure};
+use crate::molecules::names::Name;
+use spmesh_base::error::{Error, Result};
+use spmesh_stream::model::points::Point3;
+
+/// Models to select.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Models {
+    /// The first model of the file.
+    #[default]
+    First,
+    /// The model with this number.
+    One(i64),
+    /// All models, as one set of atoms.
+    All,
+}
+
+/// Alternate locations to select. Atoms with a single location are always selected.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Altlocs {
+    /// The conformer of each residue with the highest occupancy; of equal ones the first.
+    #[default]
+    Best,
+    /// The first conformer of each residue.
+    First,
+    /// The locations with this name.
+    Named(String),
+    /// All locations.
+    All,
+}
+
+/// Types of atoms to select.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Atoms {
+    /// All atoms.
+    #[default]
+    All,
+    /// All atoms except hydrogen (and deuterium).
+    Heavy,
+    /// Alpha carbons only.
+    CAlpha,
+}
+
+/// The atoms to select.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Selection {
+    /// Models.
+    pub models: Models,
+    /// Names of chains as the authors call them; all chains if empty.
+    pub chains: Vec<String>,
+    /// Alternate locations.
+    pub altlocs: Altlocs,
+    /// Whether HETATM records are selected.
+    pub hetatm: bool,
+    /// Types of atoms.
+    pub atoms: Atoms,
+    /// Classes of residues; all if empty.
+    pub classes: Vec<Class>,
+}
+
+impl Default for Selection {
+    fn default() -> Self {
+        Selection {
+            models: Models::default(),
+            chains: Vec::new(),
+            altlocs: Altlocs::default(),
+            hetatm: true,
+            atoms: Atoms::default(),
+            classes: Vec::new(),
+        }
+    }
+}
+
+/// The selected atoms (or points without names), in the order of the file.
+#[derive(Debug, Clone)]
+pub struct Selected<'s> {
+    structure: &'s Structure,
+    points: Cow<'s, [Point3]>,
+    members: Members,
+}
+
+/// Places of the selected atoms in the structure.
+#[derive(Debug, Clone)]
+enum Members {
+    /// All atoms of one model.
+    Model(usize),
+    /// Model and index of each atom.
+    Listed(Vec<[u32; 2]>),
+}
+
+impl Structure {
+    /// Selects atoms. Selecting a whole model takes no time. Points without names are in every selection of
+    /// their model, unless it asks for chains, classes or alpha carbons.
+    ///
+    /// # Errors
+    /// [`spmesh_base::error::ErrorKind::Usage`] if the structure has no such model or chain, or no names to
+    /// select by. An empty selection is not an error.
+    pub fn select(&self, selection: &Selection) -> Result<Selected<'_>> {
+        let models = self.models_of(selection)?;
+        let chains = self.chains_of(selection)?;
+        let mut members = Vec::new();
+        for &model in &models {
+            let filter = Filter::new(self, model, selection, &chains);
+            if models.len() == 1 && filter.wants_all() {
+                return Ok(self.whole(model));
+            }
+            let wanted = (0..self.models[model].points.len()).filter(|&atom| filter.wants(atom));
+            members.extend(wanted.map(|atom| [model as u32, atom as u32]));
+        }
+        if let [model] = models[..]
+            && members.len() == self.models[model].points.len()
+        {
+            return Ok(self.whole(model));
+        }
+        let points = members.iter().map(|&[model, atom]| self.models[model as usize].points[atom as usize]);
+        let points = Cow::Owned(points.collect());
+        Ok(Selected { structure: self, points, members: Members::Listed(members) })
+    }
+
+    fn whole(&self, model: usize) -> Selected<'_> {
+        let points = Cow::Borrowed(self.models[model].points.as_slice());
+        Selected { structure: self, points, members: Members::Model(model) }
+    }
+
+    /// Indices of the selected models.
+    fn models_of(&self, selection: &Selection) -> Result<Vec<usize>> {
+        match selection.models {
+            Models::First => Ok(vec![0]),
+            Models::All => Ok((0..self.models.len()).collect()),
+            Models::One(number) => {
+                let model = self.models.iter().position(|model| model.number == number);
+                let numbers = self.models.iter().map(|model| model.number.to_string());
+                model
+                    .map(|model| vec![model])
+                    .ok_or_else(|| self.lacks("model", &number.to_string(), numbers))
+            }
+        }
+    }
+
+    /// The selected chains; empty if all are.
+    fn chains_of(&self, selection: &Selection) -> Result<Vec<Name>> {
+        let is_nameless = self.models.iter().all(|model| model.atoms.is_empty());
+        let is_by_residue = !selection.chains.is_empty() || !selection.classes.is_empty();
+        if is_nameless && (is_by_residue || selection.atoms == Atoms::CAlpha) {
+            let reason = "has points without names: chains, classes and atoms cannot be selected";
+            return Err(Error::usage(reason).of_input(&self.name));
+        }
+        if !selection.classes.is_empty() && self.residues.iter().all(|residue| residue.name.is_empty()) {
+            let reason = "has atoms without residues: classes cannot be selected";
+            return Err(Error::usage(reason).of_input(&self.name));
+        }
+        let find = |chain: &String| {
+            let found = self.names.find(chain);
+            let found = found.filter(|&name| self.residues.iter().any(|residue| residue.chain == name));
+            found.ok_or_else(|| self.lacks("chain", chain, self.chains().into_iter().map(str::to_string)))
+        };
+        selection.chains.iter().map(find).collect()
+    }
+
+    /// The names of all chains, in the order in which they appear.
+    #[must_use]
+    pub fn chains(&self) -> Vec<&str> {
+        let mut seen = HashSet::new();
+        let chains = self.residues.iter().map(|residue| residue.chain);
+        chains.filter(|&chain| seen.insert(chain)).map(|chain| self.names.text(chain)).collect()
+    }
+
+    /// The error for a name that the file lacks.
+    pub(crate) fn lacks(&self, what: &str, wanted: &str, there: impl Iterator<Item = String>) -> Error {
+        const SHOWN: usize = 20;
+        let mut there: Vec<String> = there.take(SHOWN + 1).collect();
+        if there.len() > SHOWN {
+            there[SHOWN] = "...".to_string();
+        }
+        Error::usage(format!("has no {what} {wanted:?}, only {}", there.join(", "))).of_input(&self.name)
+    }
+}
+
+/// Selects atoms of one model.
+struct Filter<'s> {
+    structure: &'s Structure,
+    model: &'s Model,
+    hetatm: bool,
+    atoms: Atoms,
+    /// For each residue, whether its chain and class are selected; empty if all are.
+    residues: Vec<bool>,
+    /// For each atom, whether its location is selected; empty if all are.
+    locations: Vec<bool>,
+}
+
+impl<'s> Filter<'s> {
+    fn new(structure: &'s Structure, model: usize, selection: &Selection, chains: &[Name]) -> Self {
+        let model = &structure.models[model];
+        let classes = &selection.classes;
+        let is_wanted = |residue: &Residue| {
+            (chains.is_empty() || chains.contains(&residue.chain))
+                && (classes.is_empty() || classes.contains(&residue.class))
+        };
+        let wants_every = chains.is_empty() && classes.is_empty();
+        let residues =
+            if wants_every { Vec::new() } else { structure.residues.iter().map(is_wanted).collect() };
+        let locations = match &selection.altlocs {
+            Altlocs::All => Vec::new(),
+            _ if model.atoms.iter().all(|atom| atom.altloc.is_empty()) => Vec::new(),
+            Altlocs::Named(name) => {
+                let name = structure.names.find(name);
+                let is_wanted = |atom: &Atom| atom.altloc.is_empty() || Some(atom.altloc) == name;
+                model.atoms.iter().map(is_wanted).collect()
+            }
+            Altlocs::First => one_conformer(&structure.residues, &model.atoms, Preference::First),
+            Altlocs::Best => one_conformer(&structure.residues, &model.atoms, Preference::MostOccupied),
+        };
+        Filter { structure, model, hetatm: selection.hetatm, atoms: selection.atoms, residues, locations }
+    }
+
+    /// Whether all atoms pass.
+    fn wants_all(&self) -> bool {
+        let every_kind = self.hetatm && self.atoms == Atoms::All;
+        self.model.atoms.is_empty() || (every_kind && self.residues.is_empty() && self.locations.is_empty())
+    }
+
+    fn wants(&self, index: usize) -> bool {
+        let Some(atom) = self.model.atoms.get(index) else { return true };
+        let is_kind = || match self.atoms {
+            Atoms::All => true,
+            Atoms::Heavy => !self.structure.is_hydrogen(atom),
+            Atoms::CAlpha => self.is_alpha_carbon(atom),
+        };
+        (self.hetatm || !atom.is_hetatm)
+            && self.residues.get(atom.residue as usize).is_none_or(|&wanted| wanted)
+            && self.locations.get(index).is_none_or(|&wanted| wanted)
+            && is_kind()
+    }
+
+    /// Decides by name and element. A calcium ion has the name of its residue.
+    fn is_alpha_carbon(&self, atom: &Atom) -> bool {
+        let names = &self.structure.names;
+        let is_calcium = atom.name == self.structure.residues[atom.residue as usize].name;
+        names.text(atom.name).eq_ignore_ascii_case("CA")
+            && matches!(names.text(atom.element), "" | "C" | "c")
+            && !is_calcium
+    }
+}
+
+impl<'s> Selected<'s> {
+    /// Positions of the atoms, in the stored coordinates of the structure.
+    #[must_use]
+    pub fn points(&self) -> &[Point3] {
+        &self.points
+    }
+
+    /// The structure of the atoms.
+    #[must_use]
+    pub fn structure(&self) -> &'s Structure {
+        self.structure
+    }
+
+    /// The label of the point at `index`: its atom's serial number or, for points without names, their label
+    /// or else the number of the point in the input, counted from 1.
+    #[must_use]
+    pub fn label(&self, index: usize) -> u64 {
+        let [model, atom] = self.place(index);
+        let Model { atoms, labels, .. } = &self.structure.models[model];
+        let label = labels.get(atom).copied().unwrap_or(atom as u64 + 1);
+        atoms.get(atom).map_or(label, |atom| atom.serial)
+    }
+
+    /// The atom at `index`; `None` for points without names.
+    #[must_use]
+    pub fn atom(&self, index: usize) -> Option<AtomView<'s>> {
+        let [model, atom] = self.place(index);
+        let model = &self.structure.models[model];
+        let point = self.points[index];
+        Some(AtomView { structure: self.structure, model: model.number, atom: model.atoms.get(atom)?, point })
+    }
+
+    /// Indices of model and atom of the point at `index`.
+    fn place(&self, index: usize) -> [usize; 2] {
+        match &self.members {
+            Members::Model(model) => [*model, index],
+            Members::Listed(members) => members[index].map(|index| index as usize),
+        }
+    }
+}

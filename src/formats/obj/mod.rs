@@ -1,0 +1,4 @@
+//! OBJ (Wavefront): meshes and points.
+
+pub(crate) mod read;
+pub(crate) mod write;

@@ -1,0 +1,206 @@
+//! Tables with typed columns, which are given row by row: tab-separated text, JSON Lines or Parquet.
+
+mod number;
+mod parquet;
+mod text;
+
+use std::fmt::Display;
+use std::io::Write;
+use std::path::Path;
+
+use parquet::ParquetRows;
+use text::TextRows;
+
+use spmesh_base::error::{Error, Result};
+use spmesh_base::output::Output;
+use spmesh_base::places::is_device;
+
+/// Bytes of rows that are buffered before they are written.
+const BUFFER_LEN: usize = 1 << 16;
+
+/// Formats of tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TableFormat {
+    /// Fields that tabs separate, below a line with the names of the columns. Numbers have nine digits.
+    #[default]
+    Tsv,
+    /// An object on each line, with the names of the columns as keys. Numbers have nine digits.
+    JsonLines,
+    /// Apache Parquet, with numbers as they are in memory.
+    Parquet,
+}
+
+impl TableFormat {
+    /// All of them.
+    pub const ALL: [TableFormat; 3] = [TableFormat::Tsv, TableFormat::JsonLines, TableFormat::Parquet];
+
+    /// The format that the ending of a name stands for; `None` if it stands for no table, or `path` is a
+    /// device, such as /dev/fd/3.parquet.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<TableFormat> {
+        let ending = path.extension().filter(|_| !is_device(path))?.to_str()?.to_ascii_lowercase();
+        Some(match &ending[..] {
+            "tsv" => TableFormat::Tsv,
+            "jsonl" | "ndjson" => TableFormat::JsonLines,
+            "parquet" => TableFormat::Parquet,
+            _ => return None,
+        })
+    }
+
+    /// The usual ending of names, which is also the name of the format.
+    #[must_use]
+    pub fn ending(self) -> &'static str {
+        match self {
+            TableFormat::Tsv => "tsv",
+            TableFormat::JsonLines => "jsonl",
+            TableFormat::Parquet => "parquet",
+        }
+    }
+}
+
+/// Types of columns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColumnKind {
+    /// Text.
+    Text,
+    /// Integers; in Parquet, of 64 bits with a sign.
+    Integer,
+    /// Numbers as f64.
+    Number,
+}
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// The type of its fields.
+    pub kind: ColumnKind,
+}
+
+/// A table while it is written, field by field. Without [`TableSink::commit`], a file gets no name.
+///
+/// Memory: 64 kB; for Parquet a group of 65,536 rows or 8 MB of text.
+pub struct TableSink {
+    rows: Rows,
+    output: Output,
+    columns: Vec<Column>,
+    /// Fields of the current row.
+    fields: usize,
+}
+
+pub(crate) enum Rows {
+    Text(TextRows),
+    Parquet(Box<ParquetRows>),
+}
+
+impl TableSink {
+    /// A table without rows.
+    #[must_use]
+    pub fn create(format: TableFormat, columns: Vec<Column>, output: Output) -> TableSink {
+        let rows = match format {
+            TableFormat::Tsv => Rows::Text(TextRows::tsv(&columns)),
+            TableFormat::JsonLines => Rows::Text(TextRows::json_lines(&columns)),
+            TableFormat::Parquet => Rows::Parquet(Box::new(ParquetRows::new(&columns))),
+        };
+        TableSink { rows, output, columns, fields: 0 }
+    }
+
+    /// Adds a text to the row.
+    pub fn field(&mut self, text: &str) {
+        let column = self.next(ColumnKind::Text);
+        match &mut self.rows {
+            Rows::Text(rows) => rows.text(column, text),
+            Rows::Parquet(rows) => rows.text(column, text),
+        }
+    }
+
+    /// Adds an integer to the row.
+    ///
+    /// # Errors
+    /// Usage, if it is beyond the integers of Parquet.
+    pub fn integer(&mut self, value: impl Display + TryInto<i64> + Copy) -> Result<()> {
+        let column = self.next(ColumnKind::Integer);
+        match &mut self.rows {
+            Rows::Text(rows) => rows.integer(column, value),
+            Rows::Parquet(rows) => match value.try_into() {
+                Ok(value) => rows.integer(column, value),
+                Err(_) => {
+                    let name = &self.columns[column].name;
+                    let message =
+                        format!("{value} in column {name} exceeds 63 bits: write text (.tsv, .jsonl)");
+                    return Err(Error::usage(message));
+                }
+            },
+        }
+        Ok(())
+    }
+
+    /// Adds a number to the row.
+    pub fn number(&mut self, value: f64) {
+        let column = self.next(ColumnKind::Number);
+        match &mut self.rows {
+            Rows::Text(rows) => rows.number(column, value),
+            Rows::Parquet(rows) => rows.number(column, value),
+        }
+    }
+
+    /// Adds nothing to the row, where a column does not apply.
+    pub fn nothing(&mut self) {
+        let column = self.fields;
+        self.fields += 1;
+        match &mut self.rows {
+            Rows::Text(rows) => rows.nothing(column),
+            Rows::Parquet(rows) => rows.nothing(column),
+        }
+    }
+
+    /// Ends the row.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn end(&mut self) -> Result<()> {
+        debug_assert_eq!(self.fields, self.columns.len(), "a field for each column");
+        self.fields = 0;
+        let is_full = match &mut self.rows {
+            Rows::Text(rows) => rows.end() >= BUFFER_LEN,
+            Rows::Parquet(rows) => rows.end()?,
+        };
+        if is_full { self.flush() } else { Ok(()) }
+    }
+
+    /// Writes all rows, and gives the output its name.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn commit(mut self) -> Result<()> {
+        self.flush()?;
+        if let Rows::Parquet(rows) = self.rows {
+            self.output.write_all(&rows.footer()).map_err(write_error)?;
+        }
+        self.output.commit()
+    }
+
+    /// Writes the rows so far.
+    fn flush(&mut self) -> Result<()> {
+        let bytes = match &mut self.rows {
+            Rows::Text(rows) => &mut rows.bytes,
+            Rows::Parquet(rows) => rows.group()?,
+        };
+        self.output.write_all(bytes).map_err(write_error)?;
+        bytes.clear();
+        Ok(())
+    }
+
+    /// The column of the next field.
+    fn next(&mut self, kind: ColumnKind) -> usize {
+        let column = self.fields;
+        debug_assert_eq!(self.columns[column].kind, kind, "the type of column {}", self.columns[column].name);
+        self.fields += 1;
+        column
+    }
+}
+
+fn write_error(cause: std::io::Error) -> Error {
+    Error::io("writing the table", cause)
+}
