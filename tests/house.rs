@@ -4,45 +4,34 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Crates of the workspace that each crate of `src` may use. Tools and command lines are listed below.
-const ARROWS: [(&str, &[&str]); 13] = [
-    ("core", &[]),
-    ("model", &["core"]),
-    ("stream", &["model", "core"]),
-    ("geometry", &["model", "core"]),
-    ("geometry4", &["geometry", "model", "core"]),
-    ("configurations", &["geometry", "model", "core"]),
-    ("crs", &["stream", "core"]),
-    ("io", &["crs", "stream", "model", "core"]),
-    ("lines", &["io", "crs", "geometry", "stream", "model", "core"]),
-    ("splines", &["configurations", "geometry", "model", "core"]),
+/// Crates of the workspace that each crate of `src` may use.
+const ARROWS: [(&str, &[&str]); 14] = [
+    // What other Rust programs depend on.
+    ("delaunay", &[]),
+    ("base", &[]),
+    ("stream", &["base"]),
     // The audit would not be independent if it shared code with the kernels that it checks.
-    ("audit", &["stream", "model", "core"]),
-    ("view", &["configurations", "io", "crs", "geometry", "stream", "model", "core"]),
-    ("shell", &["io", "crs", "stream", "model", "core"]),
+    ("audit", &["stream", "base"]),
+    ("formats", &["stream", "base"]),
+    ("configurations", &["delaunay", "stream", "base"]),
+    ("shell", &["formats", "stream", "base"]),
+    ("pipeline", &["audit", "delaunay", "formats", "shell", "stream", "base"]),
+    ("terrain", &["pipeline", "delaunay", "formats", "shell", "stream", "base"]),
+    ("molecules", &["delaunay", "formats", "shell", "stream", "base"]),
+    ("spacetime", &["convert", "delaunay", "formats", "shell", "stream", "base"]),
+    ("splines", &["configurations", "view", "delaunay", "formats", "shell", "stream", "base"]),
+    ("view", &["configurations", "delaunay", "formats", "shell", "stream", "base"]),
+    ("convert", &["formats", "shell", "stream", "base"]),
 ];
 
-/// Crates of the workspace that any tool may use. No tool may use another.
-const OF_TOOLS: &[&str] = &["io", "crs", "geometry", "stream", "model", "core"];
-/// Additional crates, by tool.
-const OF_TOOL: [(&str, &[&str]); 4] = [
-    ("configgen", &["configurations"]),
-    ("constrain", &["lines"]),
-    ("dd4", &["geometry4"]),
-    ("splinefit", &["configurations", "splines"]),
-];
-
-/// The command line that another one may use: terrain takes flags for lines from it.
-const SHARED_COMMAND_LINE: (&str, &str) = ("cli-terrain", "cli-pipeline");
-
-/// Packages that only command lines and the shell may use.
+/// Packages that only the shell and command lines may use, which are behind the feature `flags`.
 const OF_COMMAND_LINES: [&str; 2] = ["clap", "anyhow"];
 
 /// Packages that only one crate may use, so that a library user does not pay for them.
 const PACKAGES: [(&str, &str); 5] = [
-    ("epsg-utils", "crs"),
+    ("epsg-utils", "formats"),
     ("faer", "splines"),
-    ("parquet", "io"),
+    ("laz", "formats"),
     ("tiny-skia", "view"),
     ("zstd", "stream"),
 ];
@@ -77,31 +66,14 @@ fn files(folder: &str) -> Vec<PathBuf> {
     found
 }
 
-/// A crate of the workspace: its folder, and its dependencies outside of tests.
-struct Member {
-    folder: PathBuf,
-    dependencies: Vec<String>,
-}
-
-impl Member {
-    fn is_tool(&self) -> bool {
-        self.folder.starts_with("src/tools")
-    }
-
-    fn is_command_line(&self) -> bool {
-        self.folder.starts_with("src/cli")
-    }
-}
-
-/// The crates of `src` by name, without the prefix `spmesh-`.
-fn members() -> BTreeMap<String, Member> {
+/// The manifests of the crates of `src` by name, without the prefix `spmesh-`.
+fn manifests() -> BTreeMap<String, String> {
     let manifests = files("src").into_iter().filter(|path| path.ends_with("Cargo.toml"));
     manifests
         .map(|path| {
             let text = fs::read_to_string(root().join(&path)).unwrap();
-            let folder = path.parent().unwrap().to_path_buf();
             let name = text.lines().find_map(|line| line.strip_prefix("name = \"spmesh-")).unwrap();
-            (name.trim_end_matches('"').to_string(), Member { folder, dependencies: dependencies(&text) })
+            (name.trim_end_matches('"').to_string(), text)
         })
         .collect()
 }
@@ -125,40 +97,38 @@ fn dependencies(manifest: &str) -> Vec<String> {
 
 #[test]
 fn crates_use_only_the_crates_below_them() {
-    let members = members();
+    let manifests = manifests();
     let arrows = BTreeMap::from(ARROWS);
-    let extra = BTreeMap::from(OF_TOOL);
+    assert!(manifests.keys().eq(arrows.keys().copied()), "a crate is not in the table, or does not exist");
     let mut wrong = Vec::new();
-    for (name, member) in &members {
-        let allowed = |used: &str| match arrows.get(name.as_str()) {
-            Some(crates) => crates.contains(&used),
-            // The manuals are those of all programs.
-            None if member.is_command_line() => {
-                let is_other = members[used].is_command_line() && name != "manuals";
-                !is_other || (name.as_str(), used) == SHARED_COMMAND_LINE
-            }
-            None if member.is_tool() => {
-                OF_TOOLS.contains(&used) || extra.get(name.as_str()).is_some_and(|more| more.contains(&used))
-            }
-            None => panic!("{name} is not in the table of crates"),
-        };
-        let used = member.dependencies.iter().filter_map(|package| package.strip_prefix("spmesh-"));
-        wrong.extend(used.filter(|used| !allowed(used)).map(|used| format!("{name} -> {used}")));
+    for (name, manifest) in &manifests {
+        let used = dependencies(manifest);
+        let used = used.iter().filter_map(|package| package.strip_prefix("spmesh-"));
+        let used = used.filter(|used| !arrows[name.as_str()].contains(used));
+        wrong.extend(used.map(|used| format!("{name} -> {used}")));
     }
     assert!(wrong.is_empty(), "arrows that lead up or across: {wrong:?}");
-    assert!(arrows.keys().all(|name| members.contains_key(*name)), "a crate of the table does not exist");
 }
 
 #[test]
 fn heavy_packages_stay_in_one_crate() {
-    for (name, member) in members() {
-        let uses = |package: &str| member.dependencies.iter().any(|used| used == package);
+    for (name, manifest) in manifests() {
         for (package, owner) in PACKAGES {
-            assert!(name == owner || !uses(package), "{name} uses {package}, which only {owner} may");
+            let uses = dependencies(&manifest).iter().any(|used| used == package);
+            assert!(name == owner || !uses, "{name} uses {package}, which only {owner} may");
         }
-        let is_shell = name == "shell" || member.is_command_line();
-        let used = OF_COMMAND_LINES.iter().find(|package| !is_shell && uses(package));
-        assert_eq!(used, None, "{name} uses what only command lines may");
+    }
+}
+
+/// A Rust program uses the engine of a product without its command line.
+#[test]
+fn command_lines_can_be_left_out() {
+    for (name, manifest) in manifests().iter().filter(|(name, _)| *name != "shell") {
+        for package in OF_COMMAND_LINES.iter().chain(&["spmesh-shell"]) {
+            let is_asked_for = !dependencies(manifest).iter().any(|used| used == package)
+                || manifest.contains(&format!("\n{package} = {{ workspace = true, optional = true }}\n"));
+            assert!(is_asked_for, "{name} always uses {package}");
+        }
     }
 }
 

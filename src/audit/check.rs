@@ -82,13 +82,11 @@ impl Check {
     ];
 
     /// Name for people and for JSON.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.row().0
     }
 
     /// The claim that the check proves.
-    #[must_use]
     pub fn claim(self) -> &'static str {
         self.row().1
     }
@@ -213,7 +211,6 @@ impl Violation {
     }
 
     /// The violation as an error, with the geometry in world coordinates of the stream's `header`.
-    #[must_use]
     pub fn to_error(&self, header: &Header) -> Error {
         let mut message = format!("{} check failed: {}", self.check.name(), self.message);
         for (i, &(id, stored)) in self.vertices.iter().enumerate() {

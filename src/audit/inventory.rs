@@ -52,7 +52,6 @@ pub struct CellPoints {
 
 impl Inventory {
     /// An inventory of a stream with this header.
-    #[must_use]
     pub fn new(header: &Header) -> Self {
         Inventory {
             rules: MemoryRules::new(header),
@@ -108,61 +107,51 @@ impl Inventory {
     }
 
     /// Totals of the blocks so far; after the end, what END states.
-    #[must_use]
     pub fn totals(&self) -> Totals {
         self.totals
     }
 
     /// The content of four dimensions.
-    #[must_use]
     pub fn four(&self) -> &Inventory4 {
         &self.four
     }
 
     /// The configurations.
-    #[must_use]
     pub fn configurations(&self) -> &ConfigurationInventory {
         &self.configurations
     }
 
     /// What constrains a triangle mesh.
-    #[must_use]
     pub fn constraints(&self) -> &ConstraintInventory {
         &self.constraints
     }
 
     /// Bounding box of all points, in stored coordinates, of two or three dimensions.
-    #[must_use]
     pub fn found_bounds(&self) -> Option<Bounds> {
         self.found
     }
 
     /// Most vertices that were live at once: the width of the stream.
-    #[must_use]
     pub fn width(&self) -> usize {
         self.rules.live_max()
     }
 
     /// Number of vertices that have a label.
-    #[must_use]
     pub fn labels(&self) -> u64 {
         self.labels
     }
 
     /// Number of patches.
-    #[must_use]
     pub fn patches(&self) -> u64 {
         self.patches
     }
 
     /// Size of the patch with the most simplices.
-    #[must_use]
     pub fn largest_patch(&self) -> PatchSize {
         self.largest_patch
     }
 
     /// Points before cell tags; in a chunked stream these are the points of single cells.
-    #[must_use]
     pub fn cell_points(&self) -> CellPoints {
         self.cells
     }

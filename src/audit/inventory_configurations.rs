@@ -27,7 +27,6 @@ pub struct ConfigurationInventory {
 
 impl ConfigurationInventory {
     /// Counts by increasing degree.
-    #[must_use]
     pub fn degrees(&self) -> &[DegreeInventory] {
         &self.degrees
     }

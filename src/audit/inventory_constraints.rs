@@ -30,7 +30,6 @@ impl ConstraintInventory {
     }
 
     /// Number of different lines that segments belong to.
-    #[must_use]
     pub fn lines(&self) -> u64 {
         self.lines.len() as u64
     }

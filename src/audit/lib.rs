@@ -186,7 +186,6 @@ impl Audit {
     }
 
     /// The checks made so far.
-    #[must_use]
     pub fn report(&self) -> Report {
         Report {
             lines: self.ledger.lines(self.violation.as_ref()),

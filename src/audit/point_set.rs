@@ -36,7 +36,6 @@ macro_rules! of_keys {
 
 impl PointSet {
     /// No points, in stored coordinates of this encoding, in two or three dimensions.
-    #[must_use]
     pub fn new(coordinates: Coordinates, dims: u8) -> Self {
         let keys = match (coordinates, dims) {
             (Coordinates::I32 { .. }, 3) => Keys::I32InSpace(Vec::new()),

@@ -22,9 +22,6 @@ impl<const D: usize> PointTree<D> {
 
     /// Calls `visit` with position and number of each point in the closed box from `low` to `high`, until it
     /// fails.
-    ///
-    /// # Errors
-    /// The first of `visit`.
     pub(super) fn in_box<E>(
         &self,
         low: [f64; D],

@@ -31,7 +31,6 @@ pub enum ErrorKind {
 
 impl ErrorKind {
     /// Process exit code of this kind of failure.
-    #[must_use]
     pub fn exit_code(self) -> u8 {
         match self {
             ErrorKind::Io => 1,
@@ -130,13 +129,11 @@ impl Error {
     }
 
     /// Kind of the failure.
-    #[must_use]
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }
 
     /// Process exit code of this failure.
-    #[must_use]
     pub fn exit_code(&self) -> u8 {
         self.kind.exit_code()
     }

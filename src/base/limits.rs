@@ -78,7 +78,6 @@ pub const ASSEMBLY_ATOMS_SMALL: usize = 1 << 17;
 
 /// Most atoms of a biological assembly made from `atoms` atoms. It allows the 1,680 copies of ten thousand
 /// atoms of a capsid, but not that a few atoms become millions.
-#[must_use]
 pub const fn assembly_atoms_max(atoms: usize) -> usize {
     let copied = atoms.saturating_mul(atoms / 4);
     let most = if copied < ASSEMBLY_ATOMS_SMALL { ASSEMBLY_ATOMS_SMALL } else { copied };
@@ -196,14 +195,12 @@ pub const WKB_DEPTH_MAX: u32 = 32;
 pub const RADII_LEN_MAX: u64 = 1 << 24;
 
 /// Longest value that SQLite may make of a GeoPackage of so many bytes: a little more than the file.
-#[must_use]
 pub fn geopackage_value_max(len: u64) -> i32 {
     i32::try_from(len.saturating_add(1 << 16)).unwrap_or(i32::MAX)
 }
 
 /// Most steps of SQLite for a GeoPackage of so many bytes. A row takes some ten steps, and at least as many
 /// bytes.
-#[must_use]
 pub fn geopackage_steps_max(len: u64) -> u64 {
     len.saturating_mul(64).saturating_add(1_000_000)
 }

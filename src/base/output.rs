@@ -94,7 +94,6 @@ impl Output {
     }
 
     /// Bytes written so far.
-    #[must_use]
     pub fn bytes_written(&self) -> u64 {
         self.written
     }
@@ -154,8 +153,6 @@ impl Write for Output {
 }
 
 impl Seek for Output {
-    /// # Errors
-    /// If the output is a pipe or a terminal.
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         let sought = match &mut self.sink {
             Sink::InPlace(file) | Sink::Unnamed { file, .. } => file.seek(to),

@@ -40,7 +40,6 @@ impl Place {
 
 /// Whether `path` is that of a device, such as /dev/fd/3.png, whose ending stands for no format. /dev/shm is
 /// a folder of files.
-#[must_use]
 pub fn is_device(path: &Path) -> bool {
     path.starts_with("/dev") && !path.starts_with("/dev/shm")
 }
@@ -60,7 +59,6 @@ impl Inputs {
     }
 
     /// The name of the input that an output at `path` would replace, if there is one; "-" is stdout.
-    #[must_use]
     pub fn at(&self, path: &Path) -> Option<&str> {
         let place = Place::of(path, io::stdout().as_fd())?;
         self.names.get(&place).map(String::as_str)

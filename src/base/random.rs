@@ -8,7 +8,6 @@ pub struct Random(u64);
 
 impl Random {
     /// The sequence of a seed.
-    #[must_use]
     pub fn new(seed: u64) -> Random {
         Random(seed)
     }

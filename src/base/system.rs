@@ -41,7 +41,6 @@ extern "C" fn record_closed() {
 /// Whether stdin, stdout or stderr was closed when the program started (`>&-` in a shell). Then its data
 /// would be lost in /dev/null without an error. `false` for other descriptors.
 #[cfg(target_os = "linux")]
-#[must_use]
 pub fn was_closed(standard: &impl AsRawFd) -> bool {
     let descriptor = standard.as_raw_fd();
     (0..3).contains(&descriptor) && CLOSED_AT_START.load(Ordering::Relaxed) & (1 << descriptor) != 0
@@ -49,7 +48,6 @@ pub fn was_closed(standard: &impl AsRawFd) -> bool {
 
 /// `false`: not determined on this system.
 #[cfg(not(target_os = "linux"))]
-#[must_use]
 pub fn was_closed(_standard: &impl AsRawFd) -> bool {
     false
 }
@@ -223,14 +221,12 @@ pub(crate) fn start_write_back(file: &impl AsFd, offset: u64, len: u64) {
 pub(crate) fn start_write_back(_file: &impl AsFd, _offset: u64, _len: u64) {}
 
 /// Processor time of all threads of this process so far, in seconds.
-#[must_use]
 pub fn cpu_seconds() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 
 /// The name of this machine.
-#[must_use]
 pub fn host_name() -> String {
     rustix::system::uname().nodename().to_string_lossy().into_owned()
 }
@@ -241,7 +237,6 @@ pub fn reset_peak_memory() {
 }
 
 /// Bytes that can still be written below `folder`; `None` if the system does not tell.
-#[must_use]
 pub fn free_bytes(folder: &Path) -> Option<u64> {
     let found = rustix::fs::statvfs(folder).ok()?;
     Some(found.f_bavail.saturating_mul(found.f_frsize))
@@ -249,7 +244,6 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
 
 /// Bytes of memory that this process can have at most: those of the machine with its swap space, or the limit
 /// of the process (`ulimit -v`). `None` if the system does not tell.
-#[must_use]
 pub fn memory_limit() -> Option<u64> {
     let number = |word: &str| word.parse::<u64>().ok();
     let memory = std::fs::read_to_string("/proc/meminfo").ok()?;
@@ -267,7 +261,6 @@ pub fn memory_limit() -> Option<u64> {
 /// Whether files in `folder` take up memory instead of disk (tmpfs, ramfs); `false` if the system does not
 /// tell.
 #[cfg(target_os = "linux")]
-#[must_use]
 pub fn is_in_memory(folder: &Path) -> bool {
     const TMPFS: u32 = 0x0102_1994;
     const RAMFS: u32 = 0x8584_58f6;
@@ -277,7 +270,6 @@ pub fn is_in_memory(folder: &Path) -> bool {
 
 /// `false`: not determined on this system.
 #[cfg(not(target_os = "linux"))]
-#[must_use]
 pub fn is_in_memory(_folder: &Path) -> bool {
     false
 }

@@ -30,7 +30,6 @@ const MARKED: u8 = 1;
 const UNMARKED: u8 = 2;
 
 /// The mark of an exit code: a line such as `spmesh: failed 001`.
-#[must_use]
 pub fn mark(code: u8) -> [u8; MARK_LEN] {
     let mut mark = *b"\nspmesh: failed 000\n";
     for (digit, unit) in mark[DIGITS].iter_mut().zip([100, 10, 1]) {
@@ -70,7 +69,6 @@ pub fn mark_failure(code: u8) {
 }
 
 /// Whether `stream` is a pipe or a socket.
-#[must_use]
 pub fn is_pipe(stream: impl AsFd) -> bool {
     let kind = fstat(stream).map(|status| FileType::from_raw_mode(status.st_mode));
     matches!(kind, Ok(FileType::Fifo | FileType::Socket))
@@ -104,7 +102,6 @@ fn remember(bytes: &[u8]) {
 /// The exit code of the program before this one in the pipe, if stdin ended with its mark.
 ///
 /// A reader may stop within the mark; then the rest of it is read.
-#[must_use]
 pub fn failure() -> Option<u8> {
     let started = code_of(&TAIL.lock().ok()?[..]);
     let Err(missing) = started else { return started.ok() };

@@ -50,7 +50,6 @@ impl Knots {
     /// Ids of all knots at the place of knot `id`, in order.
     ///
     /// Cost: O(n) if there are copies at all.
-    #[must_use]
     pub fn copies_of(&self, id: u32) -> Vec<u32> {
         if !self.has_copies() {
             return vec![id];

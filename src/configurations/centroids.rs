@@ -65,13 +65,11 @@ impl CentroidMesh {
     }
 
     /// The order k.
-    #[must_use]
     pub fn order(&self) -> usize {
         self.order
     }
 
     /// The k-set of a vertex, sorted.
-    #[must_use]
     pub fn set(&self, vertex: u32) -> &[u32] {
         &self.sets[vertex as usize * self.order..][..self.order]
     }
@@ -120,7 +118,6 @@ fn push_set(sets: &mut Vec<u32>, interior: &[u32], some: &[u32]) {
 }
 
 /// The centroid of knots.
-#[must_use]
 pub fn centroid(knots: &Knots, set: &[u32]) -> Point2 {
     let sum = set.iter().fold([0.0; 2], |sum, &id| [sum[0] + knots.at(id)[0], sum[1] + knots.at(id)[1]]);
     sum.map(|coordinate: f64| coordinate / set.len() as f64)

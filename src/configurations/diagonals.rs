@@ -14,7 +14,6 @@ impl Diagonals {
     }
 
     /// Whether there are no diagonals.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }

@@ -37,9 +37,6 @@ struct Bucket {
 /// the sequence of their least knots in `order`, a permutation of all knots, and then lexicographically.
 ///
 /// Cost: O(c k log c) for c configurations. Memory: 16 bytes per configuration.
-///
-/// # Errors
-/// Those of `visit`; edges that do not make one closed polygon.
 pub(super) fn for_each_link(
     knots: &Knots,
     configurations: &Configurations,

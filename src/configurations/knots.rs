@@ -62,7 +62,6 @@ impl Knots {
     }
 
     /// Whether all knots, at least one, are on one line.
-    #[must_use]
     pub fn are_collinear(&self, ids: &[u32]) -> bool {
         let first = self.at(ids[0]);
         let Some(second) = ids.iter().map(|&id| self.at(id)).find(|&other| other != first) else {
@@ -73,46 +72,39 @@ impl Knots {
     }
 
     /// Positions by id.
-    #[must_use]
     pub fn points(&self) -> &[Point2] {
         &self.points
     }
 
     /// Number of knots, copies included.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
     /// Whether there is no knot.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
     /// Whether two knots are at one place.
-    #[must_use]
     pub fn has_copies(&self) -> bool {
         !self.ranks.is_empty()
     }
 
     /// Number of knots of lesser id at the place of knot `id`.
     #[inline]
-    #[must_use]
     pub fn rank(&self, id: u32) -> u32 {
         self.ranks.get(id as usize).copied().unwrap_or(0)
     }
 
     /// Position of knot `id`, which is not [`FARAWAY`](spmesh_stream::model::configurations::FARAWAY).
     #[inline(always)]
-    #[must_use]
     pub fn at(&self, id: u32) -> Point2 {
         self.points[id as usize]
     }
 
     /// Lexicographic order of P(e), as polynomials in e: abscissa, its displacement, ordinate, its
     /// displacement.
-    #[must_use]
     pub fn order(&self, a: u32, b: u32) -> Ordering {
         let (p, q) = (self.at(a), self.at(b));
         if !self.has_copies() {

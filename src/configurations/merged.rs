@@ -13,7 +13,6 @@ impl CentroidMesh {
     /// Triangles whose boundary has two knots at one place shrink to edges, and their neighbours become
     /// adjacent. Other flat triangles have knots on a line, some of them moved symbolically. They lie on the
     /// border: inside the mesh, other triangles would end in the middle of an edge.
-    #[must_use]
     pub fn without_flat(&self, knots: &Knots) -> CentroidMesh {
         let mut predicates = FiniteFloatPredicates::default();
         let firsts = distinct(knots.points());

@@ -6,9 +6,6 @@ use spmesh_delaunay::predicates::Predicates2;
 
 impl<P: Predicates2> Triangulator<'_, P> {
     /// Triangulates the polygon such that the given diagonals are edges.
-    ///
-    /// # Errors
-    /// A segment that is not a diagonal of the polygon, or crosses another one.
     pub(super) fn by_diagonals(&mut self, diagonals: Vec<[u32; 2]>) -> Result<()> {
         let mut pieces = vec![self.polygon.clone()];
         for [p, q] in diagonals {

@@ -51,9 +51,6 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
     }
 
     /// Triangulates a link into `out`, which stays empty if the link is null.
-    ///
-    /// # Errors
-    /// A link that is neither null nor simple.
     pub(super) fn triangulate(&mut self, set: &[u32], link: &[u32]) -> Result<()> {
         self.out.clear();
         if link.len() == 2 {

@@ -155,7 +155,6 @@ impl Start {
     }
 
     /// The configurations of degree 0.
-    #[must_use]
     pub fn configurations(&self) -> Configurations {
         Configurations::of_triangles(self.claim, self.triangles.clone())
     }

@@ -5,7 +5,6 @@
 ///
 /// Domain: disjoint sets; `count` from 1 to one less than the size of `boundary`, otherwise there are no
 /// unions. (In the thesis the bound in equation 7.3 is one less than in theorem 7.1.2, which is right.)
-#[must_use]
 pub fn union_map(boundary: &[u32], interior: &[u32], count: usize) -> Vec<Vec<u32>> {
     if count == 0 || count >= boundary.len() {
         return Vec::new();
@@ -42,7 +41,6 @@ pub struct UnionSource {
 /// The preimage of `sets` under the union map; `None` if there is none.
 ///
 /// I is the intersection of the sets, and B is their union without I.
-#[must_use]
 pub fn inverse_union_map(sets: &[Vec<u32>]) -> Option<UnionSource> {
     let first = sets.first()?;
     let interior: Vec<u32> =

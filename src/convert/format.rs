@@ -176,19 +176,16 @@ impl Format {
     }
 
     /// Whether it is read.
-    #[must_use]
     pub fn is_read(self) -> bool {
         self.row().is_read
     }
 
     /// The format with this name, if there is one.
-    #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         ROWS.iter().find(|row| row.name == name).map(|row| row.format)
     }
 
     /// The format that the extension of `path` names, if it names one.
-    #[must_use]
     pub fn from_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?;
         if extension.is_empty() {
@@ -198,13 +195,11 @@ impl Format {
     }
 
     /// Name on the command line.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.row().name
     }
 
     /// Whether the format is binary, so that a terminal cannot show it.
-    #[must_use]
     pub fn is_binary(self) -> bool {
         self.row().is_binary
     }

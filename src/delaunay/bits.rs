@@ -2,7 +2,6 @@
 
 /// Moves bit i to bit 2i.
 #[inline(always)]
-#[must_use]
 pub fn spread2(x: u32) -> u64 {
     let mut x = u64::from(x);
     x = (x | x << 16) & 0x0000_ffff_0000_ffff;
@@ -14,7 +13,6 @@ pub fn spread2(x: u32) -> u64 {
 
 /// Moves bit i to bit 3i, for the lowest 21 bits.
 #[inline(always)]
-#[must_use]
 pub fn spread3(x: u32) -> u64 {
     let mut x = u64::from(x) & 0x1f_ffff;
     x = (x | x << 32) & 0x001f_0000_0000_ffff;

@@ -56,7 +56,6 @@ impl CellLists {
 
     /// The numbers in a cell.
     #[inline]
-    #[must_use]
     pub fn get(&self, cell: usize) -> &[u32] {
         &self.numbers[self.range(cell)]
     }

@@ -39,14 +39,12 @@ pub struct NetworkSegment {
 
 impl Network {
     /// The elevations of the ends of a segment, if a line states elevations along it.
-    #[must_use]
     pub fn elevations(&self, segment: &NetworkSegment) -> Option<[f64; 2]> {
         let [a, b] = segment.ends.map(|end| self.vertices[end as usize].z);
         a.zip(b).map(<[f64; 2]>::from).filter(|_| segment.is_hard)
     }
 
     /// The places of the ends of a segment.
-    #[must_use]
     pub fn places(&self, segment: &NetworkSegment) -> [Point2; 2] {
         segment.ends.map(|end| self.vertices[end as usize].place)
     }
@@ -54,7 +52,6 @@ impl Network {
 
 /// The elevation at a place on an edge, between those of its ends. The lexicographically lesser end comes
 /// first, so that the direction does not matter.
-#[must_use]
 pub fn elevation_between([a, b]: [Point2; 2], elevations: [f64; 2], place: Point2) -> f64 {
     let difference = |to: Point2| [to[0] - a[0], to[1] - a[1]];
     let (whole, part) = (difference(b), difference(place));
@@ -63,7 +60,6 @@ pub fn elevation_between([a, b]: [Point2; 2], elevations: [f64; 2], place: Point
 }
 
 /// The elevation at a part of the way between two ends.
-#[must_use]
 pub fn elevation_at(part: f64, [low, high]: [f64; 2]) -> f64 {
     // Rounding must not lead beyond both ends: it could leave the box of the mesh.
     (low + (high - low) * part).clamp(low.min(high), low.max(high))

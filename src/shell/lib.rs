@@ -144,7 +144,6 @@ pub fn threads(asked: Option<u16>) -> NonZeroUsize {
 }
 
 /// Peak resident memory of this process in bytes; 0 where the system does not tell.
-#[must_use]
 pub fn peak_memory() -> u64 {
     let Ok(status) = std::fs::read_to_string("/proc/self/status") else { return 0 };
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

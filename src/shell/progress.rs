@@ -36,21 +36,18 @@ pub struct Progress {
 
 impl Progress {
     /// Starts to show the pass `name`, of `total` points where that is known.
-    #[must_use]
     pub fn new(common: &Common, name: &str, total: Option<u64>) -> Self {
         Self::counting("points", common, name, total)
     }
 
     /// Starts to show the pass `name`, of `total` units where that is known. If the output goes to a pipe, the
     /// program behind it shows how far the work is.
-    #[must_use]
     pub fn counting(unit: &'static str, common: &Common, name: &str, total: Option<u64>) -> Self {
         let is_last = !upstream::is_pipe(std::io::stdout());
         Self::shown(is_last, unit, common, name, total)
     }
 
     /// Starts to show the pass `name`, of `total` points where that is known, before there is any output.
-    #[must_use]
     pub fn before_output(common: &Common, name: &str, total: Option<u64>) -> Self {
         Self::shown(true, "points", common, name, total)
     }
@@ -83,7 +80,6 @@ impl Progress {
     }
 
     /// Shows that the pass `name` is running, without a count.
-    #[must_use]
     pub fn waiting(common: &Common, name: &str) -> Self {
         let mut progress = Self::counting("points", common, name, None);
         if !progress.bar.is_hidden() {

@@ -67,7 +67,6 @@ impl<T: Copy> Ascending<T> {
     }
 
     /// Where the entry of `id` is. The search starts `near` another entry.
-    #[must_use]
     pub fn find(&self, id: u64, near: Place) -> Option<Place> {
         let block = self.block_of(id, near.block as usize)?;
         let difference = id - self.firsts[block];
@@ -101,7 +100,6 @@ impl<T: Copy> Ascending<T> {
     }
 
     /// The value of an entry.
-    #[must_use]
     pub fn at(&self, place: Place) -> &T {
         &self.blocks[place.block as usize].values[place.entry as usize]
     }
@@ -112,7 +110,6 @@ impl<T: Copy> Ascending<T> {
     }
 
     /// The value of `id`.
-    #[must_use]
     pub fn get(&self, id: u64) -> Option<&T> {
         self.find(id, Place::default()).map(|place| self.at(place))
     }
@@ -166,13 +163,11 @@ impl<T: Copy> Ascending<T> {
     }
 
     /// Number of entries.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.len
     }
 
     /// Whether there is no entry.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }

@@ -86,9 +86,6 @@ impl Tag {
     }
 
     /// The tag with this name; `None` if this version does not know it and may skip its block.
-    ///
-    /// # Errors
-    /// If the name is not that of a tag, or this version does not know it and must not skip its block.
     pub(super) fn from_bytes(bytes: TagBytes) -> Result<Option<Tag>> {
         if let Some((tag, _)) = NAMES.iter().find(|(_, name)| *name == bytes) {
             return Ok(Some(*tag));

@@ -58,7 +58,6 @@ pub struct Collector {
 
 impl Collector {
     /// An empty collector for a stream with this header.
-    #[must_use]
     pub fn new(header: &Header) -> Self {
         Collector { heights: header.has_elevation.then(Vec::new), ..Collector::default() }
     }
@@ -94,7 +93,6 @@ impl Collector {
     }
 
     /// The set collected so far.
-    #[must_use]
     pub fn finish(self) -> ConfigurationSet {
         let Collector { points, heights, degrees, functions, coefficients } = self;
         ConfigurationSet { points, heights, degrees, functions, coefficients }

@@ -43,7 +43,6 @@ pub struct ConfigurationBlock {
 
 impl ConfigurationBlock {
     /// A block of this degree without configurations.
-    #[must_use]
     pub fn new(degree: u32, claim: Claim) -> Self {
         ConfigurationBlock {
             degree,
@@ -80,14 +79,12 @@ impl ConfigurationBlock {
     }
 
     /// Interior set of the last group.
-    #[must_use]
     pub fn last_interior(&self) -> Option<&[u32]> {
         let degree = self.degree as usize;
         (!self.counts.is_empty()).then(|| &self.interiors[(self.counts.len() - 1) * degree..])
     }
 
     /// Whether there is no group.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.counts.is_empty()
     }

@@ -138,9 +138,6 @@ pub(super) fn segment_len(header: &Header) -> usize {
 }
 
 /// Appends the stored form of a segment.
-///
-/// # Errors
-/// [`spmesh_base::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
 pub(super) fn encode_segment(header: &Header, segment: &Segment, bytes: &mut Vec<u8>) -> Result<()> {
     bytes.extend_from_slice(&segment.line.to_le_bytes());
     for &value in segment.ends.as_flattened() {

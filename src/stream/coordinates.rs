@@ -20,7 +20,6 @@ pub enum Coordinates {
 impl Coordinates {
     /// World coordinates of a stored point, for computations; [`Coordinates::to_decimal`] is for what users
     /// read.
-    #[must_use]
     pub fn to_world(&self, stored: Point) -> Point {
         match self {
             Coordinates::F64 => stored,
@@ -33,7 +32,6 @@ impl Coordinates {
     /// World coordinates of a stored point as the numbers with the shortest decimals that stand for it: 28016
     /// steps of 0.001 are 28.016, and not 28.016000000000002 (`formats/text.md`, section Numbers). All that
     /// is printed or exported goes through this function. [`Coordinates::to_stored`] recovers the point.
-    #[must_use]
     pub fn to_decimal(&self, stored: Point) -> Point {
         match self {
             Coordinates::F64 => stored,
@@ -44,7 +42,6 @@ impl Coordinates {
     }
 
     /// Whether a world coordinate that was read, as a decimal, stands for a stored one on this axis.
-    #[must_use]
     pub fn is_decimal_of(&self, axis: usize, world: f64, stored: f64) -> bool {
         match self {
             Coordinates::F64 => world == stored,
@@ -55,7 +52,6 @@ impl Coordinates {
     }
 
     /// Stored coordinates of the grid point nearest to a world point. They may be out of the range of i32.
-    #[must_use]
     pub fn to_stored(&self, world: Point) -> Point {
         match self {
             Coordinates::F64 => world,
@@ -66,7 +62,6 @@ impl Coordinates {
     }
 
     /// The value nearest to a stored one, or to a sum or mean of such, that the grid has.
-    #[must_use]
     pub fn rounded(&self, value: f64) -> f64 {
         match self {
             Coordinates::F64 => value,
@@ -75,7 +70,6 @@ impl Coordinates {
     }
 
     /// Whether a stored value fits the encoding: a finite f64, or an integer that fits in i32.
-    #[must_use]
     pub fn can_store(&self, value: f64) -> bool {
         match self {
             Coordinates::F64 => value.is_finite(),
@@ -84,7 +78,6 @@ impl Coordinates {
     }
 
     /// Bytes of one stored coordinate.
-    #[must_use]
     pub fn width(&self) -> usize {
         match self {
             Coordinates::F64 => 8,

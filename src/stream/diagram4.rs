@@ -21,7 +21,6 @@ pub struct Diagram4Collector {
 
 impl Diagram4Collector {
     /// An empty collector; `has_values` says whether the points to come have values.
-    #[must_use]
     pub fn new(has_values: bool) -> Self {
         let diagram = Diagram4 { values: has_values.then(Vec::new), ..Diagram4::default() };
         Diagram4Collector { diagram, words: 0 }
@@ -59,13 +58,11 @@ impl Diagram4Collector {
     }
 
     /// The content of the blocks so far.
-    #[must_use]
     pub fn diagram(&self) -> &Diagram4 {
         &self.diagram
     }
 
     /// The content of all blocks.
-    #[must_use]
     pub fn finish(self) -> Diagram4 {
         self.diagram
     }

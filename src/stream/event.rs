@@ -75,7 +75,6 @@ pub struct Patch {
 
 impl Patch {
     /// Id of the vertex at local index `local`.
-    #[must_use]
     pub fn id(&self, local: u32) -> u64 {
         match (local as usize).checked_sub(self.new.len()) {
             None => self.first_id + u64::from(local),
@@ -84,7 +83,6 @@ impl Patch {
     }
 
     /// Number of vertices that local indices refer to.
-    #[must_use]
     pub fn vertices(&self) -> usize {
         self.new.len() + self.imported.len()
     }

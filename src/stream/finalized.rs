@@ -45,25 +45,21 @@ impl OpenCell {
 
 impl FinalizedCells {
     /// A tree without final cells.
-    #[must_use]
     pub fn new(tree: CellTree) -> Self {
         FinalizedCells { tree, ranges: BTreeMap::new(), open: OpenCell::NONE, tags: 0 }
     }
 
     /// The tree.
-    #[must_use]
     pub fn tree(&self) -> &CellTree {
         &self.tree
     }
 
     /// Number of finalized cells.
-    #[must_use]
     pub fn tags(&self) -> u64 {
         self.tags
     }
 
     /// Number of ranges that describe the final part; memory is proportional to it.
-    #[must_use]
     pub fn ranges(&self) -> usize {
         self.ranges.len()
     }
@@ -101,27 +97,23 @@ impl FinalizedCells {
     }
 
     /// Whether all of `cell`, a cell of the tree, is final.
-    #[must_use]
     pub fn is_final_cell(&self, cell: CellCode) -> bool {
         let codes = self.tree.deepest_range(cell);
         self.ranges.range(..=codes.start).next_back().is_some_and(|(_, &end)| codes.end <= end)
     }
 
     /// Whether no part of `cell`, a cell of the tree, is final.
-    #[must_use]
     pub fn is_open_cell(&self, cell: CellCode) -> bool {
         let codes = self.tree.deepest_range(cell);
         self.ranges.range(..codes.end).next_back().is_none_or(|(_, &end)| end <= codes.start)
     }
 
     /// Whether `point` lies in the final part; false for points outside of the tree's cube.
-    #[must_use]
     pub fn is_final(&self, point: Point) -> bool {
         self.tree.contains(point) && self.is_final_cell(self.tree.cell_of(point, self.tree.depth()))
     }
 
     /// Whether the whole tree is final, so that no point can follow.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         self.is_final_cell(CellCode::ROOT)
     }

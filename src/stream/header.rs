@@ -80,7 +80,6 @@ pub struct Header {
 
 impl Header {
     /// A header of `kind` that states nothing else about the contents.
-    #[must_use]
     pub fn new(kind: Kind, coordinates: Coordinates, dims: u8, has_elevation: bool) -> Self {
         Header {
             kind,
@@ -103,19 +102,16 @@ impl Header {
     }
 
     /// Numbers stored per point: the dimensions, and one more for an elevation or a value.
-    #[must_use]
     pub fn coordinates_per_point(&self) -> usize {
         usize::from(self.dims) + usize::from(self.has_elevation)
     }
 
     /// Bytes of one stored point.
-    #[must_use]
     pub fn point_len(&self) -> usize {
         self.coordinates_per_point() * self.coordinates.width()
     }
 
     /// Bytes of a point with its row.
-    #[must_use]
     pub fn record_len(&self) -> usize {
         self.point_len() + self.attributes.row_len()
     }

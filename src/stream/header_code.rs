@@ -69,9 +69,6 @@ const ROWS: [Row; 11] = [
 
 impl Header {
     /// The header as bytes, checksum included.
-    ///
-    /// # Errors
-    /// [`spmesh_base::error::ErrorKind::Usage`] if it breaks a rule of the format or is too long.
     pub(super) fn encode(&self) -> Result<Vec<u8>> {
         let refused = |reason: String| Error::usage(format!("cannot write the header: {reason}"));
         self.check().map_err(refused)?;

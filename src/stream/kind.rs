@@ -148,91 +148,76 @@ impl Kind {
     }
 
     /// The kind with this code in the header, if there is one.
-    #[must_use]
     pub(crate) fn from_code(code: u16) -> Option<Self> {
         ROWS.iter().find(|row| row.code == code).map(|row| row.kind)
     }
 
     /// The kind with this name, if there is one.
-    #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         ROWS.iter().find(|row| row.name == name).map(|row| row.kind)
     }
 
     /// The code in the header.
-    #[must_use]
     pub fn code(self) -> u16 {
         self.row().code
     }
 
     /// The name in messages and in JSON.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.row().name
     }
 
     /// Dimensions that the geometry may have.
-    #[must_use]
     pub fn dims(self) -> &'static [u8] {
         self.row().dims
     }
 
     /// Whether the geometry is four-dimensional, with block types of its own.
-    #[must_use]
     pub fn is_4d(self) -> bool {
         self.dims() == [4]
     }
 
     /// Whether END counts vertices and merged points besides points. Knots of configurations count as points.
-    #[must_use]
     pub fn has_vertices(self) -> bool {
         !matches!(self, Kind::Points | Kind::Points4) && !self.has_knots()
     }
 
     /// Whether the points are knots, followed by their configurations.
-    #[must_use]
     pub fn has_knots(self) -> bool {
         matches!(self, Kind::Configurations | Kind::Splines)
     }
 
     /// Whether the stream is the mesh of a region, with a residual that is merged with others.
-    #[must_use]
     pub fn is_partial(self) -> bool {
         matches!(self, Kind::PartialTriangleMesh | Kind::PartialTetrahedralMesh)
     }
 
     /// Whether the stream is the residual of a part, and nothing else.
-    #[must_use]
     pub fn is_residual(self) -> bool {
         matches!(self, Kind::TriangleResidual | Kind::TetrahedralResidual)
     }
 
     /// Whether the header states a region.
-    #[must_use]
     pub fn has_region(self) -> bool {
         self.is_partial() || self.is_residual()
     }
 
     /// Whether the header may have a finalization tree.
-    #[must_use]
     pub fn may_have_tree(self) -> bool {
         !self.is_4d() && !self.has_knots() && !self.is_residual() && self != Kind::PartialTetrahedralMesh
     }
 
     /// Vertices of a simplex of a patch; 0 where the kind holds no patches.
-    #[must_use]
     pub fn vertices_per_simplex(self) -> usize {
         self.row().vertices_per_simplex
     }
 
     /// Vertices of a wall, which is a facet of a simplex; 0 where the kind holds no patches.
-    #[must_use]
     pub fn vertices_per_wall(self) -> usize {
         self.vertices_per_simplex().saturating_sub(1)
     }
 
     /// Whether points of such a stream may carry attributes.
-    #[must_use]
     pub fn may_have_attributes(self) -> bool {
         self == Kind::Points || self.vertices_per_simplex() > 0
     }

@@ -25,7 +25,6 @@ impl<T> Default for LiveVertices<T> {
 
 impl<T: Copy> LiveVertices<T> {
     /// No vertices.
-    #[must_use]
     pub fn new() -> Self {
         LiveVertices::default()
     }
@@ -94,25 +93,21 @@ impl<T: Copy> LiveVertices<T> {
     }
 
     /// Whether a vertex is live, so that a later patch may use it.
-    #[must_use]
     pub fn contains(&self, id: u64) -> bool {
         self.live.get(id).is_some()
     }
 
     /// Number of live vertices.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.live.len()
     }
 
     /// Whether no vertex is live.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.live.is_empty()
     }
 
     /// Greatest number of vertices that were live at once: the width of the stream.
-    #[must_use]
     pub fn live_max(&self) -> usize {
         self.live_max
     }

@@ -34,7 +34,6 @@ impl Default for Live {
 
 impl MemoryRules {
     /// The rules of a stream with this header.
-    #[must_use]
     pub fn new(header: &Header) -> Self {
         let is_partial = header.kind.is_partial();
         let live = if is_partial { Live::Places(LiveVertices::new()) } else { Live::default() };
@@ -59,7 +58,6 @@ impl MemoryRules {
     }
 
     /// Most vertices that were live at once: the width of the stream.
-    #[must_use]
     pub fn live_max(&self) -> usize {
         match &self.live {
             Live::Ids(live) => live.live_max(),

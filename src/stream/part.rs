@@ -81,19 +81,16 @@ impl GlobalId {
     }
 
     /// The part that has the vertex as one of its own. It fits 32 bits if [`GlobalId::is_valid`].
-    #[must_use]
     pub fn part(self) -> u32 {
         (self.0 >> NUMBER_BITS) as u32
     }
 
     /// The number of the vertex among those of its part.
-    #[must_use]
     pub fn number(self) -> u64 {
         self.0 & (Self::NUMBERS_MAX - 1)
     }
 
     /// Whether such a vertex can exist.
-    #[must_use]
     pub fn is_valid(self) -> bool {
         self.0 >> (NUMBER_BITS + PART_BITS) == 0
     }
@@ -126,9 +123,6 @@ pub fn check_residual_id(header: &Header, vertices: u64, id: u64) -> Result<()> 
 }
 
 /// Checks what a patch of a part says about vertices of other parts.
-///
-/// # Errors
-/// Malformed, if it breaks a rule.
 pub(super) fn check_shared(part: Option<PartName>, patch: &Patch) -> Result<()> {
     let Some(part) = part else { return Ok(()) };
     let is_increasing = patch.origins.windows(2).all(|pair| pair[0].local < pair[1].local);

@@ -23,7 +23,6 @@ pub struct PointCode {
 
 impl PointCode {
     /// The encoding that a header states.
-    #[must_use]
     pub fn of(header: &Header) -> Self {
         PointCode {
             coordinates: header.coordinates,
@@ -34,7 +33,6 @@ impl PointCode {
     }
 
     /// Bytes of the row of a point; 0 without attributes.
-    #[must_use]
     pub fn row_len(&self) -> usize {
         self.row_len
     }
@@ -93,13 +91,11 @@ impl PatchBlocks {
     }
 
     /// Number of patches.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.patches.len()
     }
 
     /// Bytes of all patches.
-    #[must_use]
     pub fn byte_len(&self) -> usize {
         self.used + self.finalized.len() + self.rows.len()
     }

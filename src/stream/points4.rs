@@ -28,7 +28,6 @@ impl PartialEq for Points4 {
 
 impl Points4 {
     /// An empty list; `has_values` says whether its points will have values.
-    #[must_use]
     pub fn new(has_values: bool) -> Self {
         Points4 { points: Vec::new(), values: has_values.then(Vec::new) }
     }

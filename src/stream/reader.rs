@@ -160,7 +160,6 @@ impl<R: Read> StreamReader<R> {
     }
 
     /// Where the block of the last event is: its number and its first byte.
-    #[must_use]
     pub fn place(&self) -> String {
         let [block, byte] = self.event_place;
         format!("block {block} at byte {byte}")
@@ -206,7 +205,6 @@ impl<R: Read> StreamReader<R> {
     /// The attributes of the points of the last event, row by row: of all points of [`Event::Points`], of the
     /// new vertices of [`Event::Patch`], and of all points of [`Event::ResidualPoints`]. Empty if the stream
     /// has no attributes.
-    #[must_use]
     pub fn rows(&self) -> &[u8] {
         &self.rows
     }

@@ -33,7 +33,6 @@ pub struct Tally {
 
 impl Tally {
     /// Starts with zero counts for a stream with this header.
-    #[must_use]
     pub fn new(header: &Header) -> Self {
         let chunks = header.tree.filter(|_| header.chunked).map(ChunkCheck::new);
         let per_simplex = header.kind.vertices_per_simplex();
@@ -118,9 +117,6 @@ impl Tally {
     }
 
     /// Counts points with the given bounding box.
-    ///
-    /// # Errors
-    /// As [`Tally::count`].
     pub(crate) fn count_points(&mut self, count: usize, bounds: Option<Bounds>) -> Result<()> {
         self.totals.points += count as u64;
         match (&mut self.chunks, bounds) {

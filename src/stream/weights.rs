@@ -16,7 +16,6 @@ pub struct Weighted {
 
 impl Weighted {
     /// The attribute that holds the weights.
-    #[must_use]
     pub fn attribute() -> Attribute {
         Attribute::new("weight", NumberType::F64)
     }
@@ -71,7 +70,6 @@ impl Weights {
     }
 
     /// The upper limit that the header states.
-    #[must_use]
     pub fn greatest(&self) -> f64 {
         self.greatest
     }
@@ -100,7 +98,6 @@ impl Weights {
 
 impl Header {
     /// Where the weights of the points are; `None` without weights.
-    #[must_use]
     pub fn weights(&self) -> Option<Weights> {
         // A header whose check fails has none.
         self.weighted.and_then(|weighted| Weights::of(weighted, &self.attributes).ok())

@@ -30,7 +30,6 @@ pub struct Content<'a> {
 
 impl<'a> Content<'a> {
     /// The contents of a stream of configurations only.
-    #[must_use]
     pub fn of(knots: &'a [Point2], degrees: &'a [Configurations]) -> Content<'a> {
         Content { knots, heights: None, degrees, functions: &[], coefficients: &[] }
     }
@@ -49,7 +48,6 @@ pub fn write_configurations(knots: &[Point2], degrees: &[Configurations], out: i
 }
 
 /// The header of a stream of configurations of knots in stored coordinates, without heights.
-#[must_use]
 pub fn configurations_header(knots: &[Point2], coordinates: Coordinates, crs: Crs) -> Header {
     let mut header = Header::new(Kind::Configurations, coordinates, 2, false);
     header.points = Some(knots.len() as u64);

@@ -72,9 +72,6 @@ impl<C: Pod> Accumulators<C> {
     }
 
     /// A cell of a tile, to be changed.
-    ///
-    /// # Errors
-    /// If the temporary file fails.
     #[inline]
     pub(crate) fn cell(&mut self, at: TilePlace, cell: usize) -> Result<&mut C> {
         if self.last.0 != packed(at) {
@@ -84,9 +81,6 @@ impl<C: Pod> Accumulators<C> {
     }
 
     /// The cells of a tile; `None` if nothing was added to it.
-    ///
-    /// # Errors
-    /// If the temporary file fails.
     pub(crate) fn read(&mut self, at: TilePlace) -> Result<Option<&[C]>> {
         if !self.places.contains_key(&at) {
             return Ok(None);

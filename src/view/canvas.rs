@@ -151,9 +151,6 @@ impl Canvas {
     }
 
     /// The picture; `colour` maps a value and a brightness to a colour.
-    ///
-    /// # Errors
-    /// If the picture is too large.
     pub(super) fn pixels(&self, colour: impl Fn(f64, f64) -> Colour) -> Result<Pixels> {
         let (width, height) = (self.columns / SAMPLES, self.rows / SAMPLES);
         let mut pixmap = Pixmap::new(width as u32, height as u32).ok_or_else(too_large)?;

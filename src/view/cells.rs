@@ -80,9 +80,6 @@ impl Cells {
     }
 
     /// Takes a finalization tag.
-    ///
-    /// # Errors
-    /// If the tree has no such cell, or the cell is final already.
     pub(super) fn finalize(&mut self, cell: CellCode) -> Result<()> {
         self.final_cells.finalize(cell)?;
         let level = self.tree.level(cell);

@@ -45,9 +45,6 @@ struct Diagram<'a> {
 
 /// The picture of the configurations of `knots` in a set: the link of [`Options::set`], or else the centroid
 /// triangulation of [`Options::order`].
-///
-/// # Errors
-/// Usage, if there are no knots, or the stream lacks the degree or the set that the options name.
 pub(super) fn picture(
     knots: &Knots,
     set: &ConfigurationSet,

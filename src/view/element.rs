@@ -21,9 +21,6 @@ pub(super) struct Element<'a> {
 
 impl<'a> Element<'a> {
     /// The element that a tag starts.
-    ///
-    /// # Errors
-    /// If an attribute is malformed.
     pub(super) fn of(start: &'a BytesStart) -> Result<Element<'a>> {
         let mut attributes = Vec::new();
         for attribute in start.attributes() {
@@ -41,36 +38,24 @@ impl<'a> Element<'a> {
     }
 
     /// The value of an attribute that the element must have.
-    ///
-    /// # Errors
-    /// If it has none.
     pub(super) fn need(&mut self, name: &str) -> Result<Cow<'a, str>> {
         let value = self.take(name);
         value.ok_or_else(|| failed(format!("an element <{}> without {name}", self.name)))
     }
 
     /// The number that an attribute states, or a default.
-    ///
-    /// # Errors
-    /// If it is no number.
     pub(super) fn number<T: FromStr>(&mut self, name: &str, default: T) -> Result<T> {
         let Some(value) = self.take(name) else { return Ok(default) };
         value.parse().map_err(|_| failed(format!("the attribute {name}=\"{value}\"")))
     }
 
     /// What an attribute means, if the element has it.
-    ///
-    /// # Errors
-    /// If it has no meaning.
     pub(super) fn meaning<T>(&mut self, name: &str, of: impl FnOnce(&str) -> Option<T>) -> Result<Option<T>> {
         let Some(value) = self.take(name) else { return Ok(None) };
         of(&value).map(Some).ok_or_else(|| failed(format!("the attribute {name}=\"{value}\"")))
     }
 
     /// Checks that all attributes are taken.
-    ///
-    /// # Errors
-    /// If one is left that may change a pixel.
     pub(super) fn finish(self) -> Result<()> {
         match self.attributes.iter().find(|(name, _)| !SILENT.contains(name)) {
             Some((name, _)) => Err(failed(format!("the attribute {name} of <{}>", self.name))),

@@ -15,13 +15,11 @@ pub struct Frame {
 
 impl Frame {
     /// The place in the picture of a place in the world: across and down.
-    #[must_use]
     pub fn place(&self, [x, y]: Point2) -> Point2 {
         [(x - self.left) / self.unit, (self.top - y) / self.unit]
     }
 
     /// The place in the world of a place in the picture.
-    #[must_use]
     pub fn world(&self, [across, down]: Point2) -> Point2 {
         [self.left + self.unit * across, self.top - self.unit * down]
     }

@@ -41,9 +41,6 @@ impl Front {
     }
 
     /// Begins a patch; `to_world` maps the number of a new vertex and its stored coordinates to the world.
-    ///
-    /// # Errors
-    /// If the patch uses a vertex that is finalized or unknown.
     pub(super) fn begin(&mut self, patch: &Patch, to_world: impl Fn(usize, Point) -> Point) -> Result<()> {
         let number = |id: u64| (id - patch.first_id) as usize;
         let vertex =

@@ -18,9 +18,6 @@ pub(super) struct Words<'a> {
 
 impl Words<'_> {
     /// The outline of the text; `None` if nothing is to be seen. A character that the font lacks is a box.
-    ///
-    /// # Errors
-    /// If the font is damaged; not in any program that passes its tests.
     pub(super) fn outline(&self, font: &Font) -> Result<Option<Path>> {
         let mut builder = PathBuilder::new();
         self.draw(font, &mut builder).ok_or_else(|| failed("the font is damaged"))?;

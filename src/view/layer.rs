@@ -40,9 +40,6 @@ impl<T: Drawable> Layer<T> {
     }
 
     /// Takes an item; the scene is `None` as long as the box of all items is unknown.
-    ///
-    /// # Errors
-    /// Usage, if there are too many items to keep without a scene.
     pub(super) fn push(&mut self, item: T, scene: Option<&Scene>, style: &Style) -> Result<()> {
         for &corner in item.corners() {
             self.bounds.get_or_insert(Bounds::of_point(corner)).extend(corner);

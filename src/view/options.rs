@@ -102,7 +102,6 @@ pub struct Options {
 impl Options {
     /// The defaults for a stream of some name: a width of 1,000 pixels, light from the north-west, and colours from
     /// 2 to 98 percent.
-    #[must_use]
     pub fn new(name: impl Into<String>) -> Options {
         Options {
             name: name.into(),

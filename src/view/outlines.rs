@@ -9,9 +9,6 @@ use spmesh_base::error::Result;
 const ARM: f32 = 0.552_284_8;
 
 /// The outline of a shape; `None` if it has no extent.
-///
-/// # Errors
-/// If the element is no shape, or an attribute is malformed.
 pub(super) fn outline(element: &mut Element) -> Result<Option<Path>> {
     match element.name {
         "path" => path(&element.need("d")?),

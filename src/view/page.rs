@@ -21,9 +21,6 @@ pub(super) struct Page<'a> {
 
 /// Writes a page as one file. Its content policy blocks everything outside the file, and all scripts but its
 /// own.
-///
-/// # Errors
-/// If writing fails.
 pub(super) fn write(output: &mut impl Write, page: &Page) -> Result<()> {
     let frame = page.frame.map_or_else(String::new, |Frame { left, top, unit }| {
         format!(" data-left=\"{left:?}\" data-top=\"{top:?}\" data-unit=\"{unit:?}\"")

@@ -42,9 +42,6 @@ impl Pen {
     }
 
     /// The pen of an element within one that has this pen.
-    ///
-    /// # Errors
-    /// If the value of an attribute is not understood.
     pub(super) fn within(self, element: &mut Element) -> Result<Pen> {
         Ok(Pen {
             current: element.meaning("color", colour)?.unwrap_or(self.current),

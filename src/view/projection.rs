@@ -38,18 +38,12 @@ pub(super) struct Oblique {
 
 impl View {
     /// A view of a box from above, with a margin of `pad` around it.
-    ///
-    /// # Errors
-    /// As [`Sheet::of`].
     pub(super) fn plan(min: Point2, max: Point2, pad: f64, width: u32) -> Result<(Sheet, View)> {
         let (sheet, frame) = Sheet::of(min, max, pad, width)?;
         Ok((sheet, View::Plan(frame)))
     }
 
     /// An oblique view of a box, with room for the given points in it.
-    ///
-    /// # Errors
-    /// As [`Sheet::of`].
     pub(super) fn oblique(
         bounds: &Bounds,
         points: impl Iterator<Item = Point>,

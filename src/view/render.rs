@@ -23,9 +23,6 @@ use spmesh_base::error::Result;
 ///
 /// Cost: that of filling and stroking each shape alone. Memory: 4 bytes for each pixel, and within a clip
 /// that of [`Hidden`].
-///
-/// # Errors
-/// If the picture is too large, or has what the renderer does not know.
 pub(super) fn render(svg: &str) -> Result<Pixmap> {
     let mut reader = Reader::from_str(svg);
     // Then each element has a start and an end.

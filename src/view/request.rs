@@ -5,9 +5,6 @@ use spmesh_base::error::{Error, Result};
 use spmesh_stream::{Header, Kind};
 
 /// Checks that a stream can be drawn as the options ask.
-///
-/// # Errors
-/// Usage, if the stream cannot be drawn in the plane, or lacks what the options ask for.
 pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Result<()> {
     let kind = header.kind;
     let refuse = |what: String| Err(Error::usage(what));

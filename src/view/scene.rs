@@ -19,9 +19,6 @@ pub(super) struct Scene {
 
 impl Scene {
     /// A box of the world from above, with a margin of `pad` around it; or just the window, if there is one.
-    ///
-    /// # Errors
-    /// Usage, if coordinates overflow.
     pub(super) fn plan(bounds: &Bounds, window: Option<Window>, pad: f64, width: u32) -> Result<Scene> {
         let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
         let (min, max, pad) = window.map_or((min, max, pad), |Window { min, max }| (min, max, 0.0));
@@ -30,9 +27,6 @@ impl Scene {
     }
 
     /// An oblique view with room for all of a box of the world.
-    ///
-    /// # Errors
-    /// Usage, if coordinates overflow.
     pub(super) fn oblique(bounds: &Bounds, width: u32) -> Result<Scene> {
         let corner = |number: usize| {
             [0, 1, 2].map(|axis| if number >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] })
@@ -41,9 +35,6 @@ impl Scene {
     }
 
     /// An oblique view of a box, with room for the given points in it.
-    ///
-    /// # Errors
-    /// Usage, if coordinates overflow.
     pub(super) fn oblique_of(
         bounds: &Bounds,
         points: impl Iterator<Item = Point>,

@@ -94,9 +94,6 @@ pub(super) struct Furniture<'a> {
 impl Sheet {
     /// The sheet of a box of the plane, in any units, with a margin of `pad` inside the map; and the frame of
     /// the box.
-    ///
-    /// # Errors
-    /// Usage, if the box overflows.
     pub(super) fn of(min: Point2, max: Point2, pad: f64, width: u32) -> Result<(Sheet, Frame)> {
         let width = f64::from(width);
         let across = width - 2.0 * MARGIN;

@@ -20,9 +20,6 @@ pub(super) enum Shown {
 
 impl Shown {
     /// What the options ask for.
-    ///
-    /// # Errors
-    /// Usage, if points have no such attribute.
     pub(super) fn of(attributes: &Attributes, options: &Options) -> Result<Shown> {
         let Some(choice) = &options.colour_by else { return Ok(Shown::Elevation) };
         let column = |choice: &str| attributes.column(choice).map_err(Error::usage);

@@ -29,7 +29,6 @@ pub(super) struct Group<'a> {
 
 impl Configurations {
     /// No configurations, to be given with [`Configurations::extend`].
-    #[must_use]
     pub fn new(degree: usize, claim: Claim) -> Configurations {
         let (interiors, ends, boundaries) = (Vec::new(), Vec::new(), Vec::new());
         Configurations { degree, claim, interiors, ends, boundaries, infinite: 0 }
@@ -59,7 +58,6 @@ impl Configurations {
     }
 
     /// The degree k: the size of interior sets.
-    #[must_use]
     pub fn degree(&self) -> usize {
         self.degree
     }

@@ -43,25 +43,21 @@ impl Knots {
     }
 
     /// Positions by id.
-    #[must_use]
     pub fn points(&self) -> &[Xy] {
         &self.points
     }
 
     /// Number of knots, copies included.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
     /// Whether there is no knot.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
     /// Number of knots of lesser id at the place of knot `id`.
-    #[must_use]
     pub fn rank(&self, id: u32) -> u32 {
         self.ranks.get(id as usize).copied().unwrap_or(0)
     }

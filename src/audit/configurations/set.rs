@@ -27,9 +27,6 @@ pub(super) struct Collector {
 
 impl Collector {
     /// Adds the next event.
-    ///
-    /// # Errors
-    /// If there are too many configurations to hold.
     pub(super) fn event(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => self.points.extend(points.iter().map(|&[x, y, _]| [x, y])),
@@ -51,9 +48,6 @@ impl Collector {
     }
 
     /// Everything gathered.
-    ///
-    /// # Errors
-    /// As [`Knots::new`].
     pub(super) fn finish(self) -> Result<ConfigurationSet> {
         let Collector { points, degrees, functions } = self;
         Ok(ConfigurationSet { knots: Knots::new(points)?, degrees, functions })

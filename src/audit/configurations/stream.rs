@@ -89,7 +89,6 @@ impl StreamAudit {
     }
 
     /// The result of [`StreamAudit::prove`].
-    #[must_use]
     pub fn proof(&self) -> Option<&std::result::Result<Proof, Violation>> {
         self.proof.as_ref()
     }

@@ -51,7 +51,6 @@ impl Claim {
     ];
 
     /// Name for people and for JSON.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Claim::Points => "points",

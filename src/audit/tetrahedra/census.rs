@@ -83,7 +83,6 @@ pub struct Faults {
 
 impl Counts {
     /// Whether there are no faults by exact arithmetic. The standard decides whether ties are faults.
-    #[must_use]
     pub fn is_clean(&self, standard: Standard) -> bool {
         let Faults { inverted, flat, inside, on: _, concave } = self.exact;
         let faults = [inverted, flat, inside, concave, self.unused, self.crowded_facets, self.torn_edges];
@@ -141,7 +140,6 @@ impl Default for Census {
 
 impl Census {
     /// An empty census.
-    #[must_use]
     pub fn new() -> Self {
         Census {
             vertices: Vertices::default(),
@@ -172,7 +170,6 @@ impl Census {
     }
 
     /// The counts; complete after the END block.
-    #[must_use]
     pub fn counts(&self) -> &Counts {
         &self.counts
     }

@@ -21,7 +21,6 @@ impl<T> Clone for BufferPool<T> {
 
 impl<T> BufferPool<T> {
     /// An empty pool that keeps at most `len_max` buffers.
-    #[must_use]
     pub fn new(len_max: usize) -> Self {
         let (used, free) = bounded(len_max);
         BufferPool { used, free }

@@ -67,7 +67,6 @@ impl<J: Send + 'static, R: Send + 'static> OrderedPool<J, R> {
     }
 
     /// Whether the weight of the jobs under way has reached its limit.
-    #[must_use]
     pub fn is_full(&self) -> bool {
         self.weight >= self.weight_max
     }

@@ -9,7 +9,6 @@ use crate::error::{Error, Result};
 
 /// Threads that the system runs at once: the cores that this process may use, or 1 if the system does not
 /// tell.
-#[must_use]
 pub fn available_threads() -> NonZeroUsize {
     thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
 }
@@ -30,9 +29,6 @@ pub fn spawn_scoped<'scope, T: Send + 'scope>(
 }
 
 /// Starts a named thread that may outlive the caller.
-///
-/// # Errors
-/// [`crate::error::ErrorKind::Io`] if the system refuses a thread.
 pub(super) fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>> {
     Builder::new().name(name.into()).spawn(work).map_err(no_thread)
 }

@@ -43,13 +43,11 @@ impl TemporaryFile {
 
 impl FrozenFile {
     /// Its name in messages.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// Starts to read.
-    #[must_use]
     pub fn windows(&self) -> Windows<'_> {
         Windows {
             file: self,

@@ -25,7 +25,6 @@ impl Records {
     }
 
     /// Bytes of the file.
-    #[must_use]
     pub fn file_len(&self) -> u64 {
         u64::from(self.count) * self.record_len
     }

@@ -48,9 +48,6 @@ impl<'a> Constrained<'a> {
     /// the knots on the way from `a` to `b`, both included.
     ///
     /// Cost: quadratic in the number of edges that the segment crosses, which is small for typical segments.
-    ///
-    /// # Errors
-    /// A segment that crosses another.
     pub(super) fn fix(&mut self, a: u32, b: u32) -> Result<Vec<u32>> {
         let mut path = vec![a];
         let mut from = a;
@@ -100,9 +97,6 @@ impl<'a> Constrained<'a> {
 
     /// Inserts a knot that is not a vertex yet on an edge, or near it; the halves of the edge are fixed.
     /// Returns the two knots opposite to the edge, left and right.
-    ///
-    /// # Errors
-    /// No such edge; an edge on the border; a knot that is too far from the edge.
     pub(super) fn split(&mut self, [a, b]: [u32; 2], middle: u32) -> Result<[u32; 2]> {
         let corner = self.corner(a, b).ok_or_else(|| stuck([a, b]))?;
         let Some([v, _, w, _]) = self.start.quadrilateral(corner) else {

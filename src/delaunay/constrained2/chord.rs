@@ -9,9 +9,6 @@ use foldhash::HashMap;
 
 /// Makes the part of a segment an edge that goes from a vertex on it towards its end `to`, up to the next
 /// vertex. Returns whether the part leaves the region before it reaches one.
-///
-/// # Errors
-/// Runtime, if the part crosses another segment.
 pub(super) fn insert(
     mesh: &mut Mesh,
     from: u32,

@@ -49,7 +49,6 @@ pub struct Piece {
 impl Region {
     /// The region of some triangles, which are counterclockwise and overlap nowhere. They are indices of
     /// `points`, of which no two are equal.
-    #[must_use]
     pub fn new(points: &[Point2], triangles: &[[u32; 3]]) -> Region {
         Region { mesh: border::mesh_of(points, triangles), last: None }
     }
@@ -58,7 +57,6 @@ impl Region {
     /// triangle or edge of the present mesh.
     ///
     /// Domain: the place is in this triangle or on its border.
-    #[must_use]
     pub fn host(&self, place: Point2, triangle: u32, predicates: &mut impl Predicates2) -> Host {
         let from = self.mesh.origins[triangle as usize][0];
         vertex::host(&self.mesh, from, place, predicates)

@@ -6,7 +6,6 @@ use crate::predicates::{Extent, Point2, lexicographic};
 /// For each point, the least index of a point with equal coordinates: its own, if it is the first.
 ///
 /// Domain: finite coordinates; `-0.0` equals `0.0`. Cost: a sort.
-#[must_use]
 pub fn distinct(points: &[Point2]) -> Vec<u32> {
     let mut order = SpatialOrder::default();
     let mut representatives = vec![0; points.len()];

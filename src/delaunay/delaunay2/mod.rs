@@ -60,7 +60,6 @@ struct Inserter {
 
 impl Kernel {
     /// A kernel without buffers yet.
-    #[must_use]
     pub fn new() -> Kernel {
         Kernel::default()
     }
@@ -104,7 +103,6 @@ impl Kernel {
     }
 
     /// Decisions of the predicates in all triangulations of this kernel so far.
-    #[must_use]
     pub fn counts(&self) -> &PredicateCounts {
         &self.counts
     }

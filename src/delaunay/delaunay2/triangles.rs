@@ -36,7 +36,6 @@ impl Triangle {
     /// # Panics
     /// If `side` is above 2.
     #[inline]
-    #[must_use]
     pub fn neighbour(&self, side: usize) -> Option<Corner> {
         let h = self.neighbours[side];
         (h != NONE).then(|| Corner { triangle: number_of(h), corner: corner(h) as u32 })
@@ -61,7 +60,6 @@ pub struct Triangles {
 impl Triangles {
     /// All triangles, about in the order of a Hilbert curve.
     #[inline]
-    #[must_use]
     pub fn triangles(&self) -> &[Triangle] {
         &bytemuck::pod_align_to::<u32, Triangle>(&self.memory.words).1[..self.memory.count]
     }
@@ -84,7 +82,6 @@ impl Triangles {
 
     /// The triangle to the left of the edge from `a` to `b`, as the corner opposite to the edge; `None` if
     /// there is no such edge or no triangle to its left. Cost: the degree of `a`.
-    #[must_use]
     pub fn left_of(&self, a: u32, b: u32) -> Option<Corner> {
         self.corners_of(a).find_map(|Corner { triangle, corner }| {
             let next = (corner + 1) % 3;

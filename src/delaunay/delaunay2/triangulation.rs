@@ -30,7 +30,6 @@ impl Triangulation {
     }
 
     /// The input points, duplicates included.
-    #[must_use]
     pub fn points(&self) -> &[Point2] {
         &self.points
     }
@@ -46,7 +45,6 @@ impl Triangulation {
     ///
     /// # Panics
     /// If there is no such triangle.
-    #[must_use]
     pub fn neighbours(&self, number: u32) -> [Option<u32>; 3] {
         let triangle = &self.triangles.triangles()[number as usize];
         [0, 1, 2].map(|side| triangle.neighbour(side).map(|corner| corner.triangle))
@@ -55,7 +53,6 @@ impl Triangulation {
     /// The edges of all triangles, each once with its lesser vertex first, in increasing order.
     ///
     /// Cost: a sort.
-    #[must_use]
     pub fn edges(&self) -> Vec<[u32; 2]> {
         let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
         let mut edges: Vec<[u32; 2]> =
@@ -73,7 +70,6 @@ impl Triangulation {
     }
 
     /// For each point the vertex that stands for it: the equal point of least index.
-    #[must_use]
     pub fn representatives(&self) -> Vec<u32> {
         let mut representatives: Vec<u32> = (0..self.points.len() as u32).collect();
         self.triangles
@@ -88,7 +84,6 @@ impl Triangulation {
     /// If there are no triangles, every target that is no vertex is outside.
     ///
     /// Cost: a walk of O(sqrt n) triangles for points that are spread evenly.
-    #[must_use]
     pub fn locate(&self, target: Point2) -> Location {
         if !target.iter().all(|coordinate| coordinate.is_finite()) {
             return Location::Outside;

@@ -142,7 +142,6 @@ impl Sorter {
 
 /// The same tetrahedron in the same orientation, its greatest vertex last and of the others the least first.
 #[inline(always)]
-#[must_use]
 pub fn turned(corners: [u32; 4]) -> [u32; 4] {
     let [mut a, mut b, mut c, mut d] = corners;
     let mut is_odd = false;

@@ -78,9 +78,6 @@ impl<L: Lanes, W: Weights> Insertion<'_, '_, L, W> {
 
     /// Inserts vertex `q`, which is not in the mesh yet, unless others hide it; returns where to start the
     /// walk to a point nearby.
-    ///
-    /// # Errors
-    /// If a frozen tetrahedron would have to go, or if there is no room.
     #[inline(always)]
     pub(super) fn insert(&mut self, q: u32, start: u32) -> Result<u32, Refusal> {
         let at = Site { at: self.complex.point(q), weight: self.weights.of(q) };
@@ -120,9 +117,6 @@ impl<L: Lanes, W: Weights> Insertion<'_, '_, L, W> {
     }
 
     /// Searches the cavity from a tetrahedron in conflict.
-    ///
-    /// # Errors
-    /// If a frozen tetrahedron is in conflict.
     #[inline(always)]
     fn search_cavity(&mut self, at: Site, t: u32) -> Result<(), FrozenConflict> {
         let infinite = self.complex.infinite();

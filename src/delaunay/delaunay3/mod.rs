@@ -102,7 +102,6 @@ impl Default for Kernel {
 
 impl Kernel {
     /// A kernel without buffers yet.
-    #[must_use]
     pub fn new() -> Kernel {
         Kernel::default()
     }
@@ -249,7 +248,6 @@ impl Kernel {
     }
 
     /// Decisions of the predicates in all runs of this kernel so far.
-    #[must_use]
     pub fn counts(&self) -> &PredicateCounts {
         &self.counts
     }
@@ -310,9 +308,6 @@ pub fn triangulate_weighted(points: &[Point3], weights: &[f64]) -> Result<Tetrah
 }
 
 /// The extent of the points.
-///
-/// # Errors
-/// If they are too many, or a coordinate is not finite.
 fn checked_extent(points: &[Point3], threads: NonZeroUsize) -> Result<Extent<3>> {
     if points.len() > MAX_POINTS {
         return Err(Error::TooManyPoints { count: points.len(), most: MAX_POINTS });

@@ -49,9 +49,6 @@ struct Done {
 
 /// Inserts vertices on `threads` threads into a complex that has `inserted` of them. Returns the vertices
 /// that were refused.
-///
-/// # Errors
-/// Never fails: the type is that of [`parallel::map`].
 pub(super) fn insert<W: Weights>(
     whole: &mut Whole,
     setting: &Setting<W>,

@@ -21,7 +21,6 @@ impl Tetrahedralization {
     ///
     /// # Panics
     /// If there is no such tetrahedron.
-    #[must_use]
     pub fn neighbours(&self, number: u32) -> [Option<u32>; 4] {
         let tetrahedron = &self.tetrahedra[number as usize];
         [0, 1, 2, 3].map(|side| tetrahedron.neighbour(side).map(|corner| corner.tetrahedron))
@@ -30,7 +29,6 @@ impl Tetrahedralization {
     /// The edges of all tetrahedra, each once with its lesser point first, in increasing order.
     ///
     /// Cost: a sort of six edges per tetrahedron.
-    #[must_use]
     pub fn edges(&self) -> Vec<[u32; 2]> {
         let sides = |[a, b, c, d]: [u32; 4]| [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]];
         let mut edges: Vec<[u32; 2]> =
@@ -50,7 +48,6 @@ impl Tetrahedralization {
     }
 
     /// For each input point the one that stands for it: the equal point of least index.
-    #[must_use]
     pub fn representatives(&self) -> Vec<u32> {
         let count = self.vertices.len() + self.duplicates.len();
         let mut representatives: Vec<u32> = (0..count as u32).collect();
@@ -63,7 +60,6 @@ impl Tetrahedralization {
     /// If there are no tetrahedra, every target that is no vertex is outside.
     ///
     /// Cost: a walk of O(cbrt n) tetrahedra for points that are spread evenly; without tetrahedra, O(n).
-    #[must_use]
     pub fn locate(&self, target: Point3) -> Location {
         if !target.iter().all(|coordinate| coordinate.is_finite()) {
             return Location::Outside;

@@ -171,9 +171,6 @@ impl Search<'_, '_> {
     }
 
     /// Adds what is beyond the facets to the cavity, or the facets to its border.
-    ///
-    /// # Errors
-    /// If it is not known what belongs where: nothing has changed then.
     #[inline(always)]
     fn sort(&mut self, neighbours: &Neighbours) -> Result<(), [Option<Finding>; 3]> {
         let Neighbours { faces, signs } = neighbours;

@@ -72,7 +72,6 @@ impl Tetrahedron {
     /// # Panics
     /// If `side` is above 3.
     #[inline]
-    #[must_use]
     pub fn neighbour(&self, side: usize) -> Option<Corner> {
         let word = self.neighbours[side];
         (word != NONE).then_some(Corner { tetrahedron: word / WORDS as u32, corner: word & 3 })
@@ -122,14 +121,12 @@ impl Tetrahedralization {
 
     /// The vertices, which are the distinct points, in order along a curve.
     #[inline]
-    #[must_use]
     pub fn vertices(&self) -> &[Vertex] {
         &self.vertices
     }
 
     /// All tetrahedra, about in the order of the curve. None if all points lie in a plane.
     #[inline]
-    #[must_use]
     pub fn tetrahedra(&self) -> &[Tetrahedron] {
         &self.tetrahedra
     }

@@ -104,9 +104,6 @@ impl Whole {
     }
 
     /// Inserts vertices, except those of the first tetrahedron, on the calling thread.
-    ///
-    /// # Errors
-    /// I/O, if there are too many tetrahedra.
     pub(super) fn insert<W: Weights>(
         &mut self,
         setting: &Setting<W>,
@@ -147,8 +144,6 @@ impl Whole {
         });
     }
 
-    /// # Errors
-    /// If there would be too many tetrahedra.
     #[cold]
     fn grow(&mut self) -> Result<()> {
         let len = self.tetrahedra.len();
@@ -189,9 +184,6 @@ fn phases(count: usize, points_per_thread: usize) -> Vec<usize> {
 
 impl Kernel {
     /// Inserts all vertices, with threads if that is worth it.
-    ///
-    /// # Errors
-    /// I/O, if there are too many tetrahedra.
     pub(super) fn insert_all<W: Weights>(
         &mut self,
         whole: &mut Whole,

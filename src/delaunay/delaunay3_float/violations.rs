@@ -8,7 +8,6 @@ use crate::predicates::{FiniteFloatPredicates3, Predicates3, Sign};
 /// sphere, by exact arithmetic. Spheres of flat tetrahedra have no inside.
 ///
 /// Cost: five exact signs per tetrahedron.
-#[must_use]
 pub fn violations(mesh: &Tetrahedralization) -> u64 {
     let is_wrong = |number: &usize| is_inverted_or_flat(mesh, *number) || has_neighbour_inside(mesh, *number);
     (0..mesh.tetrahedra().len()).filter(is_wrong).count() as u64

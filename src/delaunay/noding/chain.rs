@@ -14,7 +14,6 @@ pub struct Chains<'n> {
 
 impl<'n> Chains<'n> {
     /// Memory: 4 bytes for each vertex, and 8 for each segment.
-    #[must_use]
     pub fn new(noded: &'n Noded) -> Chains<'n> {
         let mut starts = vec![0u32; noded.vertices.len() + 1];
         let ends = || noded.segments.iter().flat_map(|segment| segment.ends);

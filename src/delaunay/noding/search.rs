@@ -108,9 +108,6 @@ impl Cell {
 }
 
 /// Finds the crossings of segments, and the hot pixels that they pass through.
-///
-/// # Errors
-/// Malformed, if there are more than `crossings_max` crossings, or bends in proportion.
 pub(super) fn search(places: &[Place], segments: &Segments, crossings_max: usize) -> Result<Found> {
     let mut search = Search {
         places,

@@ -31,7 +31,6 @@ impl Curve {
     ///
     /// Domain: `D` 2, 3 or 4; `bits` at most 16, 10 or 8; numbers of cells below `2^bits`.
     #[inline(always)]
-    #[must_use]
     pub fn key<const D: usize>(self, cell: [u32; D], bits: u32) -> u32 {
         match self {
             Curve::Hilbert => hilbert_key(cell, bits),

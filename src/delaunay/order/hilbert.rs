@@ -98,7 +98,6 @@ const fn gray_code(number: u32) -> u32 {
 ///
 /// Domain: `D` 2, 3 or 4; `bits` at most 16, 10 or 8; numbers of cells below `2^bits`.
 #[inline(always)]
-#[must_use]
 pub(super) fn hilbert_key<const D: usize>(cell: [u32; D], bits: u32) -> u32 {
     let step = const { Step::of::<D>() };
     let steps = bits.div_ceil(step.bits);

@@ -32,7 +32,6 @@ pub struct BitLevels<const D: usize> {
 
 impl<const D: usize> BitLevels<D> {
     /// The levels for `points`, which are finite. Cost: two passes.
-    #[must_use]
     pub fn of(points: &[[f64; D]], suffixes: Suffixes) -> BitLevels<D> {
         let unit = common_unit(points);
         let suffixes = match (unit, suffixes) {
@@ -44,7 +43,6 @@ impl<const D: usize> BitLevels<D> {
 
     /// The level of one of the points.
     #[inline]
-    #[must_use]
     pub fn level(&self, point: [f64; D]) -> u32 {
         let different = |axis: usize| match self.unit {
             Some(unit) => lowest_bits(point[axis], unit) ^ self.suffixes[axis],

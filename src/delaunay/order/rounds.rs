@@ -46,7 +46,6 @@ impl Rounds {
     /// The rounds of `count` points.
     ///
     /// Domain: `count` at most 2^32.
-    #[must_use]
     pub fn new(count: usize) -> Rounds {
         Rounds {
             block: 0,
@@ -64,7 +63,6 @@ impl Rounds {
     /// window. So these rounds find what they need in a cache.
     ///
     /// Domain: `count` at most 2^32.
-    #[must_use]
     pub fn in_windows(count: usize) -> Rounds {
         Rounds { window: 0..count.min(WINDOW), window_len: WINDOW, ..Rounds::new(count) }
     }

@@ -25,7 +25,6 @@ impl Sequence {
     /// The numbers from 0 to `count - 1`, which are places along the curve, in this sequence.
     ///
     /// Domain: `count` at most 2^32. Cost: nothing; `Random`: O(n), 4 bytes per point.
-    #[must_use]
     pub fn of(self, count: usize) -> Insertions {
         Insertions(match self {
             Sequence::Rounds => Form::Rounds(Rounds::new(count)),
@@ -42,7 +41,6 @@ impl Sequence {
     /// purpose.
     ///
     /// Domain: finite coordinates, at most 2^32 points. Cost: O(n), 5 bytes per point.
-    #[must_use]
     pub fn by_levels<const D: usize>(self, points: &[[f64; D]], suffixes: Suffixes) -> Insertions {
         let bit_levels = BitLevels::of(points, suffixes);
         let rank = |point: &[f64; D]| (BIT_LEVEL_MAX - bit_levels.level(*point)) as u8;
@@ -73,7 +71,6 @@ enum Form {
 
 impl Insertions {
     /// These numbers, in this order.
-    #[must_use]
     pub fn listed(numbers: Vec<u32>) -> Insertions {
         Insertions(Form::Stored(numbers.into_iter()))
     }

@@ -83,7 +83,6 @@ impl BoundedFloatPredicates {
     pub const GREATEST_MAGNITUDE: f64 = f64::from_bits((1023 + 240) << 52);
 
     /// Whether all points within `extent` are in the domain.
-    #[must_use]
     pub fn covers(extent: &Extent) -> bool {
         extent.least_magnitude >= Self::LEAST_MAGNITUDE
             && extent.greatest_magnitude() <= Self::GREATEST_MAGNITUDE

@@ -11,7 +11,6 @@ const TRUSTED: f64 = 1.0 / 16.0;
 /// Relative error below 1e-14, and zero if and only if the points are collinear, for coordinates that are
 /// zero or have magnitudes in the range of [`super::BoundedFloatPredicates`].
 #[inline]
-#[must_use]
 pub fn area(a: Point2, b: Point2, c: Point2) -> f64 {
     let left = (a[0] - c[0]) * (b[1] - c[1]);
     let right = (a[1] - c[1]) * (b[0] - c[0]);

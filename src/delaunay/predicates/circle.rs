@@ -58,7 +58,6 @@ impl CircleBounds {
     ///
     /// Source: thesis 5.3.3 and 5.7; the module's text has the derivation.
     #[inline]
-    #[must_use]
     pub fn disk_inside(self, a: [f64; 2], b: [f64; 2], c: [f64; 2], region: [[f64; 2]; 2]) -> bool {
         let (bx, by) = (b[0] - a[0], b[1] - a[1]);
         let (cx, cy) = (c[0] - a[0], c[1] - a[1]);

@@ -30,7 +30,6 @@ impl PredicateCounts {
     }
 
     /// Number of decisions, whatever the stage.
-    #[must_use]
     pub fn total(&self) -> u64 {
         self.filter + self.integer + self.pairs + self.residues + self.bigint
     }

@@ -7,7 +7,6 @@ use num_bigint::BigInt;
 ///
 /// Domain: a finite number.
 #[inline]
-#[must_use]
 pub fn decompose(value: f64) -> (i64, i32) {
     debug_assert!(value.is_finite());
     let bits = value.to_bits();
@@ -21,20 +20,17 @@ pub fn decompose(value: f64) -> (i64, i32) {
 /// The points in the greatest power of two that makes integers of the significands of all coordinates.
 ///
 /// Domain: finite coordinates.
-#[must_use]
 pub fn integers<const N: usize, const D: usize>(points: [[f64; D]; N]) -> [[BigInt; D]; N] {
     integers_and_unit(points).0
 }
 
 /// [`integers`], and the exponent of that power of two.
-#[must_use]
 pub fn integers_and_unit<const N: usize, const D: usize>(points: [[f64; D]; N]) -> ([[BigInt; D]; N], i32) {
     let unit = unit_of(&points);
     (points.map(|point| integers_in(point, unit)), unit)
 }
 
 /// [`integers`] for any number of points.
-#[must_use]
 pub fn integers_of<const D: usize>(points: &[[f64; D]]) -> Vec<[BigInt; D]> {
     let unit = unit_of(points);
     points.iter().map(|&point| integers_in(point, unit)).collect()

@@ -25,13 +25,11 @@ pub struct Extent<const D: usize = 2> {
 
 impl<const D: usize> Extent<D> {
     /// Extent of `points`. Cost: one pass.
-    #[must_use]
     pub fn of(points: &[[f64; D]]) -> Extent<D> {
         Extent::of_each(points.iter().copied())
     }
 
     /// The same on so many threads.
-    #[must_use]
     pub fn on(threads: NonZeroUsize, points: &[[f64; D]]) -> Extent<D> {
         let work = |piece| Ok::<_, Infallible>(Extent::of(piece));
         let Ok(extents) = parallel::map(threads, points.chunks(PIECE), work);
@@ -50,7 +48,6 @@ impl<const D: usize> Extent<D> {
     }
 
     /// Extent of all points that `points` gives.
-    #[must_use]
     pub fn of_each(points: impl Iterator<Item = [f64; D]>) -> Extent<D> {
         let mut extent = Extent {
             lower: [f64::INFINITY; D],
@@ -74,13 +71,11 @@ impl<const D: usize> Extent<D> {
 
     /// Greatest difference of two coordinates of the same axis, rounded; may be infinite. Zero if there is no
     /// point.
-    #[must_use]
     pub fn max_difference(&self) -> f64 {
         (0..D).fold(0.0, |greatest, axis| greatest.max(self.upper[axis] - self.lower[axis]))
     }
 
     /// Greatest magnitude of a coordinate. Zero if there is no point.
-    #[must_use]
     pub fn greatest_magnitude(&self) -> f64 {
         if self.lower[0] > self.upper[0] {
             return 0.0;

@@ -80,7 +80,6 @@ impl Sign {
 
     /// The sign of the negative value.
     #[inline(always)]
-    #[must_use]
     pub fn opposite(self) -> Sign {
         match self {
             Sign::Negative => Sign::Positive,
@@ -166,7 +165,6 @@ pub enum Arithmetic {
 
 impl Arithmetic {
     /// Cheapest arithmetic that is exact for all points within `extent`.
-    #[must_use]
     pub fn of(extent: &Extent) -> Arithmetic {
         let difference = extent.max_difference();
         if extent.integral && difference <= IntPair::MAX_DIFFERENCE {

@@ -6,7 +6,6 @@ use std::cmp::Ordering;
 
 /// Lexicographic order of two points, x before y before z; `-0.0` equals `0.0`. Domain: no NaN.
 #[inline(always)]
-#[must_use]
 pub fn lexicographic<const D: usize>(a: [f64; D], b: [f64; D]) -> Ordering {
     for (a, b) in a.into_iter().zip(b) {
         if a < b {

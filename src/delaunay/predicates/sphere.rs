@@ -79,7 +79,6 @@ impl SphereBounds {
     ///
     /// Source: thesis 5.4 and 5.7; the module's text has the derivation.
     #[inline]
-    #[must_use]
     pub fn ball_inside(self, [a, b, c, d]: [Point3; 4], region: [[f64; 3]; 2]) -> bool {
         let vectors = [b, c, d].map(|point| difference(point, a));
         let lifts = vectors.map(|vector| {
@@ -96,7 +95,6 @@ impl SphereBounds {
     ///
     /// Never true if one of the four weights is above `greatest`.
     #[inline]
-    #[must_use]
     pub fn power_ball_inside(
         self,
         [a, b, c, d]: [Point3; 4],

@@ -17,7 +17,6 @@ const FLATTENING_TOLERANCE: f64 = 1e-6;
 
 /// In what two systems differ, as "unit: metre and foot" and the like; empty if they mean the same. What only
 /// one of them states is no difference.
-#[must_use]
 pub fn differences(a: &System, b: &System) -> Vec<String> {
     let mut found = Differences::default();
     if let (Some(a), Some(b)) = (&a.horizontal, &b.horizontal) {

@@ -103,7 +103,6 @@ impl GeoKeys {
     }
 
     /// Whether coordinates refer to the centres of cells.
-    #[must_use]
     pub fn is_of_points(&self) -> bool {
         self.short(RASTER_TYPE) == Some(PIXEL_IS_POINT)
     }

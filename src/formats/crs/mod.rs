@@ -28,7 +28,6 @@ use spmesh_stream::Crs;
 
 impl System {
     /// The system that `crs` encodes.
-    #[must_use]
     pub fn of(crs: &Crs) -> System {
         match crs {
             Crs::Unknown => System::default(),
@@ -48,7 +47,6 @@ impl From<&GeoKeys> for System {
 
 /// A short name of `crs`: its EPSG codes ("EPSG:26910", "EPSG:2991+5703") where it states them, else the names
 /// it gives itself.
-#[must_use]
 pub fn name(crs: &Crs) -> Option<String> {
     System::of(crs).name()
 }

@@ -109,7 +109,6 @@ pub struct Vertical {
 
 impl System {
     /// A short name: codes as in `EPSG:2991+5703` where they are known, else names.
-    #[must_use]
     pub fn name(&self) -> Option<String> {
         let horizontal = self.horizontal.as_ref().map(Horizontal::short_name);
         let Some(vertical) = self.vertical.as_ref().filter(|vertical| !vertical.is_part_of(self)) else {
@@ -126,7 +125,6 @@ impl System {
 
     /// How many units of x and y one unit of z is, where both are lengths or x and y are degrees on the
     /// ellipsoid (`None`). A slope is z over x times this.
-    #[must_use]
     pub fn vertical_ratio(&self) -> Option<f64> {
         let horizontal = self.horizontal.as_ref().filter(|known| !known.is_angular())?;
         Some(self.vertical.as_ref()?.unit.size / horizontal.unit.size)
@@ -135,14 +133,12 @@ impl System {
 
 impl Horizontal {
     /// Whether x and y are angles.
-    #[must_use]
     pub fn is_angular(&self) -> bool {
         matches!(self.kind, Kind::Geographic(_))
             || matches!(self.kind, Kind::Unresolved) && self.unit.is_same(&Unit::degree())
     }
 
     /// The geodetic part of the definition.
-    #[must_use]
     pub fn base(&self) -> Option<&Geographic> {
         match &self.kind {
             Kind::Geographic(base) | Kind::Projected(base, _) | Kind::Geocentric(base) => Some(base),

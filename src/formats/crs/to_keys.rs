@@ -25,7 +25,6 @@ const GREENWICH: u16 = 8901;
 /// The keys of `system`, for cells as areas, with those of its vertical part if values are elevations; and
 /// what they leave out, each as a sentence for users. There are no keys if they cannot hold the system of x and
 /// y.
-#[must_use]
 pub fn keys(system: &System, are_elevations: bool) -> (GeoKeys, Vec<String>) {
     let mut writer = Writer::default();
     match (&system.horizontal, system.vertical.as_ref().filter(|_| are_elevations)) {

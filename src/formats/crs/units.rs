@@ -47,13 +47,11 @@ const ANGLES: [Known; 3] = [
 
 impl Unit {
     /// The metre.
-    #[must_use]
     pub fn metre() -> Unit {
         Unit::known(&LENGTHS[0])
     }
 
     /// The degree.
-    #[must_use]
     pub fn degree() -> Unit {
         Unit::known(&ANGLES[0])
     }
@@ -91,7 +89,6 @@ impl Unit {
     }
 
     /// Whether both have the same size.
-    #[must_use]
     pub fn is_same(&self, other: &Unit) -> bool {
         is_close(self.size, other.size)
     }

@@ -83,9 +83,6 @@ impl Value<'_> {
 }
 
 /// The nodes of `text`: one, except that ESRI writes a vertical system behind a horizontal one.
-///
-/// # Errors
-/// What is wrong, and at which byte.
 pub(crate) fn parse(text: &str) -> Result<Vec<Node<'_>>, String> {
     let mut parser = Parser { text, at: 0 };
     let mut nodes = Vec::new();

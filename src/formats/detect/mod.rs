@@ -291,7 +291,6 @@ impl Format {
     }
 
     /// Name of the format in messages, with an article.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.row().name
     }

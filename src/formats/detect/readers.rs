@@ -123,7 +123,6 @@ impl Reader {
     }
 
     /// Whether the tool reads this format.
-    #[must_use]
     pub fn reads(&self, format: Format) -> bool {
         self.formats.iter().any(|list| list.contains(&format))
     }
@@ -141,7 +140,6 @@ impl Reader {
     }
 
     /// The tool's message for a file of this format, which starts with `head`.
-    #[must_use]
     pub fn refusal(&self, format: Format, head: &[u8]) -> String {
         let reads = self.list();
         if format == Format::Binary {

@@ -31,9 +31,6 @@ pub(crate) fn cell_of(index: i32, tree: &CellTree) -> Result<CellCode> {
 
 /// Checks at the end of a file that its tags finalize the cell of its last point: a file that was cut between
 /// the points of a cell and its tag ends otherwise. A file without tags tells nothing.
-///
-/// # Errors
-/// If the cell is not final.
 pub(crate) fn check_end(cells: Option<&FinalizedCells>, last: Option<Point>) -> Result<()> {
     match (cells.filter(|cells| cells.tags() > 0), last) {
         (Some(cells), Some(point)) if !cells.is_final(point) => {

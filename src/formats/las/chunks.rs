@@ -17,9 +17,6 @@ const CHUNK_POINTS: u32 = 50_000;
 const LAYERED_FORMAT: u8 = 6;
 
 /// How records of `format` with `extra_len` extra bytes are compressed, in chunks as long as those of `file`.
-///
-/// # Errors
-/// If the library does not compress records of this format.
 pub(crate) fn laszip(file: &LasFile, extra_len: usize) -> Result<LazVlr> {
     let format = file.header.format;
     let too_many = || Error::usage(format!("{extra_len} extra bytes are too many for LAZ"));
@@ -54,9 +51,6 @@ struct Compressed {
 
 impl ChunkWriter {
     /// Starts `threads` threads.
-    ///
-    /// # Errors
-    /// If the system refuses a thread.
     pub(crate) fn start(
         vlr: &LazVlr,
         is_layered: bool,
@@ -84,9 +78,6 @@ impl ChunkWriter {
     }
 
     /// Takes whole records.
-    ///
-    /// # Errors
-    /// If compressing or writing fails.
     pub(crate) fn take(&mut self, mut records: &[u8], output: &mut impl Write) -> Result<()> {
         while !records.is_empty() {
             let room = self.chunk_len - self.records.len();
@@ -101,9 +92,6 @@ impl ChunkWriter {
     }
 
     /// Writes the last chunks, and returns the table of all.
-    ///
-    /// # Errors
-    /// If compressing or writing fails.
     pub(crate) fn finish(mut self, output: &mut impl Write) -> Result<Vec<u8>> {
         if !self.records.is_empty() {
             self.give(output)?;

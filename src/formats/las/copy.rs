@@ -147,13 +147,11 @@ impl<W: Write + Seek> LasCopy<W> {
     }
 
     /// What of the file could not be kept.
-    #[must_use]
     pub fn notices(&self) -> &[String] {
         &self.notices
     }
 
     /// Bytes of a record that is written.
-    #[must_use]
     pub fn record_len(&self) -> usize {
         self.record_len
     }

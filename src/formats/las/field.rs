@@ -68,9 +68,6 @@ fn short(text: &str) -> &[u8] {
 /// `described`, the descriptions of `extra_len` extra bytes, with that of one more field. Bytes that none of
 /// them describes are described as bytes without a meaning, so that the new field is at its place. Descriptions of
 /// more bytes than there are mean nothing: they are left out, with a notice.
-///
-/// # Errors
-/// Usage, if there is a field of that name.
 pub(crate) fn with_field(
     described: &[u8],
     extra_len: usize,

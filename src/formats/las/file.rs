@@ -54,43 +54,36 @@ impl LasFile {
     }
 
     /// Its name in messages.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// Scale and offset of its points.
-    #[must_use]
     pub fn coordinates(&self) -> &Coordinates {
         &self.header.coordinates
     }
 
     /// The coordinate reference system that it states.
-    #[must_use]
     pub fn crs(&self) -> &Crs {
         &self.header.crs
     }
 
     /// Number of its points.
-    #[must_use]
     pub fn points(&self) -> u64 {
         self.header.points
     }
 
     /// Bytes of a point record.
-    #[must_use]
     pub fn record_len(&self) -> usize {
         self.header.record_len
     }
 
     /// Whether its points are compressed.
-    #[must_use]
     pub fn is_compressed(&self) -> bool {
         self.header.laz.is_some()
     }
 
     /// Oddities that the user should know.
-    #[must_use]
     pub fn notices(&self) -> &[String] {
         &self.notices
     }

@@ -85,9 +85,6 @@ pub(crate) struct Laszip {
 impl LasHeader {
     /// Reads the header of `file`. Adds harmless oddities to `notices`. Of a file that was cut off, takes the
     /// points before the cut if `is_salvaged`; the number of points is that of these.
-    ///
-    /// # Errors
-    /// If the header is damaged, of another version, or states more points than the file can hold.
     pub(crate) fn read(file: &FileView, is_salvaged: bool, notices: &mut Vec<String>) -> Result<LasHeader> {
         let raw = RawHeader::read(file)?;
         let format = raw.format & 0x3f;
@@ -185,9 +182,6 @@ impl LasHeader {
     }
 
     /// Keeps the first points, if there are any and they are wanted.
-    ///
-    /// # Errors
-    /// `truncated`, if not.
     fn keep_first(&mut self, points: u64, truncated: Error) -> Result<()> {
         if !self.is_salvaged || points == 0 {
             return Err(truncated);

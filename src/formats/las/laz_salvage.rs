@@ -11,9 +11,6 @@ use spmesh_base::error::{ErrorKind, Result};
 
 /// The number of points in the chunks before the first one that is not whole. Cost: decompresses these chunks,
 /// unless the chunk table is there: then nothing is missing.
-///
-/// # Errors
-/// If reading fails, or the chunks cannot be found without the table.
 pub(crate) fn whole_points(file: &FileView, header: &LasHeader, laszip: &Laszip) -> Result<u64> {
     let codec = Codec::new(laszip.vlr.clone(), header, DecompressionSelection::all())?;
     let Chunks::Unknown { start, points_per_chunk } = Chunks::find(file, header, laszip)? else {

@@ -51,9 +51,6 @@ pub(crate) struct RawHeader {
 
 impl RawHeader {
     /// Reads the header at the start of a file.
-    ///
-    /// # Errors
-    /// If the version is another, or the file ends inside.
     pub(crate) fn read(file: &FileView) -> Result<RawHeader> {
         let mut bytes = [0; HEADER_LEN_MAX];
         read_start(file, &mut bytes[..VERSION_END])?;

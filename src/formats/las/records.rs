@@ -46,9 +46,6 @@ pub(crate) struct RecordList {
 
 impl RecordList {
     /// Reads the heads of up to `count` records from byte `start` on; less, if no more fit before `end`.
-    ///
-    /// # Errors
-    /// If reading fails.
     pub(crate) fn read(
         file: &FileView,
         start: u64,
@@ -90,9 +87,6 @@ impl RecordList {
 
     /// Removes the descriptions of extra bytes, of which some files have several records. Returns them one after
     /// the other, and the place of the first one in the list, if there is one.
-    ///
-    /// # Errors
-    /// If reading fails, or a record is too long.
     pub(crate) fn take_descriptions(&mut self, file: &FileView) -> Result<(Vec<u8>, Option<usize>)> {
         let first = self.records.iter().position(|record| record.id() == EXTRA_BYTES);
         let mut descriptions = Vec::new();
@@ -104,17 +98,11 @@ impl RecordList {
     }
 
     /// Puts descriptions of extra bytes at this place of the list.
-    ///
-    /// # Errors
-    /// Usage, if they are too long.
     pub(crate) fn put_descriptions(&mut self, place: usize, descriptions: Vec<u8>) -> Result<()> {
         self.insert(place, EXTRA_BYTES, "extra bytes", descriptions)
     }
 
     /// Appends the record of the compression.
-    ///
-    /// # Errors
-    /// If it is too long.
     pub(crate) fn push_laszip(&mut self, body: Vec<u8>) -> Result<()> {
         self.insert(self.records.len(), LASZIP, laz::LazVlr::DESCRIPTION, body)
     }
@@ -146,9 +134,6 @@ impl RecordList {
     }
 
     /// Writes all records.
-    ///
-    /// # Errors
-    /// If reading or writing fails.
     pub(crate) fn write(&self, file: &FileView, output: &mut impl Write) -> Result<()> {
         for record in &self.records {
             output.write_all(&record.head).map_err(|e| Error::io("writing", e))?;
@@ -196,9 +181,6 @@ impl Record {
 }
 
 /// Copies bytes of a file.
-///
-/// # Errors
-/// If reading or writing fails.
 pub(crate) fn copy_range(file: &FileView, range: Range<u64>, output: &mut impl Write) -> Result<()> {
     let mut from = file.range(range.start, range.end);
     let mut buffer = vec![0; 1 << 16];

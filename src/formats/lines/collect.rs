@@ -40,9 +40,6 @@ impl Collector {
 
     /// Enters a part of a geometry: x, y and z of each vertex; a z that is not finite is unknown. `position`
     /// is asked for once a line.
-    ///
-    /// # Errors
-    /// Malformed, if x or y is not finite, or there are too many vertices.
     pub(crate) fn add(
         &mut self,
         shape: Shape,
@@ -76,9 +73,6 @@ impl Collector {
     }
 
     /// The lines.
-    ///
-    /// # Errors
-    /// Malformed, if there is none.
     pub(crate) fn finish(self, crs: Crs) -> Result<Breaklines> {
         if self.lines.is_empty() {
             return Err(Error::malformed("found no lines"));

@@ -31,9 +31,6 @@ pub(crate) struct Table {
 
 impl Table {
     /// The table beside a Shapefile; `None` if there is none, or none of its columns has a meaning.
-    ///
-    /// # Errors
-    /// If reading fails; malformed, if its header is damaged.
     pub(crate) fn beside(path: &Path) -> Result<Option<Table>> {
         for ending in ["dbf", "DBF"] {
             let beside = path.with_extension(ending);
@@ -76,9 +73,6 @@ impl Table {
     }
 
     /// The properties of the next record.
-    ///
-    /// # Errors
-    /// If reading fails; malformed, if there is no other record.
     pub(crate) fn next(&mut self) -> Result<Properties> {
         fill(&mut self.input, &mut self.record).map_err(|error| error.of_input(&self.name))?;
         let mut found = Properties::default();

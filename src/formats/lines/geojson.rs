@@ -21,9 +21,6 @@ use spmesh_stream::Crs;
 type JsonResult<T, E> = std::result::Result<T, E>;
 
 /// Reads GeoJSON.
-///
-/// # Errors
-/// As [`crate::lines::read_breaklines`].
 pub(crate) fn read(mut input: impl Read) -> Result<Breaklines> {
     let mut start = Vec::new();
     let len = BYTE_ORDER_MARK.len() as u64;
@@ -52,9 +49,6 @@ fn failure(error: serde_json::Error, own: Option<Error>) -> Error {
 }
 
 /// The system of a `crs` member.
-///
-/// # Errors
-/// Usage, if it is unknown.
 fn system(name: &str) -> Result<Crs> {
     let code = name.rsplit(':').next().unwrap_or_default();
     if name.contains("CRS84") {
@@ -114,9 +108,6 @@ fn properties(value: &serde_json::Value) -> Properties {
 
 impl Found {
     /// Enters the lines of a feature or geometry.
-    ///
-    /// # Errors
-    /// What is wrong with it.
     fn finish(self, file: &mut File) -> JsonResult<(), String> {
         let kind = self.kind.as_deref().unwrap_or_default();
         match kind {

@@ -21,9 +21,6 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
 
 /// Reads the rest of a small file behind its first bytes, and removes a byte order mark; `remedy` says what to do
 /// if the file is too long.
-///
-/// # Errors
-/// If reading fails, or the file is too long.
 pub(crate) fn read_rest(input: impl Read, mut head: Vec<u8>, remedy: &str) -> Result<Vec<u8>> {
     let most = GEOJSON_LEN_MAX + 1 - head.len() as u64;
     input.take(most).read_to_end(&mut head).map_err(|e| Error::io("reading", e))?;
@@ -35,17 +32,11 @@ pub(crate) fn read_rest(input: impl Read, mut head: Vec<u8>, remedy: &str) -> Re
 }
 
 /// Parses a text.
-///
-/// # Errors
-/// Malformed, if it is not JSON.
 pub(crate) fn parse(bytes: &[u8]) -> Result<Value> {
     serde_json::from_slice(bytes).map_err(|e| Error::malformed(format!("not JSON: {e}")))
 }
 
 /// Calls `found` with each feature of a collection, or with the only feature or geometry.
-///
-/// # Errors
-/// Those of `found`, with the number of the feature; malformed, if a collection has no features.
 pub(crate) fn for_each_feature(value: &Value, mut found: impl FnMut(&Value) -> Result<()>) -> Result<()> {
     let features = match type_of(value) {
         "FeatureCollection" => match value.get("features").and_then(Value::as_array) {
@@ -74,17 +65,11 @@ pub(crate) fn member<'a>(value: &'a Value, name: &str) -> &'a Value {
 }
 
 /// The items of a list.
-///
-/// # Errors
-/// Malformed, if it is none.
 pub(crate) fn array(value: &Value) -> Result<&Vec<Value>> {
     value.as_array().ok_or_else(|| Error::malformed("not GeoJSON: coordinates are no list"))
 }
 
 /// A position, without its third coordinate.
-///
-/// # Errors
-/// Malformed, if it is none.
 pub(crate) fn position(value: &Value) -> Result<Point2> {
     let numbers: Option<Vec<f64>> = array(value)?.iter().map(Value::as_f64).collect();
     match numbers.as_deref() {

@@ -25,9 +25,6 @@ struct Table {
 }
 
 /// Reads all tables of features. The file is never changed: it is opened as one that nobody writes.
-///
-/// # Errors
-/// As [`crate::lines::read_breaklines`].
 pub(crate) fn read(path: &Path) -> Result<Breaklines> {
     let flags =
         OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI | OpenFlags::SQLITE_OPEN_NO_MUTEX;

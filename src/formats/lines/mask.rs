@@ -86,9 +86,6 @@ pub(crate) fn of_ring(error: &Error, number: usize) -> Error {
 }
 
 /// The vertices of a ring that repeats its first vertex at the end, without the repetition.
-///
-/// # Errors
-/// Malformed, if it does not, or there are fewer than three vertices; if a coordinate is not finite.
 pub(crate) fn closed(mut vertices: Vec<Point2>) -> Result<Vec<Point2>> {
     if let Some([x, y]) = vertices.iter().find(|at| !at.iter().all(|coordinate| coordinate.is_finite())) {
         return Err(Error::malformed(format!("the coordinates {x}, {y} are not finite")));

@@ -5,9 +5,6 @@ use std::collections::VecDeque;
 use spmesh_base::error::{Error, Result};
 
 /// The triangles of a polygon, around its first vertex.
-///
-/// # Errors
-/// If it has fewer than three vertices.
 pub(crate) fn fan(corners: &[u64]) -> Result<VecDeque<[u64; 3]>> {
     match corners {
         [first, rest @ ..] if rest.len() >= 2 => {

@@ -51,9 +51,6 @@ fn unknown(code: i32) -> Error {
 }
 
 /// Reads the main file, and the system beside it.
-///
-/// # Errors
-/// As [`crate::lines::read_breaklines`].
 pub(crate) fn read(mut input: impl Read, path: &Path) -> Result<Breaklines> {
     let mut header = [0; HEADER_LEN];
     fill(&mut input, &mut header).map_err(|e| e.at("header"))?;

@@ -19,9 +19,6 @@ struct Open {
 }
 
 /// Reads lines of text: see [`crate::lines::read_breaklines`].
-///
-/// # Errors
-/// As there.
 pub(crate) fn read(input: impl Read) -> Result<Breaklines> {
     let mut lines = Collector::default();
     let mut open: Option<Open> = None;

@@ -8,9 +8,6 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::WKB_DEPTH_MAX;
 
 /// Enters the lines of a geometry with the header of GeoPackage.
-///
-/// # Errors
-/// Malformed, if it is damaged or not of points, lines and polygons; as [`Collector::add`].
 pub(crate) fn enter(geometry: &[u8], lines: &mut Collector, position: &dyn Fn() -> String) -> Result<()> {
     let mut rest = Bytes { rest: geometry, is_little: true };
     if rest.take(2)? != b"GP" {

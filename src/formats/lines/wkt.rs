@@ -18,9 +18,6 @@ pub(crate) fn is_wkt(head: &[u8]) -> bool {
 }
 
 /// Reads polygons.
-///
-/// # Errors
-/// If reading fails; malformed, as [`crate::source::read_mask`].
 pub(crate) fn read(head: Vec<u8>, input: impl Read) -> Result<Breaklines> {
     let text = read_rest(input, head, "simplify the polygons")?;
     let mut lines = Collector::default();

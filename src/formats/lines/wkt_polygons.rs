@@ -7,9 +7,6 @@ use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::points::Point2;
 
 /// The polygons of a text: any number of `POLYGON` and `MULTIPOLYGON`, each with an optional `SRID=N;` before it.
-///
-/// # Errors
-/// Malformed, with the line, if there is anything else; as [`closed`].
 pub(crate) fn polygons(text: &[u8]) -> Result<Vec<Polygon>> {
     let mut text = Text { rest: text, line: 1 };
     let mut polygons = Vec::new();

@@ -35,7 +35,6 @@ pub(crate) struct Operator {
 
 impl Assemblies {
     /// The names of all assemblies, in the order in which they appear.
-    #[must_use]
     pub fn names(&self) -> Vec<&str> {
         let mut seen = HashSet::new();
         let names = self.generators.iter().map(|generator| &*generator.assembly);
@@ -44,9 +43,6 @@ impl Assemblies {
 
     /// The parts of an assembly: subchains, and the motions of their copies. There are none if the file does
     /// not state the assembly.
-    ///
-    /// # Errors
-    /// Malformed, if its operators are, or if they are too many.
     pub(crate) fn parts(&self, assembly: &str) -> Result<Vec<(&[Name], Vec<Motion>)>> {
         let operators: HashMap<&str, Option<Motion>, FixedState> =
             self.operators.iter().map(|operator| (&*operator.name, operator.motion)).collect();

@@ -103,8 +103,6 @@ impl Structure {
         Error::malformed(format!("the assembly has more than {limit}, the maximum")).of_input(&self.name)
     }
 
-    /// # Errors
-    /// Malformed, if the copies have too many atoms.
     fn check_count(&self, all: &[Copies]) -> Result<()> {
         let mut counts: Map<Name, usize> = Map::default();
         for atom in self.models.iter().flat_map(|model| &model.atoms) {

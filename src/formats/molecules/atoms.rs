@@ -71,9 +71,6 @@ fn radius() -> Attribute {
 }
 
 /// The radii as bytes.
-///
-/// # Errors
-/// If an atom has none, or points have no names.
 fn radii_of(selected: &Selected<'_>, radii: &Radii) -> Result<Vec<u8>> {
     let Some(mut atoms) = radii.of_atoms(selected) else {
         return Err(Error::usage("points have no elements, and so no radii"));

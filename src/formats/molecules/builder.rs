@@ -128,9 +128,6 @@ impl StructureBuilder {
     }
 
     /// Adds an atom to the model.
-    ///
-    /// # Errors
-    /// If there are more than 2^32 residues.
     pub(crate) fn push(&mut self, record: &Record) -> Result<()> {
         if self.models.is_empty() {
             self.start_model(1);
@@ -185,9 +182,6 @@ impl StructureBuilder {
     }
 
     /// The finished structure. Messages call it `name`.
-    ///
-    /// # Errors
-    /// If it has no atom.
     pub(crate) fn finish(mut self, name: &str) -> Result<Structure> {
         self.models.retain(|model| !model.points.is_empty());
         if self.models.is_empty() {
@@ -213,9 +207,6 @@ impl StructureBuilder {
 }
 
 /// A name from a file, if it is printable text without line ends and tabs.
-///
-/// # Errors
-/// If the text is not printable; `what` names the expected text.
 pub(crate) fn printable<'a>(bytes: &'a [u8], what: &str) -> Result<&'a str> {
     let is_printable = bytes.iter().all(|&byte| byte >= b' ' && byte != 0x7f);
     let text = if is_printable { std::str::from_utf8(bytes).ok() } else { None };

@@ -76,9 +76,6 @@ impl<R: Read> Tokens<R> {
     }
 
     /// Reads the next token.
-    ///
-    /// # Errors
-    /// If a quoted value or text field does not end, or a reserved word occurs.
     pub(crate) fn advance(&mut self) -> Result<Token> {
         self.token = self.read().map_err(|e| self.locate(e))?;
         Ok(self.token)

@@ -10,7 +10,6 @@ const SHOWN: usize = 20;
 impl Structure {
     /// A sentence, if the selection names a location that no atom of its models and chains has; atoms with
     /// alternate locations are then in none of them.
-    #[must_use]
     pub fn missing_location(&self, selection: &Selection) -> Option<String> {
         let Altlocs::Named(wanted) = &selection.altlocs else { return None };
         let there = self.locations(selection);

@@ -22,9 +22,6 @@ pub(crate) fn is_mesh(head: &[u8]) -> bool {
 }
 
 /// Reads the vertices of a mesh that starts with `head`. Messages call it `name`.
-///
-/// # Errors
-/// If the mesh is malformed or has no vertices.
 pub(crate) fn read(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Structure> {
     let is_binary = matches!(detect::detect(head), Ok(Format::Stream));
     let mut source: Box<dyn EventSource> = if is_binary {

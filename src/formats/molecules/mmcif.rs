@@ -61,9 +61,6 @@ const ITEMS: [(Item, &str); 19] = [
 const CATEGORY: &[u8] = b"_atom_site.";
 
 /// Reads the atoms of the first data block that has any.
-///
-/// # Errors
-/// If the syntax is broken, an atom has no coordinates, or no block has atoms; line and column are named.
 pub(crate) fn read<R: Read>(lines: Lines<R>, builder: &mut StructureBuilder) -> Result<()> {
     let tokens = Tokens::new(lines)?;
     let (row, tables) = (Row::default(), Tables::default());

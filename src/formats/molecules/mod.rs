@@ -155,9 +155,6 @@ fn check(format: Format, head: &[u8]) -> Result<Format> {
 }
 
 /// The format of an input that starts with `head`.
-///
-/// # Errors
-/// If the input is empty but for white space, or its format is not supported.
 fn recognized(head: &[u8]) -> Result<Format> {
     if head.trim_ascii().is_empty() {
         return Err(Error::malformed("empty: found no atom and no point"));

@@ -30,7 +30,6 @@ pub struct Structure {
 impl Structure {
     /// Whether an atom is a hydrogen or deuterium: by the element or, if it is not stated, by the name without
     /// leading digits. An atom with the name of its residue is an ion.
-    #[must_use]
     pub fn is_hydrogen(&self, atom: &Atom) -> bool {
         match self.names.text(atom.element) {
             "" => {
@@ -110,49 +109,41 @@ pub struct AtomView<'s> {
 
 impl<'s> AtomView<'s> {
     /// Its residue.
-    #[must_use]
     pub fn residue(&self) -> &'s Residue {
         &self.structure.residues[self.atom.residue as usize]
     }
 
     /// Name of its chain.
-    #[must_use]
     pub fn chain(&self) -> &'s str {
         self.structure.names.text(self.residue().chain)
     }
 
     /// Name of its residue.
-    #[must_use]
     pub fn residue_name(&self) -> &'s str {
         self.structure.names.text(self.residue().name)
     }
 
     /// Number of its residue.
-    #[must_use]
     pub fn residue_number(&self) -> Option<i32> {
         self.residue().number
     }
 
     /// Insertion code of its residue.
-    #[must_use]
     pub fn insertion_code(&self) -> &'s str {
         self.structure.names.text(self.residue().insertion_code)
     }
 
     /// Its name.
-    #[must_use]
     pub fn name(&self) -> &'s str {
         self.structure.names.text(self.atom.name)
     }
 
     /// Its element.
-    #[must_use]
     pub fn element(&self) -> &'s str {
         self.structure.names.text(self.atom.element)
     }
 
     /// Its alternate location.
-    #[must_use]
     pub fn altloc(&self) -> &'s str {
         self.structure.names.text(self.atom.altloc)
     }

@@ -13,7 +13,6 @@ impl Name {
     pub const EMPTY: Name = Name(0);
 
     /// Whether the text is empty: not stated by the input.
-    #[must_use]
     pub fn is_empty(self) -> bool {
         self == Name::EMPTY
     }
@@ -56,7 +55,6 @@ impl Names {
     }
 
     /// The name of `text`, if the table has it.
-    #[must_use]
     pub fn find(&self, text: &str) -> Option<Name> {
         match short(text) {
             Some(number) => self.by_number.get(&number).copied(),
@@ -65,7 +63,6 @@ impl Names {
     }
 
     /// The text of a name of this table.
-    #[must_use]
     pub fn text(&self, name: Name) -> &str {
         &self.texts[name.0 as usize]
     }

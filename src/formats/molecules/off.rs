@@ -9,9 +9,6 @@ use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 
 /// Reads the vertices.
-///
-/// # Errors
-/// If there are fewer vertices than stated, or a line does not start with three numbers; the line is named.
 pub(crate) fn read(lines: &mut Lines<impl Read>) -> Result<Vec<Point>> {
     let vertices = read_count(lines).map_err(|e| lines.locate(e))?;
     let mut points = Vec::new();

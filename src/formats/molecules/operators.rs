@@ -6,9 +6,6 @@ use spmesh_base::limits::ASSEMBLY_COPIES_MAX;
 
 /// The motions that an expression denotes; `find` gives that of an operator by its name. The first factor of
 /// a product is the outer loop, and moves last.
-///
-/// # Errors
-/// Malformed, if it is no such expression or has more than [`ASSEMBLY_COPIES_MAX`] motions; those of `find`.
 pub(crate) fn expand(expression: &str, find: &dyn Fn(&str) -> Result<Motion>) -> Result<Vec<Motion>> {
     let mut product: Option<Vec<Motion>> = None;
     for factor in factors(expression)? {
@@ -68,8 +65,6 @@ fn range(item: &str) -> Option<(u64, u64)> {
     (first <= last).then_some((first, last))
 }
 
-/// # Errors
-/// Malformed, if an assembly has too many operators.
 pub(crate) fn check_count(count: usize) -> Result<()> {
     if count <= ASSEMBLY_COPIES_MAX {
         return Ok(());

@@ -25,9 +25,6 @@ const WIDTH: usize = 8;
 pub(crate) const LINE_LEN: usize = 80;
 
 /// Reads all records.
-///
-/// # Errors
-/// If an atom has no coordinates that can be read with certainty; the line is named.
 pub(crate) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<()> {
     let (serials, remark) = (Serials::default(), Remark350::default());
     let mut reader = PdbReader { builder, serials, remark, is_closed: false, number: 0 };

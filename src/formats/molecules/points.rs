@@ -15,17 +15,11 @@ use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Event};
 
 /// Reads the points of a file that can be read several times.
-///
-/// # Errors
-/// As [`Input::open`], and if there is no point.
 pub(crate) fn read_file(path: &Path) -> Result<Structure> {
     read_input(&Input::open(&[path.to_path_buf()], &options())?)
 }
 
 /// Reads the points of `input`, which is copied to an unlinked temporary file. Messages call it `name`.
-///
-/// # Errors
-/// As [`Input::open`], and if there is no point.
 pub(crate) fn read_copy(input: impl Read, name: &str) -> Result<Structure> {
     read_input(&Input::copied(input, name, &options())?)
 }
@@ -74,9 +68,6 @@ fn numbered(points: &[Point]) -> Option<usize> {
 }
 
 /// Reads the points or vertices of an input of events.
-///
-/// # Errors
-/// If the input is malformed or has no points.
 pub(crate) fn read_events(mut source: Box<dyn EventSource>, name: &str) -> Result<Structure> {
     let coordinates = source.header().coordinates;
     let mut all = Vec::new();
@@ -92,9 +83,6 @@ pub(crate) fn read_events(mut source: Box<dyn EventSource>, name: &str) -> Resul
 }
 
 /// A structure of points without names. Messages call it `name`.
-///
-/// # Errors
-/// If there is no point.
 pub(crate) fn structure(
     points: Vec<Point>,
     coordinates: Coordinates,

@@ -165,7 +165,6 @@ impl Structure {
     }
 
     /// The names of all chains, in the order in which they appear.
-    #[must_use]
     pub fn chains(&self) -> Vec<&str> {
         let mut seen = HashSet::new();
         let chains = self.residues.iter().map(|residue| residue.chain);
@@ -251,20 +250,17 @@ impl<'s> Filter<'s> {
 
 impl<'s> Selected<'s> {
     /// Positions of the atoms, in the stored coordinates of the structure.
-    #[must_use]
     pub fn points(&self) -> &[Point3] {
         &self.points
     }
 
     /// The structure of the atoms.
-    #[must_use]
     pub fn structure(&self) -> &'s Structure {
         self.structure
     }
 
     /// The label of the point at `index`: its atom's serial number or, for points without names, their label
     /// or else the number of the point in the input, counted from 1.
-    #[must_use]
     pub fn label(&self, index: usize) -> u64 {
         let [model, atom] = self.place(index);
         let Model { atoms, labels, .. } = &self.structure.models[model];
@@ -273,7 +269,6 @@ impl<'s> Selected<'s> {
     }
 
     /// The atom at `index`; `None` for points without names.
-    #[must_use]
     pub fn atom(&self, index: usize) -> Option<AtomView<'s>> {
         let [model, atom] = self.place(index);
         let model = &self.structure.models[model];

@@ -9,9 +9,6 @@ use crate::twin::tokens::{expect_no_field, fields, next_field, parse_integer, un
 use spmesh_base::error::{Error, Result};
 
 /// Reads all frames, each as a model. Atoms are numbered from 1 in each frame; their name is their element.
-///
-/// # Errors
-/// If a frame has fewer lines than its count or lines of another form; the line is named.
 pub(crate) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<()> {
     let mut frame = 0;
     while let Some(atoms) = read_count(lines).map_err(|e| lines.locate(e))? {

@@ -19,9 +19,6 @@ pub(crate) struct NpyHeader {
 
 impl NpyHeader {
     /// Reads the header of a file.
-    ///
-    /// # Errors
-    /// Malformed, with the byte.
     pub(crate) fn read(view: &FileView) -> Result<NpyHeader> {
         let read = |start: u64, bytes: &mut [u8]| {
             let end = start + bytes.len() as u64;

@@ -33,9 +33,6 @@ pub(crate) struct NpyArray {
 
 impl NpyArray {
     /// Reads the header of a file, and checks that the file holds the whole array and nothing else.
-    ///
-    /// # Errors
-    /// Malformed, with the byte or the shape.
     pub(crate) fn read(view: &FileView) -> Result<NpyArray> {
         let NpyHeader { dtype, is_by_columns, shape, start } = NpyHeader::read(view)?;
         let (sample, order) = sample_of(&dtype)?;

@@ -47,7 +47,6 @@ impl SparseRows {
     }
 
     /// Number of entries so far.
-    #[must_use]
     pub fn entries(&self) -> u64 {
         self.entries
     }

@@ -13,7 +13,6 @@ const ALIGNMENT: usize = 64;
 pub const NPY_F64: &str = "<f8";
 
 /// The header of an array in C order.
-#[must_use]
 pub fn npy_header(dtype: &str, shape: &[u64]) -> Vec<u8> {
     let numbers: Vec<String> = shape.iter().map(u64::to_string).collect();
     let comma = if shape.len() == 1 { "," } else { "" };

@@ -69,7 +69,6 @@ pub struct ConcaveOutline {
 
 impl ConcaveOutline {
     /// Chains cross edges longer than `length`, in units of the world. `memory` is in bytes.
-    #[must_use]
     pub fn new(
         length: f64,
         coordinates: &Coordinates,
@@ -94,13 +93,11 @@ impl ConcaveOutline {
     }
 
     /// The same outline, whose length another flag states.
-    #[must_use]
     pub fn of_flag(self, flag: &'static str) -> ConcaveOutline {
         ConcaveOutline { flag, ..self }
     }
 
     /// The same outline, which knows the vertices of waiting triangles.
-    #[must_use]
     pub fn with_vertices(self) -> ConcaveOutline {
         ConcaveOutline { vertices: Some(HashSet::new()), ..self }
     }
@@ -143,7 +140,6 @@ impl ConcaveOutline {
     }
 
     /// Whether a vertex belongs to a waiting triangle. False without [`ConcaveOutline::with_vertices`].
-    #[must_use]
     pub fn holds(&self, vertex: u64) -> bool {
         self.vertices.as_ref().is_some_and(|vertices| vertices.contains(&vertex))
     }

@@ -28,7 +28,6 @@ enum Longest {
 
 impl EdgeLimit {
     /// Edges longer than `length` are long; none are if it is `None`. Units: those of the world.
-    #[must_use]
     pub fn new(length: Option<f64>, coordinates: &Coordinates) -> EdgeLimit {
         let Some(length) = length.filter(|length| length.is_finite()) else {
             return EdgeLimit(Longest::Unlimited);
@@ -44,13 +43,11 @@ impl EdgeLimit {
     }
 
     /// Whether there is a limit.
-    #[must_use]
     pub fn is_limited(&self) -> bool {
         !matches!(self.0, Longest::Unlimited)
     }
 
     /// The greatest length of an edge that is not long, in stored units of x; 0 without a limit.
-    #[must_use]
     pub fn stored_length(&self) -> f64 {
         match self.0 {
             Longest::Unlimited => 0.0,
@@ -62,7 +59,6 @@ impl EdgeLimit {
 
     /// Whether an edge is long.
     #[inline]
-    #[must_use]
     pub fn is_long(&self, a: Point2, b: Point2) -> bool {
         match self.0 {
             Longest::Unlimited => false,
@@ -80,14 +76,12 @@ impl EdgeLimit {
 
     /// Which edges of a triangle are long; edge i leads from corner i to the next.
     #[inline]
-    #[must_use]
     pub fn long_edges(&self, [a, b, c]: [Point2; 3]) -> [bool; 3] {
         [self.is_long(a, b), self.is_long(b, c), self.is_long(c, a)]
     }
 
     /// Whether a triangle has a long edge.
     #[inline]
-    #[must_use]
     pub fn is_exceeded(&self, corners: [Point2; 3]) -> bool {
         self.is_limited() && self.long_edges(corners).contains(&true)
     }

@@ -107,17 +107,11 @@ impl PlyHeader {
     }
 
     /// The attributes of vertices.
-    ///
-    /// # Errors
-    /// As [`PlyHeader::attributes_of`].
     pub(crate) fn attributes(&self) -> std::result::Result<Attributes, String> {
         self.attributes_of(Sort::Vertex)
     }
 
     /// The attributes of vertices or of faces. Red, green and blue in this order are one attribute.
-    ///
-    /// # Errors
-    /// A text about the rule that they break: two have one name, or they are too many.
     pub(crate) fn attributes_of(&self, sort: Sort) -> std::result::Result<Attributes, String> {
         let mut attributes: Vec<Attribute> = Vec::new();
         for table in self.tables.iter().filter(|table| table.sort == sort) {

@@ -39,9 +39,6 @@ pub fn open_ply<R: Read + 'static>(
 }
 
 /// Reads the vertices of PLY as points with z, and ignores everything else. Messages call the input `name`.
-///
-/// # Errors
-/// If the header is damaged or states no vertices with x, y and z.
 pub(crate) fn open_vertices<R: Read>(input: R, name: &str) -> Result<VertexPoints<PlyVertices<R>>> {
     Ok(points(Rows::open(input, name)?, 3))
 }

@@ -53,7 +53,6 @@ pub const VIK: ColourMap = ColourMap(&[
 
 impl ColourMap {
     /// The colour at a position from 0 to 1; positions beyond have the colours of the ends.
-    #[must_use]
     pub fn at(&self, part: f64) -> Colour {
         let steps = self.0.len() - 1;
         // NaN has the first colour.
@@ -65,7 +64,6 @@ impl ColourMap {
 }
 
 /// The colour `part` of the way between two colours.
-#[must_use]
 pub fn mix(from: Colour, to: Colour, part: f64) -> Colour {
     [0, 1, 2].map(|channel| {
         let [from, to] = [from, to].map(|colour| f64::from(colour[channel]));
@@ -74,19 +72,16 @@ pub fn mix(from: Colour, to: Colour, part: f64) -> Colour {
 }
 
 /// A colour as SVG writes it.
-#[must_use]
 pub fn hex([r, g, b]: Colour) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// Grey of some brightness, from 0 to 1.
-#[must_use]
 pub fn grey(shade: f64) -> Colour {
     [(255.0 * shade).round() as u8; 3]
 }
 
 /// A colour in light: level ground, of brightness `level`, keeps it; other surfaces darken or brighten it.
-#[must_use]
 pub fn lit(colour: Colour, shade: f64, level: f64) -> Colour {
     /// The part of a colour that remains in the dark.
     const AMBIENT: f64 = 0.45;
@@ -98,7 +93,6 @@ pub fn lit(colour: Colour, shade: f64, level: f64) -> Colour {
 }
 
 /// The brightness of a surface, from 0 to 1.
-#[must_use]
 pub fn shade(light: &Light, gradient: [f64; 2]) -> f64 {
     let shade = light.shade(gradient);
     // A vertical wall, whose gradient overflows.

@@ -127,31 +127,26 @@ impl Grid {
     }
 
     /// The centre of a cell.
-    #[must_use]
     pub fn center(&self, column: u32, row: u32) -> Point2 {
         [self.x_of(column), self.y_of(row)]
     }
 
     /// The abscissa of the centres of a column.
-    #[must_use]
     pub fn x_of(&self, column: u32) -> f64 {
         self.left + (f64::from(column) + 0.5) * self.step
     }
 
     /// The ordinate of the centres of a row.
-    #[must_use]
     pub fn y_of(&self, row: u32) -> f64 {
         self.top - (f64::from(row) + 0.5) * self.step
     }
 
     /// The lower side of the last row.
-    #[must_use]
     pub fn bottom(&self) -> f64 {
         self.top - f64::from(self.rows) * self.step
     }
 
     /// Number of cells.
-    #[must_use]
     pub fn cells(&self) -> u64 {
         u64::from(self.columns) * u64::from(self.rows)
     }

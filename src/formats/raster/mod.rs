@@ -62,7 +62,6 @@ pub enum Samples {
 
 impl Samples {
     /// Values of a cell.
-    #[must_use]
     pub fn bands(self) -> usize {
         if self == Samples::Colours { 4 } else { 1 }
     }

@@ -17,7 +17,6 @@ impl NoData {
     /// near that programs take it for that number (GDAL: a relative difference below `4.0 * f32::EPSILON`),
     /// is moved away from it.
     #[inline]
-    #[must_use]
     pub fn stored(self, value: f32) -> f32 {
         if value.is_nan() {
             self.0
@@ -37,7 +36,6 @@ impl NoData {
 
     /// The value of a stored number; NaN if the number means no data.
     #[inline]
-    #[must_use]
     pub fn known(self, stored: f32) -> f32 {
         if stored == self.0 { f32::NAN } else { stored }
     }

@@ -14,7 +14,6 @@ pub struct Reference {
 
 impl Reference {
     /// What a file of `format` says of `system`; of its vertical part, if cells hold elevations.
-    #[must_use]
     pub fn of(system: &System, are_elevations: bool, format: RasterFormat) -> Reference {
         let (keys, notices) = match (format, system.name()) {
             (RasterFormat::GeoTiff, _) => geotiff_keys(system, are_elevations),
@@ -28,7 +27,6 @@ impl Reference {
     }
 
     /// As [`Reference::of`], of a system in a stream.
-    #[must_use]
     pub fn of_crs(crs: &Crs, are_elevations: bool, format: RasterFormat) -> Reference {
         Reference::of(&System::of(crs), are_elevations, format)
     }

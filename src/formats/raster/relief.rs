@@ -1,14 +1,12 @@
 //! What the gradient of a surface says at a point: how steep it is, which way it faces, how bright it looks.
 
 /// The angle with the horizontal, in degrees.
-#[must_use]
 pub fn slope([p, q]: [f64; 2]) -> f64 {
     p.hypot(q).atan().to_degrees()
 }
 
 /// The direction of steepest descent, in degrees clockwise from north, from 0 to below 360; NaN where the
 /// surface is level.
-#[must_use]
 pub fn aspect([p, q]: [f64; 2]) -> f64 {
     if p == 0.0 && q == 0.0 {
         return f64::NAN;
@@ -19,7 +17,6 @@ pub fn aspect([p, q]: [f64; 2]) -> f64 {
 }
 
 /// [`aspect()`], rounded as `gdaldem` does it: to f32, before and after the change to clockwise angles.
-#[must_use]
 pub fn rounded_aspect([p, q]: [f64; 2]) -> f32 {
     if p == 0.0 && q == 0.0 {
         return f32::NAN;
@@ -38,7 +35,6 @@ pub struct Light {
 
 impl Light {
     /// Light from an azimuth (clockwise from north) and an altitude above the horizon, both in degrees.
-    #[must_use]
     pub fn from(azimuth: f64, altitude: f64) -> Light {
         let (azimuth, altitude) = (azimuth.to_radians(), altitude.to_radians());
         let along = altitude.cos();
@@ -47,7 +43,6 @@ impl Light {
 
     /// Brightness of a matt (Lambertian) surface: from 0, where it faces away from the light, to 1, where
     /// it faces the light.
-    #[must_use]
     pub fn shade(&self, [p, q]: [f64; 2]) -> f64 {
         let [east, north, up] = self.towards;
         let cosine = (up - p * east - q * north) / p.hypot(q).hypot(1.0);
@@ -68,7 +63,6 @@ pub enum Shading {
 
 impl Shading {
     /// Brightness of a surface, from 0 to 1.
-    #[must_use]
     pub fn shade(&self, [p, q]: [f64; 2]) -> f64 {
         let altitude = match self {
             Shading::One(light) => return light.shade([p, q]),
@@ -88,7 +82,6 @@ impl Shading {
     }
 
     /// Brightness as a byte: from 1 to 255, since 0 stands for no data.
-    #[must_use]
     pub fn byte(&self, gradient: [f64; 2]) -> u8 {
         let shade = self.shade(gradient);
         // A vertical wall, whose gradient overflows.
@@ -117,7 +110,6 @@ pub struct Gradient {
 
 impl Gradient {
     /// Gradients from cells with sides of `step`, in the unit of the values.
-    #[must_use]
     pub fn new(differences: Differences, step: f64) -> Gradient {
         let steps = match differences {
             Differences::Horn => 8.0,
@@ -129,7 +121,6 @@ impl Gradient {
     /// The gradient as [`Gradient::at`] has it, but with the order of sums that `gdaldem` has for light from one
     /// direction: opposite cells first.
     #[inline]
-    #[must_use]
     pub fn of_pairs(&self, cells: &[f32; 9]) -> [f64; 2] {
         let [a, b, c, d, _, f, g, h, i] = cells;
         if self.differences == Differences::ZevenbergenThorne {
@@ -143,7 +134,6 @@ impl Gradient {
     /// The gradient to the east and to the north of a cell in the middle of three rows, the northern one first.
     /// Sums are those of `gdaldem`: in f32, from left to right.
     #[inline]
-    #[must_use]
     pub fn at(&self, [a, b, c, d, _, f, g, h, i]: &[f32; 9]) -> [f64; 2] {
         let (east, north) = match self.differences {
             Differences::Horn => {

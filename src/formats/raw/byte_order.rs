@@ -50,9 +50,6 @@ impl ByteOrder {
 
 /// Parses the start of a file in the byte order with the higher `plausibility`; if they are equal, in the
 /// order that the second byte states.
-///
-/// # Errors
-/// The error of the stated order, if the start cannot be parsed in either.
 pub(crate) fn parse_in_either<H>(
     head: &[u8],
     parse: impl Fn(ByteOrder) -> Result<H>,

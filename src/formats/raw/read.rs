@@ -15,9 +15,6 @@ pub(crate) fn is_compressed(path: &Path) -> bool {
 }
 
 /// The whole file as an array; without the last bytes if it ends within a point and is to be salvaged.
-///
-/// # Errors
-/// If the file is empty or ends within a point.
 pub(crate) fn open(view: &FileView, kind: RawType, is_salvaged: bool) -> Result<(PointArray, Option<Cut>)> {
     let point_len = 3 * kind.sample.len() as u64;
     let (len, points) = (view.len(), view.len() / point_len);

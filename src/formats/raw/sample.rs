@@ -117,9 +117,6 @@ impl SampleType {
     }
 
     /// Appends the number that `text` denotes, as an attribute stores it. Any NaN becomes the usual one.
-    ///
-    /// # Errors
-    /// If `text` is not a number of this type.
     pub(crate) fn parse_stored(self, text: &[u8], stored: &mut Vec<u8>) -> Result<()> {
         let number = self.number_type();
         let words = std::str::from_utf8(text).unwrap_or_default();
@@ -135,9 +132,6 @@ impl SampleType {
     }
 
     /// The number that `text` denotes.
-    ///
-    /// # Errors
-    /// If `text` is not a number of this type.
     pub(crate) fn parse(self, text: &[u8]) -> Result<f64> {
         let text = std::str::from_utf8(text).unwrap_or("");
         let integer = |least: i128, most: i128| {

@@ -55,9 +55,6 @@ impl Surveyed {
     }
 
     /// Takes an event; a patch comes back with its coordinates.
-    ///
-    /// # Errors
-    /// Malformed, if a patch uses a vertex that is final.
     pub(crate) fn event<'a>(&mut self, event: &'a Event) -> Result<Option<SurveyedPatch<'a>>> {
         match event {
             Event::Segments(segments) => self.lines.extend(segments.iter().map(|segment| segment.line)),

@@ -77,7 +77,6 @@ impl<S: EventSink> HullSink<S> {
 }
 
 /// The header of the surface of the mesh that `header` describes.
-#[must_use]
 pub fn surface_header(header: &Header) -> Header {
     Header { crs: header.crs.clone(), ..Header::new(Kind::TriangleMesh, header.coordinates, 2, true) }
 }

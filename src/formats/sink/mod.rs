@@ -39,9 +39,6 @@ use spmesh_stream::{Coordinates, Crs, Event, Header, Kind};
 pub trait EventSink {
     /// Writes an event. `rows` are the attributes of its points; empty if the header lists none. The last
     /// event is [`Event::End`]; after it the output is complete and flushed.
-    ///
-    /// # Errors
-    /// If the format cannot express the event, or writing fails.
     fn event(&mut self, event: &Event, rows: &[u8]) -> Result<()>;
 
     /// Notices for the user about what the format could not hold. Complete after the end.

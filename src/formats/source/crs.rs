@@ -66,9 +66,6 @@ fn preferred([(first, crs), (second, other)]: [(&str, Crs); 2], notices: &mut Ve
 
 /// The system that all `files`, given as (name, system), share: the first that states most. A file that
 /// states none, or none of heights, takes that of the others.
-///
-/// # Errors
-/// Usage, if two systems do not mean the same.
 pub(crate) fn common<'s>(
     files: impl Iterator<Item = (&'s str, &'s Crs)>,
     notices: &mut Vec<String>,

@@ -19,9 +19,6 @@ pub(crate) struct File<'a> {
 }
 
 /// What all files have in common, and how the rows of each are made.
-///
-/// # Errors
-/// Usage, if the files do not go together.
 pub(crate) fn describe(
     files: &[File],
     options: &SourceOptions,

@@ -11,9 +11,6 @@ pub trait EventSource {
     fn header(&self) -> &Header;
 
     /// The next event; the last one is [`Event::End`], which comes only after a complete input, then `None`.
-    ///
-    /// # Errors
-    /// If the input cannot be read, is truncated or malformed; input and position are named.
     fn next_event(&mut self) -> Result<Option<Event>>;
 
     /// The attributes of the points of the last event, row by row, as [`StreamReader::rows`]; empty if the

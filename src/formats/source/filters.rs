@@ -64,13 +64,11 @@ pub struct Interval {
 
 impl Interval {
     /// The numbers from `min` to `max`; `None` if these are none.
-    #[must_use]
     pub fn new(min: f64, max: f64) -> Option<Interval> {
         (min <= max).then_some(Interval { min, max })
     }
 
     /// Whether the interval contains `value`.
-    #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         self.min <= value && value <= self.max
     }
@@ -150,7 +148,6 @@ impl DropReason {
     ];
 
     /// Name in reports and in JSON.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             DropReason::Withheld => "withheld",
@@ -175,13 +172,11 @@ pub struct Dropped([u64; DropReason::ALL.len()]);
 
 impl Dropped {
     /// The number of points dropped for this reason.
-    #[must_use]
     pub fn of(&self, reason: DropReason) -> u64 {
         self.0[reason as usize]
     }
 
     /// The number of points dropped for any reason.
-    #[must_use]
     pub fn total(&self) -> u64 {
         self.0.iter().sum()
     }

@@ -24,9 +24,6 @@ pub(crate) struct Member {
 
 /// Coordinates that all members can be converted to without rounding; world coordinates if one has no grid,
 /// or if the scales of its axes have no common measure.
-///
-/// # Errors
-/// [`spmesh_base::error::ErrorKind::Usage`] if each member has a grid, but together they have none.
 pub(crate) fn common(members: &[Member], dims: u8) -> Result<Coordinates> {
     if members.is_empty() || members.iter().any(|member| one_quantum(&member.coordinates, dims).is_none()) {
         return Ok(Coordinates::F64);

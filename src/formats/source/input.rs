@@ -120,37 +120,31 @@ impl Input {
     }
 
     /// What is known before the points are read.
-    #[must_use]
     pub fn description(&self) -> &Description {
         &self.description
     }
 
     /// Notices for the user: spools, and oddities in the files.
-    #[must_use]
     pub fn notices(&self) -> &[String] {
         &self.notices
     }
 
     /// How many points the filters dropped; none before the end of the first pass.
-    #[must_use]
     pub fn dropped(&self) -> Dropped {
         self.passed.get().map_or_else(Dropped::default, |passed| passed.dropped)
     }
 
     /// After a pass: the points of each file in the window of the options, with those that were dropped.
-    #[must_use]
     pub fn counts(&self) -> &[u64] {
         self.passed.get().map_or(&[], |passed| &passed.counts)
     }
 
     /// After a pass: for each file that was cut off, what is left of it.
-    #[must_use]
     pub fn salvaged(&self) -> Vec<String> {
         self.sources.iter().filter_map(|source| Some(source.cut.get()?.describe(&source.name))).collect()
     }
 
     /// After a pass: a notice if withheld points were dropped.
-    #[must_use]
     pub fn withheld_notice(&self) -> Option<String> {
         let count = self.dropped().of(DropReason::Withheld);
         let points = if count == 1 { "point" } else { "points" };
@@ -163,7 +157,6 @@ impl Input {
     }
 
     /// After a pass: a notice if points with a coordinate that is not finite were dropped.
-    #[must_use]
     pub fn invalid_notice(&self) -> Option<String> {
         let count = self.passed.get().map_or(0, |passed| passed.invalid);
         let points = if count == 1 { "point" } else { "points" };
@@ -173,7 +166,6 @@ impl Input {
 
     /// Whether decoding a file costs more than writing its points to disk and reading them back: compressed
     /// files and text.
-    #[must_use]
     pub fn is_costly(&self) -> bool {
         self.sources.iter().any(|source| {
             source.is_compressed
@@ -187,7 +179,6 @@ impl Input {
     }
 
     /// Name of the whole input in messages: the first file, and the number of other files.
-    #[must_use]
     pub fn name(&self) -> String {
         let first = &self.sources[0].name;
         match self.sources.len() - 1 {
@@ -405,9 +396,6 @@ impl Content {
 }
 
 /// What the header of a file states.
-///
-/// # Errors
-/// As [`Input::open`].
 pub(crate) fn stated_of(path: &Path, options: &SourceOptions, notices: &mut Vec<String>) -> Result<Stated> {
     Source::open(path, options, notices).map(|source| source.stated)
 }

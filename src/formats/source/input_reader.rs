@@ -48,9 +48,6 @@ pub(crate) struct InputReader {
 
 impl InputReader {
     /// Opens the first file. `passed` gets the counts at the end.
-    ///
-    /// # Errors
-    /// If the file cannot be opened.
     pub(crate) fn new(
         sources: Arc<[Source]>,
         plans: Arc<[RowPlan]>,

@@ -59,7 +59,6 @@ pub struct Manifest {
 
 impl Manifest {
     /// A manifest of these parts.
-    #[must_use]
     pub fn new(plan: &str, parts: Vec<ManifestPart>) -> Manifest {
         let (format, plan) = (FORMAT.to_string(), plan.to_string());
         Manifest { format, version: VERSION, plan, bounds: None, points: 0, merged: 0, parts }
@@ -103,7 +102,6 @@ impl Manifest {
 }
 
 /// Whether a file starts as a manifest does. Pipes do not.
-#[must_use]
 pub fn is_manifest(file: &File) -> bool {
     let mut head = [0; 256];
     let Ok(len) = file.read_at(&mut head, 0) else { return false };

@@ -72,9 +72,6 @@ pub fn open_file(path: &Path) -> Result<(File, FileType)> {
 }
 
 /// The type of an open file.
-///
-/// # Errors
-/// Usage, if it is a folder, or a device that may never end, such as /dev/zero.
 fn check_type(file: &File) -> Result<FileType> {
     let metadata = file.metadata().map_err(|e| Error::io("opening", e))?;
     let kind = metadata.file_type();

@@ -177,9 +177,6 @@ impl PatchBuilder {
     }
 
     /// Ends the input: all live vertices are final.
-    ///
-    /// # Errors
-    /// If a triangle still waits for a vertex.
     pub(crate) fn end(&mut self) -> Result<()> {
         if let Some(id) = self.awaited.keys().min() {
             let vertices = self.vertices();

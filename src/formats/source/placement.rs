@@ -173,7 +173,6 @@ pub enum Alignment {
 
 impl Alignment {
     /// The alignment of points in `from` with `to`.
-    #[must_use]
     pub fn between(from: &Coordinates, to: &Coordinates) -> Alignment {
         match whole_steps(from, to) {
             Some((factor, shift)) => Alignment::Whole { factor, shift },
@@ -183,7 +182,6 @@ impl Alignment {
 
     /// A stored point in the other encoding.
     #[inline]
-    #[must_use]
     pub fn place(&self, stored: Point) -> Point {
         match self {
             Alignment::Whole { factor, shift } => {

@@ -50,9 +50,6 @@ pub(crate) type Numbers = Box<dyn BufRead + Send>;
 
 impl PointArray {
     /// Length in bytes of the binary numbers of `points` points.
-    ///
-    /// # Errors
-    /// If the length is beyond that of any file.
     pub(crate) fn len_of(points: u64, components: u8, sample: SampleType) -> Result<u64> {
         let too_many = || Error::malformed(format!("{points} points are stated: no file holds as many"));
         // The limit serves text too: a number of text takes at least two bytes, with its separator.

@@ -28,9 +28,6 @@ pub struct Description {
 pub trait PointReader: Send {
     /// Replaces the content of `batch` with the next points, in stored coordinates of the description;
     /// an empty batch after the call means the end of the input.
-    ///
-    /// # Errors
-    /// If the input cannot be read, is malformed, or has an invalid point (file and record are named).
     fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()>;
 
     /// The rows of the points of the last batch; empty if points carry no attributes.

@@ -5,9 +5,6 @@ use spmesh_base::error::Result;
 /// Supplies point records in their uncompressed form.
 pub(crate) trait RecordReader: Send {
     /// Replaces the content of `records` with the next whole records; leaves it empty at the end.
-    ///
-    /// # Errors
-    /// If reading fails, or compressed records are damaged; the byte is named.
     fn next_records(&mut self, records: &mut Vec<u8>) -> Result<()>;
 
     /// Number in the file of the first of the last records. They are consecutive, but the next ones need not

@@ -71,7 +71,6 @@ pub enum AttributeChoice {
 
 impl AttributeChoice {
     /// The choice that a list on the command line stands for: nothing, `all`, or names.
-    #[must_use]
     pub fn of_names(names: &[String]) -> Self {
         match names {
             [] => AttributeChoice::None,
@@ -83,9 +82,6 @@ impl AttributeChoice {
 
 /// The attributes that the points of all files have, and a plan for each file. A notice names what `All` leaves
 /// out.
-///
-/// # Errors
-/// Usage, if a file lacks an attribute that is named, or states another type, scale or unit for it.
 pub(crate) fn choose(
     choice: &AttributeChoice,
     files: &[(&str, &[Offer])],

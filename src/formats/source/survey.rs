@@ -75,9 +75,6 @@ impl Survey {
 
 /// What the headers of all files state. Files are opened on several threads, because most of the time goes into
 /// waiting for a file system.
-///
-/// # Errors
-/// That of the first bad file; it names the others.
 fn read_headers(
     paths: &[PathBuf],
     options: &SourceOptions,

@@ -11,9 +11,6 @@ pub(crate) const BATCH_POINTS: usize = 1 << 12;
 /// Reads vertices one after the other.
 pub(crate) trait Vertices {
     /// The next vertex; everything before it is skipped.
-    ///
-    /// # Errors
-    /// If reading fails or the file is malformed.
     fn next_vertex(&mut self) -> Result<Option<Point>>;
 
     /// The row of the vertex before; empty if the header lists no attributes.

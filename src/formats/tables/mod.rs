@@ -36,7 +36,6 @@ impl TableFormat {
 
     /// The format that the ending of a name stands for; `None` if it stands for no table, or `path` is a
     /// device, such as /dev/fd/3.parquet.
-    #[must_use]
     pub fn of(path: &Path) -> Option<TableFormat> {
         let ending = path.extension().filter(|_| !is_device(path))?.to_str()?.to_ascii_lowercase();
         Some(match &ending[..] {
@@ -48,7 +47,6 @@ impl TableFormat {
     }
 
     /// The usual ending of names, which is also the name of the format.
-    #[must_use]
     pub fn ending(self) -> &'static str {
         match self {
             TableFormat::Tsv => "tsv",
@@ -96,7 +94,6 @@ pub(crate) enum Rows {
 
 impl TableSink {
     /// A table without rows.
-    #[must_use]
     pub fn create(format: TableFormat, columns: Vec<Column>, output: Output) -> TableSink {
         let rows = match format {
             TableFormat::Tsv => Rows::Text(TextRows::tsv(&columns)),

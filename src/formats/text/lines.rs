@@ -51,9 +51,6 @@ impl<R: Read> Lines<R> {
 
     /// The next line without its line end (LF or CR LF) and without a byte order mark; `None` at the end of
     /// the input.
-    ///
-    /// # Errors
-    /// If reading fails, or the line is too long.
     pub(crate) fn next_line(&mut self) -> Result<Option<&[u8]>> {
         self.line.clear();
         self.number += 1;
@@ -90,9 +87,6 @@ impl<R: Read> Lines<R> {
     }
 
     /// As `next_line`, for texts that people write: strips white space around the line.
-    ///
-    /// # Errors
-    /// As `next_line`; if the line contains a zero byte or a carriage return.
     pub(crate) fn next_trimmed(&mut self) -> Result<Option<&[u8]>> {
         if self.next_line()?.is_none() {
             return Ok(None);

@@ -44,9 +44,6 @@ impl<R: BufRead> NumberReader<R> {
     }
 
     /// Appends the next `most` numbers to `numbers`, fewer only at the end. False if none are left.
-    ///
-    /// # Errors
-    /// If reading fails, the input ends before the stated number of numbers, or a number is not of the type.
     pub(crate) fn read(&mut self, most: u64, numbers: &mut Vec<f64>) -> Result<bool> {
         let wanted = most.min(self.total - self.done);
         match self.writing {
@@ -57,9 +54,6 @@ impl<R: BufRead> NumberReader<R> {
     }
 
     /// Appends the next `wanted` numbers as they are stored, little-endian.
-    ///
-    /// # Errors
-    /// As [`NumberReader::read`], and if fewer are left.
     pub(crate) fn read_stored(&mut self, wanted: u64, stored: &mut Vec<u8>) -> Result<()> {
         if wanted > self.total - self.done {
             return Err(self.truncated());
@@ -110,9 +104,6 @@ impl<R: BufRead> NumberReader<R> {
     }
 
     /// Whether the input goes on after the numbers. White space does not count in text.
-    ///
-    /// # Errors
-    /// If reading fails.
     pub(crate) fn goes_on(&mut self) -> Result<bool> {
         Ok(match self.writing {
             Writing::Binary(_) => !fill(&mut self.input)?.is_empty(),
@@ -124,9 +115,6 @@ impl<R: BufRead> NumberReader<R> {
     }
 
     /// Checks that the input ends after the numbers.
-    ///
-    /// # Errors
-    /// If it goes on, or reading fails.
     pub(crate) fn expect_end(&mut self) -> Result<()> {
         if self.goes_on()? {
             let message = format!("there is more behind the {} numbers that are stated", self.total);
@@ -146,9 +134,6 @@ pub(crate) fn truncated(found: u64, expected: u64) -> Error {
 }
 
 /// The next bytes of the buffer; empty at the end.
-///
-/// # Errors
-/// If reading fails.
 pub(crate) fn fill(input: &mut impl BufRead) -> Result<&[u8]> {
     // Interrupted reads are retried here, because a loop cannot return the slice that it borrows from
     // `fill_buf`.
@@ -161,9 +146,6 @@ pub(crate) fn fill(input: &mut impl BufRead) -> Result<&[u8]> {
 }
 
 /// Replaces `number` by the next field between white space and commas; empty at the end.
-///
-/// # Errors
-/// If reading fails, or the field is longer than any number.
 pub(crate) fn next_number(input: &mut impl BufRead, number: &mut Vec<u8>) -> Result<()> {
     number.clear();
     skip_separators(input)?;

@@ -28,9 +28,6 @@ impl TextOptions {
     }
 
     /// Reads the lines before the text proper.
-    ///
-    /// # Errors
-    /// If reading fails.
     pub(crate) fn skip(&self, lines: &mut Lines<impl Read>) -> Result<()> {
         for _ in 0..self.skip_lines {
             if lines.next_line()?.is_none() {

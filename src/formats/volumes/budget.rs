@@ -37,9 +37,6 @@ impl Budget {
     }
 
     /// Refuses more points than the budget has.
-    ///
-    /// # Errors
-    /// Usage, if there are more than are ever read; memory, if the diagram does not fit.
     pub(crate) fn check(&self, points: u64) -> Result<()> {
         if points <= self.most {
             return Ok(());

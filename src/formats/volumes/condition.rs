@@ -42,13 +42,11 @@ enum Relation {
 
 impl Condition {
     /// Whether a point with this value fulfils the condition. Comparisons with NaN are false.
-    #[must_use]
     pub fn holds(&self, point: &Point4, value: f64) -> bool {
         self.rule.holds(point, value)
     }
 
     /// Whether the condition uses values.
-    #[must_use]
     pub fn needs_value(&self) -> bool {
         self.rule.needs_value()
     }

@@ -29,9 +29,6 @@ impl Default for Frame {
 
 impl Lattice {
     /// A grid with `lens` sites along x, y, z and t.
-    ///
-    /// # Errors
-    /// Usage, if a length is 0, or there are more than [`SITES4_MAX`] sites.
     pub(crate) fn new(lens: [u64; 4]) -> Result<Lattice> {
         Lattice::along(lens, [0, 1, 2, 3])
     }
@@ -62,9 +59,6 @@ impl Lattice {
     }
 
     /// Sets the coordinates of the sites. Those that change along the axes of x, y and z become `spatial`.
-    ///
-    /// # Errors
-    /// Usage, if a coordinate overflows to infinity.
     pub(crate) fn place(&mut self, spatial: [usize; 3], frame: Frame) -> Result<()> {
         self.frame = frame;
         self.coordinates = self.coordinates.map(|at| spatial.get(at).copied().unwrap_or(at));

@@ -23,9 +23,6 @@ const HEADER2_LEN: u32 = 540;
 const MAGIC_AT: usize = 344;
 
 /// Reads the header of a volume.
-///
-/// # Errors
-/// If it is not a single file of real numbers in three or four dimensions, or its fields make no sense.
 pub(crate) fn open(origin: Origin, head: &[u8], is_gzip: bool, warnings: &mut Vec<String>) -> Result<Volume> {
     let order = if head[0] == 0 { ByteOrder::Big } else { ByteOrder::Little };
     let header = Header { bytes: head, order };

@@ -11,9 +11,6 @@ use crate::volumes::{nifti, nrrd, stream, text};
 use spmesh_base::error::{Error, Result};
 
 /// Recognizes the format of `origin` and reads its header; `path` is the file's path, if it has one.
-///
-/// # Errors
-/// If the format is not known, or the header is malformed.
 pub(crate) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<String>) -> Result<Supply> {
     let mut plain = origin.plain()?;
     let head = read_head(&mut plain).map_err(|e| Error::io("reading", e))?;

@@ -18,14 +18,12 @@ pub struct Orientation {
 
 impl Orientation {
     /// The place in the world of a place in the grid.
-    #[must_use]
     pub fn to_world(&self, [x, y, z]: Point) -> Point {
         let [a, b, c] = &self.axes;
         [0, 1, 2].map(|i| self.origin[i] + x * a[i] + y * b[i] + z * c[i])
     }
 
     /// The place in the grid of a place in the world (Cramer's rule).
-    #[must_use]
     pub fn to_grid(&self, place: Point) -> Point {
         let [a, b, c] = self.axes;
         let offset = [0, 1, 2].map(|i| place[i] - self.origin[i]);
@@ -34,21 +32,18 @@ impl Orientation {
     }
 
     /// As [`Orientation::to_world`]; the time stays.
-    #[must_use]
     pub fn point_to_world(&self, [x, y, z, t]: Point4) -> Point4 {
         let [x, y, z] = self.to_world([x, y, z]);
         [x, y, z, t]
     }
 
     /// As [`Orientation::to_grid`]; the time stays.
-    #[must_use]
     pub fn point_to_grid(&self, [x, y, z, t]: Point4) -> Point4 {
         let [x, y, z] = self.to_grid([x, y, z]);
         [x, y, z, t]
     }
 
     /// Whether the axes of the grid are left-handed in the world: then signed volumes change their sign.
-    #[must_use]
     pub fn is_mirrored(&self) -> bool {
         determinant(self.axes) < 0.0
     }

@@ -61,9 +61,6 @@ pub fn parse_sizes(text: &str) -> std::result::Result<[u64; 4], String> {
 
 /// The volume in `origin`, decompressed if the file's name ends with .gz: raw numbers may start with any
 /// bytes, even those of gzip.
-///
-/// # Errors
-/// Usage, if the sizes are too large.
 pub(crate) fn open(origin: Origin, path: Option<&Path>, layout: &RawLayout) -> Result<Volume> {
     let is_gzip = path.and_then(Path::extension).is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
     Ok(Volume {

@@ -22,9 +22,6 @@ pub enum Share {
 
 impl Share {
     /// Number of points to choose of `total`.
-    ///
-    /// # Errors
-    /// Usage, if there are fewer points, or more than [`POINTS4_MAX`] would be chosen.
     pub(crate) fn of(self, total: u64) -> Result<u64> {
         let count = match self {
             // The conversion is exact: totals have at most 53 bits.
@@ -55,9 +52,6 @@ impl fmt::Display for Share {
 ///
 /// Cost: O(n log n) for n = `count`, independent of `total` (Floyd; Bentley and Floyd, Communications of the
 /// ACM 1987).
-///
-/// # Errors
-/// [`ErrorKind::Memory`], if there is not enough memory for `count` numbers.
 pub(crate) fn choose(total: u64, count: u64, seed: u64) -> Result<Vec<u64>> {
     let no_memory = |_| Error::new(ErrorKind::Memory, format!("not enough memory to choose {count} points"));
     let mut random = Random::new(seed);

@@ -20,9 +20,6 @@ pub(crate) enum Supply {
 impl Supply {
     /// Passes every point, with its value if there are values, to `visit`. Returns a warning if the input
     /// holds more than the points.
-    ///
-    /// # Errors
-    /// If the input cannot be read or is malformed; or any error of `visit`.
     pub(crate) fn scan(
         &self,
         visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>,
@@ -48,9 +45,6 @@ impl Supply {
 
     /// Gives the sites of a volume their world coordinates, or those along the axes of an oblique grid, and
     /// returns how that lies in the world. Coordinates of texts and streams stay unchanged.
-    ///
-    /// # Errors
-    /// Usage, if the world coordinates are not known, or the source is a grid without a file.
     pub(crate) fn place_in_world(&mut self) -> Result<Option<Orientation>> {
         match self {
             Supply::Grid(_) => {

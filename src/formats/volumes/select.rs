@@ -66,9 +66,6 @@ fn sites(supply: &Supply) -> Option<u64> {
 }
 
 /// The number of points that will be selected, if it is known before any is read or generated.
-///
-/// # Errors
-/// As [`Share::of`].
 fn count_before(supply: &Supply, selection: &Selection) -> Result<Option<u64>> {
     let is_each_wanted = match supply {
         Supply::Volume(volume) => selection.keep_nan || volume.data.sample.is_integer(),
@@ -102,9 +99,6 @@ impl Selector<'_> {
     }
 
     /// The number of wanted points, of which a part will be selected.
-    ///
-    /// # Errors
-    /// As [`Supply::scan`] and [`Budget::check`].
     fn count(&self, supply: &Supply, part: f64) -> Result<u64> {
         let mut wanted = 0;
         supply.scan(&mut |point, value| {

@@ -24,9 +24,6 @@ pub(crate) struct Stream {
 }
 
 /// The points of the stream in `origin`, which starts with `head`. They can be scanned any number of times.
-///
-/// # Errors
-/// If the header is damaged; usage, if the points have fewer dimensions.
 pub(crate) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<Stream> {
     let name = path.map_or("stdin".to_string(), |path| path.display().to_string());
     let is_twin = head.starts_with(TWIN_MAGIC);
@@ -56,9 +53,6 @@ impl Stream {
     }
 
     /// Passes every point to `visit`; reads the stream up to its END.
-    ///
-    /// # Errors
-    /// If the stream is truncated or malformed; or any error of `visit`.
     pub(crate) fn scan(&self, visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>) -> Result<()> {
         let mut source = self.read()?;
         while let Some(event) = source.next_event()? {

@@ -25,9 +25,6 @@ struct Columns {
 }
 
 /// Finds the columns from the first line of points and any names above it.
-///
-/// # Errors
-/// If there is no point, or the columns are not those of points; line and column are named.
 pub(crate) fn open(origin: Origin) -> Result<Text> {
     let mut lines = read(&origin)?;
     let mut names: Option<(u64, Vec<String>)> = None;
@@ -110,9 +107,6 @@ impl Text {
     }
 
     /// Passes the points of all lines to `visit`.
-    ///
-    /// # Errors
-    /// If a line is not a point, or has other columns than the first; line and column are named.
     pub(crate) fn scan(&self, visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>) -> Result<()> {
         let mut lines = read(&self.origin)?;
         while let Some(line) = lines.next_trimmed()? {

@@ -20,9 +20,6 @@ pub(crate) struct Volume {
 
 impl Volume {
     /// Passes every site and its value to `visit`. Returns a warning if the file holds other bytes too.
-    ///
-    /// # Errors
-    /// If the values cannot be read; or any error of `visit`.
     pub(crate) fn scan(
         &self,
         visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>,
@@ -38,9 +35,6 @@ impl Volume {
     }
 
     /// Gives the sites their world coordinates, or those along the axes of an oblique grid.
-    ///
-    /// # Errors
-    /// Usage, if these are not known.
     pub(crate) fn place_in_world(&mut self) -> Result<Option<Orientation>> {
         match &self.world {
             Ok(world) => {

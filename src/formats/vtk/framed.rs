@@ -30,9 +30,6 @@ impl Framed {
     /// The bytes of the numbers, possibly followed by others.
     ///
     /// Memory: buffers, and for LZ4 one block.
-    ///
-    /// # Errors
-    /// If reading fails, or the stated length differs from that of the numbers.
     pub(crate) fn open(&self, view: &FileView) -> Result<Numbers> {
         let mut head = self.bytes(view, 0)?;
         let Some(compressor) = self.compressor else {
@@ -55,9 +52,6 @@ impl Framed {
     }
 
     /// Offset of the numbers, if they are stored unpacked.
-    ///
-    /// # Errors
-    /// If the stated length differs from that of the numbers, or the file ends within them.
     pub(crate) fn plain_start(&self, view: &FileView) -> Result<Option<u64>> {
         if self.is_base64 || self.compressor.is_some() {
             return Ok(None);

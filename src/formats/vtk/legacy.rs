@@ -23,9 +23,6 @@ enum ValueType {
 }
 
 /// Reads the statements up to the points, and returns the place of the points. Ignores everything after them.
-///
-/// # Errors
-/// If the file is damaged or ends within its points; usage, if its type of dataset does not list points.
 pub(crate) fn read(file: &FileView, name: &str) -> Result<PointArray> {
     let mut lines = Lines::new(file.clone(), name);
     let (points, sample, writing) = read_statements(&mut lines).map_err(|e| lines.locate(e))?;

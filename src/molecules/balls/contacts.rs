@@ -44,13 +44,11 @@ impl Contacts {
     }
 
     /// Number of contacts.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.parts.iter().map(Vec::len).sum()
     }
 
     /// Whether there are none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

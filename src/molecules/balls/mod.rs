@@ -113,8 +113,6 @@ pub fn measure(balls: Balls<'_>, contacts_above: Option<f64>, threads: NonZeroUs
 /// Greatest magnitude of coordinates and radii: squares and products of squares stay finite.
 const GREATEST: f64 = 1e60;
 
-/// # Errors
-/// Usage, if a coordinate or radius is too large to be measured.
 fn check(balls: Balls<'_>) -> Result<()> {
     let numbers = balls.centres.iter().flatten().chain(balls.radii);
     match numbers.into_iter().find(|number| number.abs() > GREATEST) {

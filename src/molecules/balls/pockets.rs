@@ -57,7 +57,6 @@ pub struct Mouth {
 
 impl Pocket {
     /// Area of all mouths that no ball covers.
-    #[must_use]
     pub fn mouth_area(&self) -> f64 {
         // The sum of none would be -0.
         self.mouths.iter().map(|mouth| mouth.area).fold(0.0, std::ops::Add::add)

@@ -32,7 +32,6 @@ impl<'m> AlphaComplex<'m> {
     /// The complex of a radius in the unit of the mesh's coordinates.
     ///
     /// Cost: a few sphere equations and one bit of memory per tetrahedron.
-    #[must_use]
     pub fn new(mesh: &'m Tetrahedralization, radius: Radius) -> Self {
         let fits =
             |vertices: &[u32; 4]| tetrahedron_fits(vertices.map(|v| mesh.vertices()[v as usize].at), &radius);
@@ -46,19 +45,16 @@ impl<'m> AlphaComplex<'m> {
 
     /// Whether tetrahedron `t` belongs to the complex.
     #[inline]
-    #[must_use]
     pub fn has_tetrahedron(&self, t: usize) -> bool {
         self.tetrahedra[t / 64] >> (t % 64) & 1 == 1
     }
 
     /// A bit for each tetrahedron: tetrahedron `t` has bit `t % 64` of word `t / 64`.
-    #[must_use]
     pub fn into_bits(self) -> Vec<u64> {
         self.tetrahedra
     }
 
     /// Number of tetrahedra of the complex.
-    #[must_use]
     pub fn tetrahedra(&self) -> u64 {
         self.tetrahedra.iter().map(|bits| u64::from(bits.count_ones())).sum()
     }

@@ -70,9 +70,6 @@ impl Default for Method {
 
 impl Method {
     /// Triangulates, with weights only in exact arithmetic, and records counts and times in `report`.
-    ///
-    /// # Errors
-    /// Those of the kernels; usage, if a build without experiments is asked for floating-point arithmetic.
     pub(super) fn triangulate(
         &self,
         points: Cow<[Point3]>,

@@ -56,13 +56,11 @@ pub enum Product {
 
 impl Product {
     /// Whether the output is a table.
-    #[must_use]
     pub fn is_table(self) -> bool {
         !self.is_per_model()
     }
 
     /// Whether each model has an output of its own.
-    #[must_use]
     pub fn is_per_model(self) -> bool {
         matches!(self, Product::Mesh | Product::Filtration)
     }
@@ -91,7 +89,6 @@ pub struct Options {
 
 impl Options {
     /// Whether each model has an output of its own.
-    #[must_use]
     pub fn is_per_model(&self) -> bool {
         self.product.is_per_model() || self.balls.as_ref().is_some_and(|balls| balls.picture.is_some())
     }
@@ -139,7 +136,6 @@ impl Report {
     }
 
     /// What a user may not expect of the model, in sentences; usually nothing.
-    #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut texts = Vec::new();
         if self.hydrogens > 0 {
@@ -230,7 +226,6 @@ pub struct Times {
 
 impl Times {
     /// All of it.
-    #[must_use]
     pub fn total(&self) -> Duration {
         self.read + self.triangulate + self.write
     }

@@ -24,7 +24,6 @@ pub struct Radius {
 
 impl Radius {
     /// The same radius in steps of `scale`, which stands for the shortest decimal that is rounded to it.
-    #[must_use]
     pub fn in_steps(&self, scale: f64) -> Radius {
         let scale_in_digits: Radius = scale.to_string().parse().expect("a scale is a positive number");
         Radius {

@@ -4,9 +4,6 @@ use spmesh_base::error::{Error, Result};
 use spmesh_formats::molecules::{Altlocs, Atoms, Models, Selected, Selection, Structure};
 
 /// Index of the model to triangulate: the first one by default.
-///
-/// # Errors
-/// Usage, if there is no such model, or if points without names are to be selected by name.
 pub(super) fn model_index(structure: &Structure, selection: &Selection) -> Result<usize> {
     let by_model = Selection { models: selection.models, altlocs: Altlocs::All, ..Selection::default() };
     structure.select(&by_model)?;
@@ -15,9 +12,6 @@ pub(super) fn model_index(structure: &Structure, selection: &Selection) -> Resul
 }
 
 /// The atoms of a selection.
-///
-/// # Errors
-/// Usage, if no atom is selected; the message tells what other flags would select.
 pub(super) fn select<'s>(structure: &'s Structure, selection: &Selection) -> Result<Selected<'s>> {
     let selected = structure.select(selection)?;
     if selected.points().is_empty() { Err(nothing_left(structure, selection)) } else { Ok(selected) }

@@ -121,7 +121,6 @@ pub(super) fn is_in_sphere_of_edge(points: [Point3; 3], radius: &Radius) -> bool
 /// Radius of the circumscribed sphere and volume of a tetrahedron, in the unit of the coordinates.
 ///
 /// Domain: not flat. Accurate to some ten digits, however thin the tetrahedron is.
-#[must_use]
 pub fn measure(points: [Point3; 4]) -> Measure {
     let (n, determinant) = sphere(&points.map(|point| point.map(Approximate::exactly)));
     let n_square = square(&n);

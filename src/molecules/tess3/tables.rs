@@ -37,9 +37,6 @@ impl<'s> ModelTables<'s> {
     /// Writes a row per tetrahedron: its atoms, the radius of the circumscribed sphere, and the volume.
     ///
     /// Memory: 16 bytes per tetrahedron, and the names of the atoms.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn write_tetrahedra(&self, rows: &mut TableSink) -> Result<()> {
         let tetrahedra = self.mesh.tetrahedra().iter().enumerate();
         let kept = tetrahedra.filter(|&(t, _)| self.alpha.is_none_or(|alpha| alpha.has_tetrahedron(t)));
@@ -59,9 +56,6 @@ impl<'s> ModelTables<'s> {
     /// Writes a row per edge: its atoms, their distance, and the number of tetrahedra around it.
     ///
     /// Memory: 12 bytes per edge, and the names of the atoms.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn write_contacts(&self, rows: &mut TableSink) -> Result<()> {
         let mut found: Vec<([u32; 2], u32)> = Vec::new();
         self.mesh.for_each_edge(

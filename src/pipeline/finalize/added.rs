@@ -29,7 +29,6 @@ pub struct AddedPoints {
 
 impl AddedPoints {
     /// Adds points, in stored coordinates of the input, to an input of the plane. No two have one place.
-    #[must_use]
     pub fn new(mut points: Vec<Point>) -> AddedPoints {
         points.sort_unstable_by(by_place);
         // Of other places, one in sixteen or fewer has the hash of one of these.
@@ -59,19 +58,16 @@ impl AddedPoints {
     }
 
     /// Number of points that are added.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
     /// Whether no points are added.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
     /// After a run: how many points of the input were left out.
-    #[must_use]
     pub fn replaced(&self) -> u64 {
         self.replaced.load(Ordering::Relaxed)
     }

@@ -15,9 +15,6 @@ pub(super) struct PointBatch {
 
 impl PointBatch {
     /// Replaces the content by the next points; leaves it empty at the end.
-    ///
-    /// # Errors
-    /// As [`PointReader::next_batch`].
     pub(super) fn read(&mut self, reader: &mut dyn PointReader) -> Result<()> {
         reader.next_batch(&mut self.points)?;
         self.rows.clear();
@@ -27,9 +24,6 @@ impl PointBatch {
 }
 
 /// Appends the record of each point: its encoded coordinates, then its row. `points` is a buffer.
-///
-/// # Errors
-/// As [`encode_points`].
 pub(super) fn encode_records(
     header: &Header,
     batch: &PointBatch,

@@ -45,7 +45,6 @@ impl Budget {
     }
 
     /// Least memory of a process with `threads` threads, in bytes.
-    #[must_use]
     pub fn process_min(threads: usize) -> u64 {
         process_reserve(threads) + ENGINE_MIN
     }
@@ -65,9 +64,6 @@ impl Budget {
     }
 
     /// What is left beside the rows of batches, if points carry rows of `row_len` bytes.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Memory`] if it is too little.
     pub(super) fn beside_rows(self, row_len: usize) -> Result<Budget> {
         let rows = BATCHES_LEN * 2 * row_len as u64;
         Budget::of_engine(self.bytes.saturating_sub(rows)).map_err(|_| {
@@ -82,9 +78,6 @@ impl Budget {
     }
 
     /// What is left beside `bytes` that note which points thinning keeps.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Memory`] if it is too little.
     pub(super) fn beside_winners(self, bytes: u64) -> Result<Budget> {
         Budget::of_engine(self.bytes.saturating_sub(bytes)).map_err(|_| {
             let message = format!("thinning: noting the kept points takes {} MiB", bytes.div_ceil(1 << 20));
@@ -96,7 +89,6 @@ impl Budget {
     }
 
     /// The whole budget, in bytes.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         self.bytes
     }

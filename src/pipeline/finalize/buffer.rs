@@ -70,9 +70,6 @@ impl CellBuffers {
     ///
     /// If it `spills_cold`, cells that have got no points for long go to the file while there is memory left,
     /// too. In files of tiles these are the cells on the borders, which wait for the tile beyond.
-    ///
-    /// # Errors
-    /// [`spmesh_base::error::ErrorKind::Memory`] if the system refuses the memory.
     pub(super) fn new(
         cells: usize,
         record_len: usize,
@@ -106,9 +103,6 @@ impl CellBuffers {
     }
 
     /// Appends whole records to `cell`.
-    ///
-    /// # Errors
-    /// If the temporary file cannot be written.
     pub(super) fn push(&mut self, cell: usize, mut records: &[u8]) -> Result<()> {
         debug_assert!(records.len().is_multiple_of(self.record_len));
         let count = (records.len() / self.record_len) as u64;
@@ -130,9 +124,6 @@ impl CellBuffers {
     }
 
     /// Calls `consume` with the records of `cell`, in pieces of whole records, and empties the cell.
-    ///
-    /// # Errors
-    /// If the temporary file cannot be read, or `consume` fails.
     pub(super) fn drain(&mut self, cell: usize, mut consume: impl FnMut(&[u8]) -> Result<()>) -> Result<()> {
         let state = std::mem::replace(&mut self.cells[cell], Cell::EMPTY);
         let mut drained = 0;
@@ -159,9 +150,6 @@ impl CellBuffers {
     }
 
     /// Appends a page to a cell, after a spill if no page is free.
-    ///
-    /// # Errors
-    /// If the temporary file cannot be written.
     fn add_page(&mut self, cell: usize) -> Result<()> {
         let page = match self.pages.take() {
             Some(page) => page,
@@ -184,9 +172,6 @@ impl CellBuffers {
 
     /// Counts points that come to a cell. From time to time, writes cells to disk that have got none for
     /// long.
-    ///
-    /// # Errors
-    /// If the temporary file cannot be written.
     fn spill_cold(&mut self, cell: usize, count: u64) -> Result<()> {
         let Some(cold_cells) = &mut self.cold_cells else { return Ok(()) };
         cold_cells.push(cell, count);
@@ -203,9 +188,6 @@ impl CellBuffers {
 
     /// Writes the fullest cells to disk until at least half of the pages are free. This makes extents long,
     /// and writes each cell rarely.
-    ///
-    /// # Errors
-    /// If the temporary file cannot be written.
     fn spill_fullest(&mut self) -> Result<()> {
         let pages_min = self.victim_pages_min();
         let fullest = (0..self.cells.len()).filter(|&cell| self.cells[cell].pages >= pages_min);
@@ -214,9 +196,6 @@ impl CellBuffers {
     }
 
     /// Writes cells to disk, and makes sure that they can be read back.
-    ///
-    /// # Errors
-    /// If the temporary file cannot be written.
     fn spill(&mut self, cells: &[usize]) -> Result<()> {
         if cells.is_empty() {
             return Ok(());

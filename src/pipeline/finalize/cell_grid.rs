@@ -23,7 +23,6 @@ pub struct CellGrid {
 impl CellGrid {
     /// The cells of `level`; `None` if the reciprocal of their side is not finite and normal.
     /// [`CellTree::covering`] never makes such a tree.
-    #[must_use]
     pub fn new(tree: &CellTree, level: u8) -> Option<CellGrid> {
         let step = tree.side() / (1u64 << level) as f64;
         let cells_per_unit = 1.0 / step;
@@ -45,7 +44,6 @@ impl CellGrid {
 
     /// The cell that holds `point`. For a point outside of the cube, any code.
     #[inline(always)]
-    #[must_use]
     pub fn cell_of(&self, point: Point) -> CellCode {
         let morton = if self.dims == 2 {
             spread2(self.index(0, point[0])) | spread2(self.index(1, point[1])) << 1
@@ -72,7 +70,6 @@ impl CellGrid {
     /// Row-major index of the cell that holds `point`, below `2^(dims * level)`, which must be less than
     /// 2^32. For a point outside of the cube, any index below that bound.
     #[inline(always)]
-    #[must_use]
     pub fn number_of(&self, point: Point) -> u32 {
         let mut number = self.index(1, point[1]);
         if self.dims == 3 {

@@ -143,9 +143,6 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     }
 
     /// Pass 1: the exact bounding box and the number of points.
-    ///
-    /// # Errors
-    /// Those of the input.
     fn bounding_box(&mut self) -> Result<(Option<Bounds>, u64)> {
         let (mut bounds, mut points) = (None, 0);
         let prepare = |batch: &PointBatch, found: &mut Option<Bounds>| {
@@ -185,9 +182,6 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     }
 
     /// Counts crowded cells again on finer grids, until no cell is crowded or a finer grid does not fit.
-    ///
-    /// # Errors
-    /// Those of the input; [`spmesh_base::error::ErrorKind::Malformed`] if it changes between passes.
     fn refine(&mut self, counts: &mut CellCounts, options: &Options) -> Result<()> {
         while counts.sums.len() < GRIDS_MAX
             && counts.finest().level() < counts.tree.depth()

@@ -64,9 +64,6 @@ impl Counters {
     }
 
     /// Counts points, given by their cells of the deepest level of the tree. Codes of 0 are skipped.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Memory`] if the counters of a fixed level do not fit.
     pub(super) fn add(&mut self, deepest: &[CellCode]) -> Result<()> {
         let mut rest = deepest;
         while let Some((&CellCode(first), later)) = rest.split_first() {
@@ -106,9 +103,6 @@ impl Counters {
     }
 
     /// Makes the grid coarser until it fits.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Memory`] if the level is fixed.
     fn coarsen_to_fit(&mut self) -> Result<()> {
         if self.is_fixed {
             return Err(Error::new(

@@ -52,9 +52,6 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     /// Leaves that are complete within the same [`WINDOW`] of points are written in the order of the tree. If
     /// the points are in random order, nearly all leaves are complete at the very end, and neighbours should
     /// follow each other.
-    ///
-    /// # Errors
-    /// As [`super::run::run`].
     pub(super) fn write_chunked<W: Write>(
         &mut self,
         mut plan: Plan,
@@ -101,9 +98,6 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     }
 
     /// Writes every point as it comes, and the tag of a leaf after its last point.
-    ///
-    /// # Errors
-    /// As [`super::run::run`].
     pub(super) fn write_preserved<W: Write>(
         &mut self,
         mut plan: Plan,
@@ -127,9 +121,6 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     }
 
     /// Copies the points of an input that has no tree.
-    ///
-    /// # Errors
-    /// As [`super::run::run`].
     pub(super) fn write_untagged<W: Write>(&mut self, mut writer: StreamWriter<W>) -> Result<()> {
         let header = writer.header().clone();
         if header.points != Some(0) {
@@ -146,9 +137,6 @@ impl<P: Passes + ?Sized> Work<'_, P> {
 }
 
 /// Checks that all points lie in the box of pass 1.
-///
-/// # Errors
-/// If not: the input has changed.
 fn expect_inside(bounds: &Option<Bounds>, points: &[Point]) -> Result<()> {
     let Some(Bounds { min, max }) = bounds else { return Err(input_changed()) };
     let is_inside = |point: &Point| {

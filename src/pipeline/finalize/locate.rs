@@ -54,9 +54,6 @@ impl Locator {
 
     /// Replaces the content of `found` by the number of the leaf of each point. All points must lie in the
     /// cube.
-    ///
-    /// # Errors
-    /// If a point lies in no leaf: it was not counted, so the input has changed.
     pub(super) fn locate(&self, points: &[Point], found: &mut Vec<u32>) -> Result<()> {
         let Some(Grids { table, deepest }) = self.grids else {
             return self.search_all(points, found);
@@ -77,9 +74,6 @@ impl Locator {
     }
 
     /// [`Locator::locate`] without the table.
-    ///
-    /// # Errors
-    /// As [`Locator::locate`].
     fn search_all(&self, points: &[Point], found: &mut Vec<u32>) -> Result<()> {
         found.clear();
         let mut last = 0;
@@ -91,9 +85,6 @@ impl Locator {
     }
 
     /// Number of the leaf that holds the deepest cell `code`; `last` is a guess.
-    ///
-    /// # Errors
-    /// As [`Locator::locate`].
     fn search(&self, code: u64, last: u32) -> Result<u32> {
         if self.holds(last as usize, code) {
             return Ok(last);

@@ -60,9 +60,6 @@ pub struct Options {
 
 impl Options {
     /// Checks the options against the number of dimensions.
-    ///
-    /// # Errors
-    /// Usage, if a level is too deep, or a leaf may hold no point.
     pub(super) fn check(&self, dims: u8) -> Result<()> {
         let depth_max = depth_max(dims);
         match self.leaves {

@@ -30,9 +30,6 @@ impl Pages {
     ///
     /// # Panics
     /// If not even one page fits.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Memory`] if the system refuses so much address space.
     pub(super) fn new(page_len: usize, bytes: u64, needed: u64) -> Result<Pages> {
         let fitting = bytes / (page_len as u64 + 4);
         assert!(fitting > 0, "a page fits");

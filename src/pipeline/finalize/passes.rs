@@ -10,9 +10,6 @@ pub trait Passes {
     fn description(&self) -> &Description;
 
     /// Starts a pass.
-    ///
-    /// # Errors
-    /// If the input cannot be opened.
     fn read(&self) -> Result<Box<dyn PointReader + '_>>;
 
     /// Whether decoding costs more than writing decoded points to disk and reading them back.
@@ -46,9 +43,6 @@ impl Passes for Input {
 
 /// Reads the next batch of which `keeps` accepts points, and leaves out all others; empty at the end. Sets
 /// `rows` to the rows of these points, of `row_len` bytes.
-///
-/// # Errors
-/// Those of the reader.
 pub(super) fn next_kept(
     reader: &mut dyn PointReader,
     batch: &mut Vec<Point>,
@@ -100,7 +94,6 @@ pub enum Pass {
 
 impl Pass {
     /// Name in reports and in JSON.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Pass::Spacing => "spacing",
@@ -115,7 +108,6 @@ impl Pass {
     }
 
     /// Whether it writes the output.
-    #[must_use]
     pub fn is_output(self) -> bool {
         self == Pass::Write
     }

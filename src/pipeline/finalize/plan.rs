@@ -30,9 +30,6 @@ pub(super) struct Plan {
 
 impl Plan {
     /// Chooses the leaves from the counts.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Memory`] if so many leaves do not fit.
     pub(super) fn new(counts: CellCounts, rule: Leaves, budget: &Budget) -> Result<Plan> {
         let (mut leaves, mut empty, mut depth) = (0u64, 0u64, 0);
         visit(&counts, rule, CellCode::ROOT, &mut |cell, count| {
@@ -114,9 +111,6 @@ pub(super) struct Countdown {
 
 impl Countdown {
     /// Counts `points` points of `leaf`. Returns whether the leaf is complete.
-    ///
-    /// # Errors
-    /// If the leaf gets more points than were counted.
     pub(super) fn take(&mut self, leaf: usize, points: usize) -> Result<bool> {
         let remaining = &mut self.remaining[leaf];
         *remaining = remaining.checked_sub(points as u64).ok_or_else(input_changed)?;
@@ -124,9 +118,6 @@ impl Countdown {
     }
 
     /// Checks that all leaves are complete.
-    ///
-    /// # Errors
-    /// If a leaf got fewer points than were counted.
     pub(super) fn expect_end(&self) -> Result<()> {
         if self.remaining.iter().all(|&remaining| remaining == 0) { Ok(()) } else { Err(input_changed()) }
     }

@@ -19,9 +19,6 @@ struct Batch<T> {
 /// `consume` on the calling thread, in order. `prepare` depends on the batch alone.
 ///
 /// Memory: three batches.
-///
-/// # Errors
-/// The first error in the order of the points, whichever thread it happens on.
 pub(super) fn read_ahead<T: Default + Send>(
     reader: &mut dyn PointReader,
     mut prepare: impl FnMut(&PointBatch, &mut T) -> Result<()> + Send,

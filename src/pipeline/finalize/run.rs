@@ -117,9 +117,6 @@ fn write_thinned(
 
 impl<P: Passes + ?Sized> Work<'_, P> {
     /// Makes all passes.
-    ///
-    /// # Errors
-    /// As [`run`].
     fn write<W: Write>(&mut self, options: &Options, output: W) -> Result<()> {
         let counts = self.count_points(options)?;
         let header = header_of(self.input.description(), &counts, options);

@@ -22,7 +22,6 @@ pub struct Areas {
 impl Areas {
     /// Keeps the points inside of `clip` or on its border, if it is given, and of these the ones that are not
     /// strictly inside of a polygon of `drop`.
-    #[must_use]
     pub fn new(clip: Option<&[Rings]>, drop: &[Rings]) -> Areas {
         Areas {
             clip: clip.map(|polygons| (Polygons::new(polygons), extent(polygons))),
@@ -32,13 +31,11 @@ impl Areas {
     }
 
     /// Drops points in water, too, and those on its shores: the edges of its polygons with their numbers.
-    #[must_use]
     pub fn with_water(self, edges: impl Iterator<Item = (u32, [Point2; 2])>) -> Areas {
         Areas { water: Some(Polygons::of_edges(edges)), ..self }
     }
 
     /// Whether all points are kept.
-    #[must_use]
     pub fn keep_all(&self) -> bool {
         self.clip.is_none() && self.drop.is_none() && self.water.is_none()
     }
@@ -75,7 +72,6 @@ pub struct Selected<'a, P: Passes + ?Sized> {
 
 impl<'a, P: Passes + ?Sized> Selected<'a, P> {
     /// The points of `input` that `areas` select.
-    #[must_use]
     pub fn new(input: &'a P, areas: &'a Areas) -> Self {
         let mut description = input.description().clone();
         if let Some((_, extent)) = &areas.clip {
@@ -85,7 +81,6 @@ impl<'a, P: Passes + ?Sized> Selected<'a, P> {
     }
 
     /// After a run: points outside of the polygons to keep, inside of those to drop, and in water.
-    #[must_use]
     pub fn dropped(&self) -> [u64; 3] {
         self.counts.each_ref().map(|count| count.load(Ordering::Relaxed))
     }

@@ -64,7 +64,6 @@ pub struct Shores {
 impl Shores {
     /// The shores of polygons whose edges are given with their numbers; points are collected for those that
     /// `needed` says. `width` is in stored units.
-    #[must_use]
     pub fn new(edges: Vec<(u32, [Point2; 2])>, needed: &[bool], width: f64) -> Shores {
         let water = Polygons::of_edges(edges.iter().copied());
         let is_needed = |(number, _): &(u32, _)| needed[*number as usize];

@@ -29,9 +29,6 @@ pub(super) struct Spill {
 impl Spill {
     /// An empty file in `folder`, or in the system's folder for temporary files, written and read in pieces
     /// of `io_len` bytes.
-    ///
-    /// # Errors
-    /// If it cannot be created.
     pub(super) fn create(folder: Option<&Path>, io_len: usize) -> Result<Spill> {
         let file = TemporaryFile::create(folder)?;
         let waiting = Vec::with_capacity(io_len);
@@ -46,9 +43,6 @@ impl Spill {
     /// Starts an extent of `len` bytes that follows `previous` in the chain of its cell. Returns its offset.
     ///
     /// `previous` must have been flushed.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub(super) fn start_extent(&mut self, previous: u64, len: u64) -> Result<u64> {
         let offset = self.len();
         if previous != NO_EXTENT {
@@ -61,9 +55,6 @@ impl Spill {
     }
 
     /// Appends bytes to the extent that was started last.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub(super) fn append(&mut self, mut bytes: &[u8]) -> Result<()> {
         while !bytes.is_empty() {
             let free = self.waiting_max - self.waiting.len();
@@ -78,9 +69,6 @@ impl Spill {
     }
 
     /// Writes the waiting bytes.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub(super) fn flush(&mut self) -> Result<()> {
         self.write_at(&self.waiting, self.end)?;
         self.end += self.waiting.len() as u64;
@@ -90,9 +78,6 @@ impl Spill {
 
     /// Calls `consume` with the content of the extent at `first` and of those chained to it, in pieces of
     /// whole records. All extents must have been flushed.
-    ///
-    /// # Errors
-    /// If the file cannot be read, or `consume` fails.
     pub(super) fn read_chain(
         &mut self,
         first: u64,

@@ -215,9 +215,6 @@ pub(super) struct Tee<'a> {
 
 impl<'a> Tee<'a> {
     /// A reader that keeps the points of `reader`.
-    ///
-    /// # Errors
-    /// If the file cannot be created and the plan is strict.
     pub(super) fn new(
         reader: Box<dyn PointReader + 'a>,
         plan: SpoolPlan,

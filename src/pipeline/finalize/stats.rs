@@ -39,7 +39,6 @@ pub struct Stats {
 
 impl Stats {
     /// Average number of points in a leaf.
-    #[must_use]
     pub fn cell_points_avg(&self) -> f64 {
         self.points as f64 / self.occupied_cells.max(1) as f64
     }

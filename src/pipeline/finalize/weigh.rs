@@ -28,7 +28,6 @@ pub enum WeightSource {
 
 impl WeightSource {
     /// The name of the attribute.
-    #[must_use]
     pub fn attribute(&self) -> &str {
         match self {
             WeightSource::Weights(attribute) | WeightSource::Radii { attribute, .. } => attribute,

@@ -25,7 +25,6 @@ pub struct Windowed<'a, P: Passes + ?Sized> {
 impl<'a, P: Passes + ?Sized> Windowed<'a, P> {
     /// The points of `input`, which reads `files` and has a window of its own, the box `window`. Their elevation is
     /// as that of all points of the plan.
-    #[must_use]
     pub fn new(input: &'a P, files: &'a [PlannedBox], window: &Region<3>, has_elevation: bool) -> Self {
         let mut description = input.description().clone();
         let are_whole = matches!(description.coordinates, spmesh_stream::Coordinates::I32 { .. });

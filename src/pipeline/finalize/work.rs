@@ -37,9 +37,6 @@ impl<'a, P: Passes + ?Sized> Work<'a, P> {
 
     /// Makes one pass over the input: every batch goes through `prepare`, ahead on another thread, then
     /// through `consume`.
-    ///
-    /// # Errors
-    /// The first error of the input, `prepare` or `consume`, in the order of the points.
     pub(super) fn read_all<T: Default + Send>(
         &mut self,
         pass: Pass,

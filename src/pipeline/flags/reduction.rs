@@ -117,9 +117,6 @@ pub(super) struct Tool<const D: usize> {
 
 impl<const D: usize> Tool<D> {
     /// Runs the program.
-    ///
-    /// # Errors
-    /// As its reduction and its merging, and if an input or the output cannot be opened.
     pub(super) fn run(
         &self,
         flags: &Shared<D>,

@@ -58,9 +58,6 @@ pub(crate) struct Ring {
 }
 
 /// The rings of the polygons of areas.
-///
-/// # Errors
-/// Malformed, if a file of an area has a line that is no closed ring.
 pub(crate) fn rings(files: &[(Role, String, Breaklines)]) -> Result<Vec<Ring>> {
     let of_areas = numbered(files).filter(|line| matches!(line.role, Role::Hull | Role::Holes));
     let ring = |Numbered { role, file, number, polygon, line }: Numbered| {
@@ -71,9 +68,6 @@ pub(crate) fn rings(files: &[(Role, String, Breaklines)]) -> Result<Vec<Ring>> {
 }
 
 /// The areas after noding.
-///
-/// # Errors
-/// Malformed, if a ring is no chain of segments, which noding excludes.
 pub(crate) fn areas(rings: &[Ring], bent: &Bent) -> Result<Areas> {
     let mut areas = Areas::default();
     for same in rings.chunk_by(|a, b| a.polygon == b.polygon) {

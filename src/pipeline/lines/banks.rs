@@ -21,9 +21,6 @@ impl Bank {
     }
 
     /// The bank that a feature states to be, in any case; no text states nothing.
-    ///
-    /// # Errors
-    /// What is wrong with another word.
     pub(crate) fn of(properties: &Properties) -> Result<Option<Bank>, String> {
         let word = properties.bank.as_deref().unwrap_or_default().trim();
         let bank = Bank::BOTH.into_iter().find(|bank| word.eq_ignore_ascii_case(bank.name()));
@@ -76,9 +73,6 @@ pub(crate) type BankFault = (Bank, String);
 /// Checks that two banks bound an area, together with the lines between their first and their last vertices:
 /// `upper` and `lower`, from left to right, which are empty where the banks meet. All are numbers of vertices
 /// at `places` of a grid, and `world` gives their coordinates.
-///
-/// # Errors
-/// What is wrong with them.
 pub(crate) fn check(
     [left, right]: [&[u32]; 2],
     [upper, lower]: [&[u32]; 2],

@@ -47,7 +47,6 @@ impl ChangeKind {
     ];
 
     /// Name in reports and in JSON.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             ChangeKind::Crossing => "crossing",
@@ -110,13 +109,11 @@ impl Changes {
     }
 
     /// How many changes of a kind there are.
-    #[must_use]
     pub fn count(&self, kind: ChangeKind) -> u64 {
         self.counts[kind as usize]
     }
 
     /// The changes, if they were asked for.
-    #[must_use]
     pub fn list(&self) -> &[Change] {
         self.list.as_deref().unwrap_or_default()
     }

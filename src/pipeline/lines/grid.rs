@@ -56,9 +56,6 @@ impl Grid {
     }
 
     /// Checks that a line keeps some length, if steps are greater than lines should need.
-    ///
-    /// # Errors
-    /// Usage, if its vertices are at several places of the world, but at one place of the grid.
     pub(crate) fn check_length(&self, world: &[(Point2, Option<f64>)], on_grid: &[LineVertex]) -> Result<()> {
         let has_length = world.iter().any(|vertex| vertex.0 != world[0].0);
         let is_lost = has_length && on_grid.iter().all(|vertex| vertex.place == on_grid[0].place);
@@ -69,9 +66,6 @@ impl Grid {
     }
 
     /// A vertex on the grid.
-    ///
-    /// # Errors
-    /// Usage, if it lies beyond the grid.
     pub(crate) fn vertex(
         &self,
         world: Point2,

@@ -52,7 +52,6 @@ pub struct Target {
 
 impl Target {
     /// The target of lines for a stream with this header.
-    #[must_use]
     pub fn of(header: &Header) -> Target {
         let Header { coordinates, has_elevation, ref crs, .. } = *header;
         Target { coordinates, crs: crs.clone(), has_elevation }

@@ -57,9 +57,6 @@ impl<'n> Bent<'n> {
     }
 
     /// The segments to which a line was bent, in its order.
-    ///
-    /// # Errors
-    /// The place behind which they are no chain, which noding excludes.
     pub(crate) fn segments(&self, line: u32) -> Result<Vec<u32>, [i64; 2]> {
         let mut segments = Vec::new();
         for part in self.vertices(line).windows(2) {

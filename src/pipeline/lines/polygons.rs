@@ -35,9 +35,6 @@ pub fn read_polygons(paths: &[PathBuf], target: &Target) -> Result<(Vec<Rings>, 
 }
 
 /// Checks that a line is a closed ring of a polygon.
-///
-/// # Errors
-/// Malformed, if it is not.
 pub(crate) fn check_ring(line: &Breakline) -> Result<()> {
     if line.polygon.is_none() {
         return Err(Error::malformed("found a line, expected polygons"));
@@ -51,9 +48,6 @@ pub(crate) fn check_ring(line: &Breakline) -> Result<()> {
 }
 
 /// The stored vertices of a ring, without the last one, which repeats the first.
-///
-/// # Errors
-/// Malformed, if it is no closed ring.
 pub(crate) fn ring(line: &Breakline, coordinates: &Coordinates) -> Result<Vec<Point2>> {
     check_ring(line)?;
     let stored = |&[x, y]: &Point2| {

@@ -11,9 +11,6 @@ type Vertex = (Point2, Option<f64>);
 
 /// Prepares a line: leaves out vertices that repeat the one before, interpolates elevations between known
 /// ones, and divides parts longer than `densify` evenly.
-///
-/// # Errors
-/// Malformed, if a part would have to be divided into too many.
 pub(crate) fn prepare(
     line: Breakline,
     number: u32,

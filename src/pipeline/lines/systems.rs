@@ -6,9 +6,6 @@ use spmesh_stream::Crs;
 
 /// Compares the system of the lines in a file with that of the points; returns a message for the user if only
 /// one of them is known.
-///
-/// # Errors
-/// Usage, if they differ.
 pub(crate) fn check(file: &str, lines: &Crs, points: &Crs) -> Result<Option<String>> {
     let (of_lines, of_points) = (System::of(lines), System::of(points));
     let name = |system: &System| system.name().unwrap_or_else(|| "a system without a name".to_string());

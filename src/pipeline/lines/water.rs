@@ -108,7 +108,6 @@ impl WaterPolygon {
 
 impl Water {
     /// The edges of all polygons, with their numbers.
-    #[must_use]
     pub fn edges(&self, network: &Network) -> Vec<(u32, [Point2; 2])> {
         let numbered = (0..).zip(&self.polygons);
         numbered
@@ -117,13 +116,11 @@ impl Water {
     }
 
     /// Of each polygon, whether its level must be found from points near its shore.
-    #[must_use]
     pub fn need_points(&self) -> Vec<bool> {
         self.polygons.iter().map(|polygon| polygon.needs_points(self)).collect()
     }
 
     /// Numbers of lakes and of rivers.
-    #[must_use]
     pub fn counts(&self) -> [u64; 2] {
         let lakes = self.polygons.iter().filter(|polygon| polygon.river.is_none()).count();
         [lakes as u64, self.rivers.len() as u64]
@@ -147,9 +144,6 @@ impl Water {
 }
 
 /// Water after noding.
-///
-/// # Errors
-/// Malformed, if a river lacks one of its lines or polygons or has one too many, or its banks bound no area.
 pub(crate) fn water(features: &[Feature], bent: &Bent, grid: &Grid) -> Result<Water> {
     let mut rivers: BTreeMap<&str, Lines> = BTreeMap::new();
     for feature in features {
@@ -252,9 +246,6 @@ impl<'f> Lines<'f> {
 }
 
 /// The course along two banks, and the segments around the river. `closing` are the lines between their ends.
-///
-/// # Errors
-/// Malformed, if they are not the border of an area.
 fn of_banks(
     features: [&Feature; 2],
     closing: &[&Feature],

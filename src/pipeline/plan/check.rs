@@ -7,9 +7,6 @@ use spmesh_base::error::{Error, Result};
 const DISAGREEMENT: &str = "parent and children disagree";
 
 /// Checks that the nodes form a tree of boxes, and that they name files that are there.
-///
-/// # Errors
-/// Malformed, with the node.
 pub(super) fn check(plan: &Plan) -> Result<()> {
     let fault = |what: &str| Err(Error::malformed(what));
     if !matches!(plan.dims(), 2 | 3) {

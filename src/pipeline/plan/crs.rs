@@ -26,8 +26,6 @@ impl PlannedCrs {
         }
     }
 
-    /// # Errors
-    /// Malformed, if the records are no hexadecimal digits.
     pub(super) fn crs(&self) -> Result<Crs> {
         let bytes = |text: &String| {
             HEXLOWER.decode(text.as_bytes()).map_err(|e| Error::malformed(format!("coordinate system: {e}")))

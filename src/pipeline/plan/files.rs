@@ -30,9 +30,6 @@ pub struct PlannedFile {
 
 impl PlannedFile {
     /// A file and where its points are.
-    ///
-    /// # Errors
-    /// I/O, if there is no such file; usage, if it is not a regular one, or its name is not UTF-8.
     pub(super) fn new(path: &Path, extent: &Extent) -> Result<PlannedFile> {
         let name = || path.display().to_string();
         let absolute = std::path::absolute(path).map_err(|e| Error::io("finding", e).of_input(name()))?;
@@ -46,13 +43,11 @@ impl PlannedFile {
     }
 
     /// Its path.
-    #[must_use]
     pub fn path(&self) -> PathBuf {
         PathBuf::from(&self.path)
     }
 
     /// Its bounding box in stored coordinates of the plan.
-    #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         Some(Bounds { min: self.min?, max: self.max? })
     }

@@ -16,7 +16,6 @@ pub struct NodeBox {
 
 impl NodeBox {
     /// The box of a region along its first `dims` axes.
-    #[must_use]
     pub fn of(region: &Region<3>, dims: u8) -> NodeBox {
         let sides = |sides: &[f64; 3]| {
             sides[..usize::from(dims)].iter().map(|&side| side.is_finite().then_some(side)).collect()
@@ -25,7 +24,6 @@ impl NodeBox {
     }
 
     /// The box as a region, unbounded along axes that it does not have.
-    #[must_use]
     pub fn region(&self) -> Region<3> {
         let sides = |sides: &[Option<f64>], infinite: f64| -> Vec<f64> {
             sides.iter().map(|side| side.unwrap_or(infinite)).collect()
@@ -71,19 +69,16 @@ pub struct Node {
 
 impl Node {
     /// What it does.
-    #[must_use]
     pub fn kind(&self) -> NodeKind {
         if self.children.is_empty() { NodeKind::Leaf } else { NodeKind::Inner }
     }
 
     /// Whether it is the root, where all is final.
-    #[must_use]
     pub fn is_root(&self) -> bool {
         self.parent.is_none()
     }
 
     /// Its kind in lists.
-    #[must_use]
     pub fn kind_name(&self) -> &'static str {
         match (self.is_root(), self.kind()) {
             (true, _) => "root",

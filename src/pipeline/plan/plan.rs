@@ -214,25 +214,21 @@ impl Plan {
     }
 
     /// The number by which streams name the plan.
-    #[must_use]
     pub fn number(&self) -> u64 {
         u64::from_str_radix(&self.id, 16).unwrap_or_default()
     }
 
     /// The hash of the plan, in hexadecimal digits.
-    #[must_use]
     pub fn id(&self) -> &str {
         &self.id
     }
 
     /// Dimensions of the geometry: 2 or 3.
-    #[must_use]
     pub fn dims(&self) -> u8 {
         self.dims
     }
 
     /// The encoding of all coordinates.
-    #[must_use]
     pub fn coordinates(&self) -> Coordinates {
         match self.grid {
             None => Coordinates::F64,
@@ -252,7 +248,6 @@ impl Plan {
     }
 
     /// The name of a node's part.
-    #[must_use]
     pub fn part(&self, node: &Node) -> PartName {
         PartName { plan: self.number(), number: node.number }
     }
@@ -268,13 +263,11 @@ impl Plan {
     }
 
     /// The files that reach into a leaf.
-    #[must_use]
     pub fn files_of(&self, node: &Node) -> Vec<&PlannedFile> {
         node.files.iter().filter_map(|&file| self.files.get(file as usize)).collect()
     }
 
     /// The nodes in an order in which each comes behind its children, and few wait for their parent.
-    #[must_use]
     pub fn upwards(&self) -> Vec<u32> {
         let mut order = Vec::with_capacity(self.nodes.len());
         let mut waiting: Vec<(u32, bool)> =

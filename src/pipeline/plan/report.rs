@@ -102,7 +102,6 @@ pub struct NodeReport {
 
 impl NodeReport {
     /// An empty report.
-    #[must_use]
     pub fn new(plan: &str, node: u32, stage: u32, kind: &str) -> NodeReport {
         let none = || FileSize { file: String::new(), bytes: 0, hash: String::new() };
         NodeReport {

@@ -47,9 +47,6 @@ struct Branch {
 
 impl Division {
     /// The nodes for these files, by number: stage by stage, the root last.
-    ///
-    /// # Errors
-    /// Usage, if there are too many nodes.
     pub(super) fn nodes(&self, shares: &[Share]) -> Result<Vec<Node>> {
         let mut count = 0;
         let root = match self.root(shares) {

@@ -44,7 +44,6 @@ impl Polygons {
     /// If there are 2^32 edges or more.
     ///
     /// Domain: coordinates are finite.
-    #[must_use]
     pub fn new(polygons: &[Rings]) -> Polygons {
         let of_ring = |ring: &Vec<Point2>| {
             let ring = ring.clone();
@@ -62,7 +61,6 @@ impl Polygons {
     ///
     /// # Panics
     /// As [`Polygons::new`].
-    #[must_use]
     pub fn of_edges(edges: impl Iterator<Item = (u32, [Point2; 2])>) -> Polygons {
         let rows = Rows::new(edges);
         let cells = Cells::new(&rows.edges, |place| rows.side(place));
@@ -70,7 +68,6 @@ impl Polygons {
     }
 
     /// Where a place lies. Exact for all finite coordinates.
-    #[must_use]
     pub fn side(&self, place: Point2) -> Side {
         let Some(cell) = self.cells.find(place) else { return Side::Outside };
         self.cells.side(cell).unwrap_or_else(|| self.rows.side(place))

@@ -14,7 +14,6 @@ impl Polygons {
     /// that no numbers are inside of it; then all edges are looked at, in integers of any size.
     ///
     /// Domain: coordinates are finite, and no edge of a polygon meets the interior of the triangle.
-    #[must_use]
     pub fn has_triangle(&self, corners: [Point2; 3]) -> bool {
         for corner in corners {
             match self.side(corner) {

@@ -19,9 +19,6 @@ const TOGETHER: usize = 1 << 19;
 
 /// Calls `make` with a function that takes patches. Another thread writes them to `sequencer`, in their
 /// order. `make` keeps the last few.
-///
-/// # Errors
-/// Those of writing, or else those of `make`. I/O, if the writing thread cannot be started or panics.
 pub(super) fn write_beside<T, W: Write + Send>(
     sequencer: &mut Sequencer<W>,
     make: impl FnOnce(&mut Flush) -> Result<T>,

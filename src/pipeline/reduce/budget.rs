@@ -65,9 +65,6 @@ impl Budget {
     }
 
     /// Checks that points that wait for their cell, those in nodes, and a node of `next` points fit.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Memory`] if not.
     pub(super) fn check(&mut self, Load { held, raw, left }: Load, next: usize) -> Result<()> {
         let Some(limit) = self.limit else { return Ok(()) };
         self.largest = self.largest.max(next);

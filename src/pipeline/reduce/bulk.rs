@@ -70,9 +70,6 @@ pub(super) trait Bulk<const D: usize>: Default {
     }
 
     /// Triangulates `points` canonically; if they have weights, as their regular triangulation.
-    ///
-    /// # Errors
-    /// As the kernel's.
     fn triangulate(&mut self, points: &Residual<D>, weights: Option<Weights>) -> Result<()>;
 
     /// Finds the order of [`Bulk::nth`].
@@ -81,9 +78,6 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// The corners of those simplices that `keep` accepts, in the order of [`Bulk::nth`] and as by
     /// [`Bulk::written`], but as places in the vertices that come with them; if the threads of the node can
     /// find them faster than one by one. The triangulation is empty then.
-    ///
-    /// # Errors
-    /// If a thread fails.
     fn take_written(&mut self, keep: impl Fn(usize) -> bool) -> Result<Option<Corners>> {
         let _ = keep;
         Ok(None)
@@ -122,9 +116,6 @@ pub(super) trait Bulk<const D: usize>: Default {
     fn hull_facets(&self) -> impl Iterator<Item = Facet>;
 
     /// Calls `found` with every wall.
-    ///
-    /// # Errors
-    /// The number of a wall that is not a facet of this triangulation, if there is one.
     fn find(&mut self, walls: &[[u32; D]], found: impl FnMut(WallSide)) -> std::result::Result<(), usize>;
 
     /// A facet as a wall with its simplex on the final side.

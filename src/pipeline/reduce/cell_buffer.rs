@@ -57,9 +57,6 @@ impl<const D: usize> CellBuffer<D> {
 
     /// Takes points of the stream with their bounding box, and with their rows if there are attributes. Drops
     /// those outside of the region.
-    ///
-    /// # Errors
-    /// If a point lies in a cell that is final, or outside of the tree.
     pub(super) fn points(&mut self, points: &[Point], rows: &[u8], bounds: &Bounds) -> Result<()> {
         if let Some(finalized) = &mut self.finalized {
             finalized.check_points_in(points, bounds)?;
@@ -85,9 +82,6 @@ impl<const D: usize> CellBuffer<D> {
     /// Takes the tag of `cell`. Returns the points of the cell, in the order of the stream, and whether they
     /// are all of its points: they are not if a part of the cell was final before. `fresh` is an empty
     /// residual whose memory is reused.
-    ///
-    /// # Errors
-    /// If the cell is final already.
     pub(super) fn tag(&mut self, cell: CellCode, fresh: Residual<D>) -> Result<(Residual<D>, bool)> {
         let (Some(tree), Some(finalized)) = (self.tree, &mut self.finalized) else {
             return Err(Error::malformed("cell tag in a stream without a finalization tree"));

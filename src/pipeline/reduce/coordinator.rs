@@ -47,9 +47,6 @@ const POOL_LEN: usize = 16;
 
 /// Runs `run` with `workers` threads that triangulate. The calling thread triangulates the root when they
 /// have ended.
-///
-/// # Errors
-/// As [`super::run::triangulate`]; [`ErrorKind::Io`] if the system refuses a thread, or a thread panicked.
 pub(super) fn run<B, R, W, const D: usize>(
     run: Run<D>,
     mut reader: CellReader<R, D>,
@@ -134,9 +131,6 @@ fn work<const D: usize>(
 }
 
 /// Writes nodes until there are no more, and reports the points of each node that has patches.
-///
-/// # Errors
-/// If writing fails.
 fn write<W: Write, const D: usize>(
     mut sequencer: Sequencer<W>,
     outputs: &Receiver<Output<D>>,
@@ -171,9 +165,6 @@ struct Channels<const D: usize> {
 
 impl<'scope, W: Write + Send + 'scope> WorkerPool<'scope, W> {
     /// Starts the threads.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Io`] if the system refuses a thread.
     fn start<B: Bulk<D>, const D: usize>(
         scope: &'scope Scope<'scope, '_>,
         sequencer: Sequencer<W>,
@@ -208,9 +199,6 @@ impl<'scope, W: Write + Send + 'scope> WorkerPool<'scope, W> {
     }
 
     /// Runs until everything is written, ends the threads, and finishes with the root.
-    ///
-    /// # Errors
-    /// As [`run`].
     fn coordinate<B: Bulk<D>, const D: usize>(
         self,
         mut run: Run<D>,

@@ -108,9 +108,6 @@ fn join<B: Bulk<D>, R: Read, W: Write, const D: usize>(
 }
 
 /// The header of the part, after a check that the inputs fit together.
-///
-/// # Errors
-/// Usage, if they do not.
 fn header_of<B: Bulk<D>, R: Read, const D: usize>(
     readers: &[StreamReader<R>],
     options: &Options<D>,
@@ -140,9 +137,6 @@ fn header_of<B: Bulk<D>, R: Read, const D: usize>(
 
 /// Checks that the boxes of the residuals lie in that of the node. They need not fill it: the plan leaves out
 /// boxes without points.
-///
-/// # Errors
-/// Usage, if not.
 fn check_boxes<R: Read, const D: usize>(readers: &[StreamReader<R>], region: &Region<D>) -> Result<()> {
     match readers.iter().find(|reader| !region.covers(&region_of(reader.header()))) {
         None => Ok(()),
@@ -153,9 +147,6 @@ fn check_boxes<R: Read, const D: usize>(readers: &[StreamReader<R>], region: &Re
 }
 
 /// Reads a whole residual. Its vertices are those of other streams.
-///
-/// # Errors
-/// If it cannot be read or is malformed.
 fn read_residual<R: Read, const D: usize>(
     reader: &mut StreamReader<R>,
     origins: &mut Origins,

@@ -131,9 +131,6 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
 }
 
 /// Header of the result, after a check that the inputs fit together.
-///
-/// # Errors
-/// Usage, if they do not.
 fn merged_header<B: Bulk<D>, R: Read, const D: usize>(
     readers: &[StreamReader<R>],
     part: Option<Part<D>>,
@@ -173,9 +170,6 @@ fn check_kind<B: Bulk<D>, R: Read, const D: usize>(reader: &StreamReader<R>) -> 
 }
 
 /// Checks that parts have one grid and one reference system, and that their regions do not overlap.
-///
-/// # Errors
-/// Usage, if not.
 pub(super) fn check_together<R: Read, const D: usize>(readers: &[StreamReader<R>]) -> Result<()> {
     for (i, reader) in readers.iter().enumerate() {
         check_pair(&readers[0], reader)?;
@@ -232,9 +226,6 @@ pub(super) fn region_of<const D: usize>(header: &Header) -> Region<D> {
 
 /// Copies the final simplices of one input, and adds its residual to `residual`. Calls `note` with each
 /// event.
-///
-/// # Errors
-/// If the input is malformed, or writing fails.
 fn copy_through<R: Read, W: Write, const D: usize>(
     reader: &mut StreamReader<R>,
     sequencer: &mut Sequencer<W>,

@@ -30,9 +30,6 @@ impl Merging {
 
     /// Merges raw points that coincide, if they are twice as many as after the last time; returns how many
     /// are gone. The mean of elevations needs all of them, so with that policy none is merged here.
-    ///
-    /// # Errors
-    /// As [`Duplicates::settle`].
     pub(super) fn merge<const D: usize>(&mut self, points: &mut Residual<D>) -> Result<u64> {
         if points.len() < self.next || self.policy == Duplicates::Mean {
             return Ok(0);

@@ -248,9 +248,6 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
 
     /// Splits the simplices outside of holes: final ones are planned for patches, or added to them if there
     /// is no plan; the others are active. If no other point exists, `everything` is final.
-    ///
-    /// # Errors
-    /// As [`PatchBuilder::close`].
     fn split(
         &mut self,
         points: &Residual<D>,

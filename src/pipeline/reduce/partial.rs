@@ -24,9 +24,6 @@ pub enum Part<const D: usize = 2> {
 
 impl<const D: usize> Part<D> {
     /// The part as a half-open box in stored coordinates.
-    ///
-    /// # Errors
-    /// If the box is empty, or the tree has no such cell.
     pub(super) fn region(&self, header: &Header) -> Result<Region<D>> {
         match *self {
             Part::Region(region) => stored_region(&region, &header.coordinates),
@@ -43,9 +40,6 @@ impl<const D: usize> Part<D> {
 
 /// A world box in stored coordinates. The map is monotone, so boxes that share a side still do. A side within
 /// rounding of a grid point is snapped to it, so that the point lies on the border.
-///
-/// # Errors
-/// Usage, if the box is empty.
 fn stored_region<const D: usize>(region: &Region<D>, coordinates: &Coordinates) -> Result<Region<D>> {
     let stored = |corner: [f64; D]| -> [f64; D] {
         match coordinates {
@@ -70,9 +64,6 @@ fn on_grid(side: f64) -> f64 {
 }
 
 /// The box of a cell of the tree.
-///
-/// # Errors
-/// Usage, if the tree has no such cell.
 fn cell_region<const D: usize>(tree: &CellTree, level: u8, at: [u32; D]) -> Result<Region<D>> {
     let cells = 1u64 << level.min(63);
     if level > tree.depth() || at.iter().any(|&place| u64::from(place) >= cells) {

@@ -158,9 +158,6 @@ impl<const D: usize> PatchBuilder<D> {
     }
 
     /// Adds vertices that are in no simplex and finalized here, in patches of their own.
-    ///
-    /// # Errors
-    /// As [`PatchBlocks::push`] and `flush`.
     pub(super) fn isolated(
         &mut self,
         vertices: impl Iterator<Item = u32>,
@@ -229,9 +226,6 @@ impl<const D: usize> PatchBuilder<D> {
     /// Encodes the patch, unless it is empty. Points that this stream does not have yet become new vertices
     /// in order of appearance, the others are imported. Vertices that are in no later patch and not kept are
     /// finalized.
-    ///
-    /// # Errors
-    /// As [`PatchBlocks::push`].
     pub(super) fn close(
         &mut self,
         points: &Residual<D>,

@@ -68,9 +68,6 @@ impl<R: Read, const D: usize> CellReader<R, D> {
 
     /// The next piece; must not be called after the end. `fresh` gives empty residuals whose memory is used
     /// again.
-    ///
-    /// # Errors
-    /// If the stream is malformed, ends too early, or cannot be read.
     pub(super) fn next(&mut self, fresh: impl FnOnce() -> Residual<D>) -> Result<Piece<D>> {
         loop {
             if let Some(cell) = self.tags.pop_front() {

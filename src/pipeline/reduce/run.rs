@@ -154,9 +154,6 @@ fn boxed<R: Read + Send + 'static>(reader: StreamReader<R>) -> StreamReader<Inpu
 }
 
 /// Reduces points of the plane to a mesh.
-///
-/// # Errors
-/// As [`triangulate`].
 fn reduce_plane(
     reader: StreamReader<Input>,
     outputs: Outputs<Sink>,
@@ -167,9 +164,6 @@ fn reduce_plane(
 }
 
 /// Reduces points of space to a mesh.
-///
-/// # Errors
-/// As [`triangulate`].
 fn reduce_space(
     reader: StreamReader<Input>,
     outputs: Outputs<Sink>,
@@ -180,9 +174,6 @@ fn reduce_space(
 }
 
 /// Reduces points to a mesh.
-///
-/// # Errors
-/// As [`triangulate`].
 fn reduce<B, R, W, const D: usize>(
     reader: StreamReader<R>,
     outputs: Outputs<W>,
@@ -235,9 +226,6 @@ where
 }
 
 /// Checks that the input is points of D dimensions.
-///
-/// # Errors
-/// Usage, if not.
 fn check_input<B: Bulk<D>, const D: usize>(header: &Header) -> Result<()> {
     let remedy = if D == 2 { "without --octree" } else { "with --octree" };
     match (header.kind, header.dims) {
@@ -253,9 +241,6 @@ fn check_input<B: Bulk<D>, const D: usize>(header: &Header) -> Result<()> {
 }
 
 /// Checks that there are weights, if they are wanted.
-///
-/// # Errors
-/// Usage, if not, or if the run is a partial one.
 fn check_weights<const D: usize>(header: &Header, options: &Options<D>) -> Result<()> {
     if !options.weighted {
         return Ok(());
@@ -272,9 +257,6 @@ fn check_weights<const D: usize>(header: &Header, options: &Options<D>) -> Resul
 }
 
 /// Writes the headers of the mesh, and of the residual of `region` if it has an output of its own.
-///
-/// # Errors
-/// If writing fails.
 pub(super) fn begin<B: Bulk<D>, W: Write, const D: usize>(
     outputs: Outputs<W>,
     mesh: Header,
@@ -308,9 +290,6 @@ fn mesh_header<B: Bulk<D>, const D: usize>(
 }
 
 /// Does everything on the calling thread.
-///
-/// # Errors
-/// As [`triangulate`].
 fn alone<B: Bulk<D>, R: Read, W: Write + Send, const D: usize>(
     mut run: Run<D>,
     mut cells: CellReader<R, D>,

@@ -33,9 +33,6 @@ pub(super) struct Run<const D: usize> {
 
 impl<const D: usize> Run<D> {
     /// Takes a piece of the input. At its end, returns the totals.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Memory`] if the limit of memory is exceeded.
     pub(super) fn take(
         &mut self,
         piece: Piece<D>,
@@ -60,9 +57,6 @@ impl<const D: usize> Run<D> {
     }
 
     /// The next node that can be triangulated, except the root.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Memory`] if the limit of memory is exceeded.
     pub(super) fn next_job(&mut self) -> Result<Option<Job<D>>> {
         let Some(job) = self.schedule.next_job() else { return Ok(None) };
         self.check_memory(job.len())?;
@@ -84,9 +78,6 @@ impl<const D: usize> Run<D> {
     }
 
     /// Triangulates the root, if it has points, and writes its patches as they come.
-    ///
-    /// # Errors
-    /// As [`super::run::triangulate`].
     fn write_root<B: Bulk<D>, W: Write + Send>(
         &mut self,
         sequencer: &mut Sequencer<W>,
@@ -119,9 +110,6 @@ impl<const D: usize> Run<D> {
 
     /// Finishes when all nodes but the root are written: `worker` triangulates the root. `counts` are the
     /// decisions of other workers.
-    ///
-    /// # Errors
-    /// As [`super::run::triangulate`].
     pub(super) fn finish<B: Bulk<D>, W: Write + Send>(
         mut self,
         ended: &InputSummary<D>,

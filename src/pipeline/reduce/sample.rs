@@ -62,9 +62,6 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
     /// The sample holds raw points only. If most points come from nodes below, those nodes were worth
     /// triangulating, and the answer is `false` without a sample. The answer depends on the points and their
     /// order alone.
-    ///
-    /// # Errors
-    /// As the kernel's.
     pub(super) fn leaves_most(&mut self, points: &Residual<D>, region: &Region<D>) -> Result<bool> {
         if self.rules.every_node || *region == Region::EVERYTHING {
             return Ok(false);

@@ -93,9 +93,6 @@ impl<W: Write> Sequencer<W> {
     }
 
     /// Writes a patch of another stream whose ids already fit this one.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn forward(&mut self, patch: &Patch, rows: &[u8]) -> Result<()> {
         self.stream.patch_with_rows(patch, rows)?;
         self.live += patch.new.len() as u64;
@@ -114,9 +111,6 @@ impl<W: Write> Sequencer<W> {
     }
 
     /// Writes the next node. Returns its blocks, to be used again.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn write<const D: usize>(&mut self, output: Output<D>) -> Result<PatchBlocks> {
         self.open(&output.children);
         self.close(output)
@@ -129,9 +123,6 @@ impl<W: Write> Sequencer<W> {
     }
 
     /// Writes patches of the open node, and empties `blocks`.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn patches(&mut self, blocks: &mut PatchBlocks) -> Result<()> {
         let (ids, first) = (&self.ids, self.first);
         self.shared.extend(blocks.shared(), first);
@@ -150,9 +141,6 @@ impl<W: Write> Sequencer<W> {
     }
 
     /// Writes the rest of the open node. Returns its blocks, to be used again.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn close<const D: usize>(&mut self, output: Output<D>) -> Result<PatchBlocks> {
         let Solved { mut blocks, mut references, merged, .. } = output.solved;
         self.merged += merged;
@@ -165,9 +153,6 @@ impl<W: Write> Sequencer<W> {
 
     /// Writes the residual of a partial run, which the nodes `children` have left. None of its points is raw:
     /// the root is always triangulated, so that coinciding points are merged.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn write_residual<const D: usize>(
         &mut self,
         children: &[u64],
@@ -211,9 +196,6 @@ impl<W: Write> Sequencer<W> {
 
     /// Writes END, for `points` of the input, of which `merged` were merged with others, `merged_here` of them in
     /// this run.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn end(self, points: u64, merged: u64, merged_here: u64) -> Result<Outputs<W>> {
         let residual = self.residual.map(|stream| stream.end(points, merged)).transpose()?;
         // A part counts the vertices that it has from other parts, and not the points that it leaves.

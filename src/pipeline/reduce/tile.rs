@@ -24,9 +24,6 @@ impl<const D: usize> Tile<D> {
     }
 
     /// Turns the ids of a patch into those of the merged mesh.
-    ///
-    /// # Errors
-    /// If the patch uses a finalized vertex.
     pub(super) fn patch(&mut self, mut patch: Patch) -> Result<Patch> {
         self.live.enter(&patch, |_, point| point)?;
         patch.first_id += self.id_offset;
@@ -36,9 +33,6 @@ impl<const D: usize> Tile<D> {
     }
 
     /// Takes residual points, with a row for each if there are attributes.
-    ///
-    /// # Errors
-    /// If a point lies outside of the region, or is not where its vertex is.
     pub(super) fn residual_points(&mut self, points: &[(Option<u64>, Point)], rows: &[u8]) -> Result<()> {
         let row_len = rows.len().checked_div(points.len()).unwrap_or(0);
         (0..)
@@ -72,9 +66,6 @@ impl<const D: usize> Tile<D> {
 
     /// Checks that nothing is missing: every vertex that is not finalized is in the residual, and the walls
     /// are the border of the final simplices, so that every hole is closed.
-    ///
-    /// # Errors
-    /// [`spmesh_base::error::ErrorKind::Malformed`], if not.
     pub(super) fn check_end(&self) -> Result<()> {
         let lost = self.live.len();
         if lost > 0 {

@@ -27,9 +27,6 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
     /// Triangulates a node, or passes its points up if the node would leave most of them. The memory of
     /// `blocks` is used again; `give_back` gets the memory of raw points, and `flush`, if there is
     /// one, may take patches as they come.
-    ///
-    /// # Errors
-    /// As [`Solver::solve`].
     pub(super) fn solve(
         &mut self,
         job: Job<D>,

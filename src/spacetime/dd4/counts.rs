@@ -21,7 +21,6 @@ pub struct Counts {
 
 impl Counts {
     /// Counts cells.
-    #[must_use]
     pub fn of(cells: &Cells4) -> Self {
         let mut counts = Counts::default();
         let neighbours = cells.iter().map(|cell| counts.add(cell)).sum::<u64>();
@@ -44,26 +43,22 @@ impl Counts {
     }
 
     /// Finite and infinite cells.
-    #[must_use]
     pub fn cells(&self) -> u64 {
         self.finite + self.infinite
     }
 
     /// Share of the finite cells that are not simplices; 0 without cells.
-    #[must_use]
     pub fn share_not_simplices(&self) -> f64 {
         self.not_simplices as f64 / self.finite.max(1) as f64
     }
 
     /// Cells, facets and vertex references together: figure 3.9 of the thesis shows this sum.
-    #[must_use]
     pub fn elements(&self) -> u64 {
         self.cells() + self.facets + self.vertex_references
     }
 
     /// Size of the cells in bytes: two lists of 32-bit numbers each, preceded by their length. This is the
     /// size of the output in table 3.4 of the thesis.
-    #[must_use]
     pub fn cell_bytes(&self) -> u64 {
         4 * (2 * self.cells() + self.vertex_references + 2 * self.facets)
     }

@@ -39,9 +39,6 @@ pub struct Placement {
 
 impl Placement {
     /// Scales the times of points.
-    ///
-    /// # Errors
-    /// Usage, if a time overflows.
     pub(super) fn scale(&self, points: &mut [Point4]) -> Result<()> {
         let TimeScale(scale) = self.time_scale;
         for point in points {

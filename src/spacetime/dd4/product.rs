@@ -54,7 +54,6 @@ impl Product {
     }
 
     /// Whether the output is binary.
-    #[must_use]
     pub fn is_binary(&self) -> bool {
         match self {
             Product::Cells | Product::Simplices(_) => true,
@@ -66,7 +65,6 @@ impl Product {
     }
 
     /// Whether the output is a stream.
-    #[must_use]
     pub fn is_stream(&self) -> bool {
         matches!(self, Product::Cells | Product::Simplices(_))
     }

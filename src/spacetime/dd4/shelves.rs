@@ -49,9 +49,6 @@ impl Shelves {
     }
 
     /// Sorts all cells.
-    ///
-    /// # Errors
-    /// If a temporary file cannot be written or read.
     pub(super) fn sorted(self) -> Result<Sorted> {
         let mut places = vec![0; self.cells];
         let mut sorted = [WordFile::new(self.folder.as_deref()), WordFile::new(self.folder.as_deref())];
@@ -165,9 +162,6 @@ impl Shelf {
 
 impl Sorted {
     /// Gives all cells in their order.
-    ///
-    /// # Errors
-    /// If a file cannot be read; those of `give`.
     pub(super) fn each(self, mut give: impl FnMut(Cell4) -> Result<()>) -> Result<()> {
         let Sorted { finite, infinite, finite_count, places } = self;
         let place = |number: u32| match places[number as usize] {

@@ -28,9 +28,6 @@ impl WordFile {
     }
 
     /// Adds words.
-    ///
-    /// # Errors
-    /// If the file cannot be created or written.
     #[inline(always)]
     pub(super) fn extend(&mut self, words: &[u32]) -> Result<()> {
         if self.buffer.len() + words.len() > BUFFER_LEN {
@@ -53,9 +50,6 @@ impl WordFile {
     }
 
     /// All words, in order.
-    ///
-    /// # Errors
-    /// If the file cannot be written or read.
     pub(super) fn into_words(self) -> Result<Vec<u32>> {
         let mut reader = self.into_reader()?;
         reader.fill(reader.unread as usize)?;
@@ -63,9 +57,6 @@ impl WordFile {
     }
 
     /// Reads the words from the first on.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub(super) fn into_reader(mut self) -> Result<WordReader> {
         if self.file.is_some() {
             self.flush()?;
@@ -90,9 +81,6 @@ pub(super) struct WordReader {
 impl WordReader {
     /// The next list, which begins with a word that gives its length in the bits of `mask`; `None` after the
     /// last.
-    ///
-    /// # Errors
-    /// If the file cannot be read.
     #[inline(always)]
     pub(super) fn list(&mut self, mask: u32) -> Result<Option<(u32, usize)>> {
         if self.at == self.words.len() && !self.fill(1)? {

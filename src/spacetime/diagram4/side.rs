@@ -19,7 +19,6 @@ const INTEGER_MAX: f64 = 67_108_864.0;
 ///
 /// Cost: about ten nanoseconds where the rounded value is conclusive; a few times that for integers below
 /// 2^26; otherwise microseconds.
-#[must_use]
 pub fn orient4d([a, b, c, d, e]: [Point4; 5]) -> Sign {
     let from = |p: Point4| -> Point4 { std::array::from_fn(|axis| p[axis] - a[axis]) };
     let (rows, last) = ([from(b), from(c), from(d)], from(e));

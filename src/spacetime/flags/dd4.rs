@@ -122,9 +122,6 @@ enum RouteFlag {
 
 impl RouteFlag {
     /// The route in the engine.
-    ///
-    /// # Errors
-    /// Usage, if this build does not have it.
     fn route(self) -> Result<Route> {
         match self {
             RouteFlag::Simplices => Ok(Route::Simplices),

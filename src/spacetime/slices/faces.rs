@@ -17,7 +17,6 @@ impl Faces {
     /// A finite cell with its facets, in the order of its neighbours.
     ///
     /// Cost: proportional to the vertices of the cell and of its neighbours.
-    #[must_use]
     pub fn of_cell(cells: &Cells4, number: usize) -> Faces {
         let cell = cells.get(number);
         let facet = |&beyond: &u32| {
@@ -34,7 +33,6 @@ impl Faces {
     }
 
     /// Whether the face is a simplex.
-    #[must_use]
     pub fn is_simplex(&self) -> bool {
         self.vertices.len() == self.dimension + 1
     }
@@ -43,7 +41,6 @@ impl Faces {
     ///
     /// Two faces of dimension d share a face of dimension d - 1 or less. All vertices are on a sphere, so no
     /// three are on a line (thesis, lemma 3.6.2). So d shared vertices imply dimension d - 1, for d up to 3.
-    #[must_use]
     pub fn face(&self, number: usize) -> Faces {
         let (dimension, vertices) = (self.dimension - 1, self.lower[number].clone());
         let mut lower = Vec::new();

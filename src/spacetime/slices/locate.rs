@@ -17,7 +17,6 @@ pub struct Locator<'a> {
 
 impl<'a> Locator<'a> {
     /// Starts at the first cell.
-    #[must_use]
     pub fn new(diagram: &'a Diagram4) -> Self {
         Locator { points: &diagram.points, cells: &diagram.cells, current: 0, visited: 0 }
     }

@@ -51,19 +51,16 @@ pub struct Scratch {
 
 impl Basis {
     /// Number of functions.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.sets.len()
     }
 
     /// Whether there is no function.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// The degree of the polynomials that functions consist of and reproduce.
-    #[must_use]
     pub fn degree(&self) -> usize {
         self.degree
     }
@@ -79,21 +76,18 @@ impl Basis {
 
     /// The Greville site of a function: the mean of the knots of its interior set. With several sets it is
     /// the mean of their means, weighted by their factors; for degree 0, it is the centroid of the triangle.
-    #[must_use]
     pub fn greville(&self, function: usize) -> Point2 {
         self.greville[function]
     }
 
     /// The bounding box of the support of a function, as lower left and upper right corner; `None` for a
     /// function that is zero.
-    #[must_use]
     pub fn support(&self, function: usize) -> Option<[Point2; 2]> {
         let [lower, upper] = self.supports[function];
         (lower[0] <= upper[0]).then_some([lower, upper])
     }
 
     /// Bytes held, without knots, sets and Greville sites.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         let linear_simplices =
             std::mem::size_of_val(&self.linear_simplices[..]) + std::mem::size_of_val(&self.factors.all[..]);
@@ -105,14 +99,12 @@ impl Basis {
     /// contains at least k knots, copies counted. For degrees 0 and 1 the domain is the convex hull.
     ///
     /// (Functions do not sum to one on a domain without interior, that is, a segment or a point.)
-    #[must_use]
     pub fn is_in_domain(&self, x: Point2) -> bool {
         let is_right = |&line: &u32| super::domain::is_right_or_on(self.domain.lines[line as usize], x);
         self.tree.lines(x).is_some_and(|lines| lines.iter().all(is_right))
     }
 
     /// The directional limit that functions take at a point.
-    #[must_use]
     pub fn limit_at(&self, x: Point2) -> DirectionalLimit {
         self.domain.limit_at(x)
     }
@@ -146,21 +138,17 @@ impl Basis {
     }
 
     /// The spline with the given coefficients, one for each function, at a point.
-    #[must_use]
     pub fn value(&self, coefficients: &[f64], x: Point2, scratch: &mut Scratch) -> f64 {
         self.at(x, scratch).iter().map(|&(function, value)| coefficients[function as usize] * value).sum()
     }
 
     /// The spline with the given coefficients, one for each function, with its derivatives at a point.
-    #[must_use]
     pub fn jet(&self, coefficients: &[f64], x: Point2, scratch: &mut Scratch) -> Jet {
         let jets = self.jets_at(x, scratch).iter();
         jets.fold(Jet::default(), |sum, &(function, jet)| sum + jet * coefficients[function as usize])
     }
 
     /// Checks that there is one coefficient for each function, and that all are finite.
-    /// # Errors
-    /// Usage, for another number of coefficients; malformed, for a coefficient that is not finite.
     pub(super) fn check_coefficients(&self, coefficients: &[f64]) -> Result<()> {
         if coefficients.len() != self.len() {
             let what = format!(

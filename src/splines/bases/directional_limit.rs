@@ -17,14 +17,12 @@ pub struct DirectionalLimit {
 
 impl DirectionalLimit {
     /// The limit at `x` from the direction of `from`; if they are equal, from the right along the x axis.
-    #[must_use]
     pub fn new(x: Point2, from: Point2) -> DirectionalLimit {
         DirectionalLimit { x, from }
     }
 
     /// The point itself.
     #[inline(always)]
-    #[must_use]
     pub fn x(&self) -> Point2 {
         self.x
     }
@@ -32,7 +30,6 @@ impl DirectionalLimit {
     /// The side of the directed line from `a` to `b`: positive on its left; zero only if `a` and `b` are
     /// equal.
     #[inline]
-    #[must_use]
     pub fn side(&self, a: Point2, b: Point2) -> Sign {
         match FiniteFloatPredicates::default().orient2d(a, b, self.x) {
             Sign::Zero => self.side_nearby(a, b),

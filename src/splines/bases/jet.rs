@@ -15,19 +15,16 @@ pub struct Jet {
 
 impl Jet {
     /// A constant.
-    #[must_use]
     pub fn constant(value: f64) -> Jet {
         Jet { value, ..Jet::default() }
     }
 
     /// The jet of a linear function with this value and gradient.
-    #[must_use]
     pub fn linear(value: f64, gradient: [f64; 2]) -> Jet {
         Jet { value, gradient, hessian: [0.0; 3] }
     }
 
     /// The jet of a product of functions.
-    #[must_use]
     pub fn product(self, other: Jet) -> Jet {
         let (f, g, df, dg) = (self.value, other.value, self.gradient, other.gradient);
         let second = |i: usize, j: usize| df[i] * dg[j] + df[j] * dg[i];

@@ -40,8 +40,6 @@ pub struct Row<'a> {
 
 impl Raster {
     /// Checks that all coordinates are finite and that rows and columns are distinct.
-    /// # Errors
-    /// Numbers that are not finite, and steps that do not separate rows or columns.
     fn check(&self) -> Result<()> {
         let last = [0, 1].map(|axis| {
             let count = [self.columns, self.rows][axis];
@@ -60,13 +58,11 @@ impl Raster {
     }
 
     /// The abscissa of a column.
-    #[must_use]
     pub fn x(&self, column: usize) -> f64 {
         self.origin[0] + column as f64 * self.step[0]
     }
 
     /// The ordinate of a row.
-    #[must_use]
     pub fn y(&self, row: usize) -> f64 {
         self.origin[1] + row as f64 * self.step[1]
     }

@@ -29,7 +29,6 @@ const REMEMBERED: u32 = 6;
 /// Cost: O(3^k) areas for degrees k up to 2, then at most one evaluation for each subset of the knots.
 ///
 /// Source: Micchelli, "A constructive approach to Kergin interpolation in R^k", 1980; thesis, equation 6.3.
-#[must_use]
 pub fn simplex_spline(at: &DirectionalLimit, knots: &[Point2]) -> f64 {
     Evaluation::new(at, knots, false).of_all().map_or(0.0, |jet| jet.value)
 }
@@ -39,7 +38,6 @@ pub fn simplex_spline(at: &DirectionalLimit, knots: &[Point2]) -> f64 {
 ///
 /// Domain and cost: those of [`simplex_spline`]. The derivative in a direction y is k times the sum of `mu_v
 /// M(x | X \ v)`, if the `mu_v v` sum to y and the `mu_v` to zero.
-#[must_use]
 pub fn simplex_spline_jet(at: &DirectionalLimit, knots: &[Point2]) -> Jet {
     Evaluation::new(at, knots, true).of_all().unwrap_or_default()
 }

@@ -80,7 +80,6 @@ pub struct FunctionCounts {
 
 impl FunctionCounts {
     /// Counts functions.
-    #[must_use]
     pub fn of(functions: &[Function]) -> FunctionCounts {
         let mut counts = FunctionCounts::default();
         for function in functions {

@@ -29,9 +29,6 @@ pub struct Options {
 
 impl Options {
     /// Checks that the other options go with the special configurations.
-    ///
-    /// # Errors
-    /// Usage, if they do not.
     pub(super) fn check_special(&self) -> spmesh_base::error::Result<()> {
         let Some(special) = &self.special else { return Ok(()) };
         if matches!(self.rule, RuleName::Heights | RuleName::Weights) {
@@ -86,7 +83,6 @@ pub enum RuleName {
 
 impl RuleName {
     /// Whether knots must have values.
-    #[must_use]
     pub fn needs_values(self) -> bool {
         matches!(self, RuleName::Heights | RuleName::Weights | RuleName::Data)
     }

@@ -93,7 +93,6 @@ fn frame(coordinates: Coordinates, crs: Crs, has_elevation: bool) -> Frame {
 
 impl Sites {
     /// Sites without knots, for runs whose knots come from elsewhere; `name` appears in messages.
-    #[must_use]
     pub fn none(name: String) -> Sites {
         let frame = frame(Coordinates::F64, Crs::default(), false);
         Sites { name, points: Vec::new(), triangles: None, frame, notices: Vec::new() }

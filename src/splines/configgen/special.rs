@@ -63,9 +63,6 @@ impl SpecialKind {
     }
 
     /// Special configurations of knots, with the knots that they add.
-    ///
-    /// # Errors
-    /// As [`special::zp`], [`special::patches`] and [`special::features()`].
     pub(super) fn set_up(&self, knots: &Knots) -> Result<Special> {
         match self {
             SpecialKind::Boxes(split) => special::zp(knots, *split),

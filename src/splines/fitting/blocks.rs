@@ -30,9 +30,6 @@ impl<'a> Block<'a> {
 
 /// Reads all observations. `map` processes each block in any thread; `take` receives the results of
 /// consecutive blocks in order.
-///
-/// # Errors
-/// Those of the source, of `map` and of `take`; malformed, if an observation is invalid.
 pub(super) fn for_each_round<O: Observations + ?Sized, T: Send>(
     observations: &O,
     threads: NonZeroUsize,

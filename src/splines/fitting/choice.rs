@@ -59,7 +59,6 @@ pub struct Choice {
 
 impl Choice {
     /// Whether the floor is the best: the score suggests no smoothing, or even less.
-    #[must_use]
     pub fn is_at_floor(&self) -> bool {
         self.best.lambda <= self.least * 10f64.powf(TOLERANCE)
     }
@@ -129,9 +128,6 @@ impl Limits {
 }
 
 /// Searches for the least score.
-///
-/// # Errors
-/// Usage, if the start has no meaning; the error of the first trial, if no trial has a score.
 pub(super) fn search(limits: Limits, score: impl FnMut(f64) -> Result<f64>) -> Result<Choice> {
     let Limits { start, least, .. } = limits;
     if !(start > 0.0 && start.is_finite()) {

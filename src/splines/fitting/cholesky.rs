@@ -61,9 +61,6 @@ impl Elimination {
     }
 
     /// Factors a matrix with this pattern.
-    ///
-    /// # Errors
-    /// Not enough memory; a pivot that is not positive, which sums of squares do not have.
     pub(super) fn factor<'a>(&'a self, matrix: &'a Symmetric) -> Result<Factor<'a>> {
         assert_eq!(self.entries, matrix.entries_len(), "a matrix of another pattern");
         let scale: Vec<f64> =

@@ -73,9 +73,6 @@ fn triangles(basis: &Basis) -> Result<Vec<[Point2; 3]>> {
 }
 
 /// Calls `visit` with the triangles of a Delaunay triangulation of the knots, and their parts in the domain.
-///
-/// # Errors
-/// A domain without an area.
 pub(super) fn for_each_triangle(basis: &Basis, mut visit: impl FnMut(&[Point2; 3], &[Point2])) -> Result<()> {
     let mut clipper = Clipper::default();
     for triangle in triangles(basis)? {
@@ -85,9 +82,6 @@ pub(super) fn for_each_triangle(basis: &Basis, mut visit: impl FnMut(&[Point2; 3
 }
 
 /// Refuses knots over which no splines are whole.
-///
-/// # Errors
-/// Usage, if the domain has no area.
 pub(super) fn check_domain(basis: &Basis) -> Result<()> {
     if polygon::area(&basis.domain_corners()) > 0.0 {
         return Ok(());

@@ -20,7 +20,6 @@ pub struct Goal {
 
 impl Goal {
     /// A goal with the default smoothing, least squares, and these limits.
-    #[must_use]
     pub fn new(tolerance: f64, max_knots: usize) -> Goal {
         Goal { tolerance, max_knots, smoothing: 1.0, loss: None }
     }

@@ -122,13 +122,11 @@ impl<'a> Interpolation<'a> {
     /// third of the exact value.
     ///
     /// Source: Hager 1984; Higham, "Accuracy and Stability of Numerical Algorithms", 2002, algorithm 15.1.
-    #[must_use]
     pub fn condition_1(&self) -> f64 {
         self.norm() * self.inverse_norm().0
     }
 
     /// The condition in the 2-norm, from all singular values; `None` for more than 2,000 functions.
-    #[must_use]
     pub fn condition_2(&self) -> Option<f64> {
         let count = self.basis.len();
         if count > FULL_MAX {

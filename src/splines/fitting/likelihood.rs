@@ -47,18 +47,12 @@ impl Likelihood {
     /// compared.
     ///
     /// Cost: about seven factorisations.
-    ///
-    /// # Errors
-    /// Those of [`restricted_likelihood`].
     pub(super) fn choose(&mut self, equations: &Equations, limits: Limits) -> Result<Choice> {
         let of_energy = equations.log_determinant_of_energy()?;
         self.of_energy(equations, limits, of_energy)
     }
 
     /// Chooses as [`restricted_likelihood`] does. Its scores are those of one energy.
-    ///
-    /// # Errors
-    /// Those of [`restricted_likelihood`].
     pub(super) fn of_one(&mut self, equations: &Equations, limits: Limits) -> Result<Choice> {
         self.of_energy(equations, limits, 0.0)
     }

@@ -26,7 +26,6 @@ impl Mesh {
     }
 
     /// The points, in the order given.
-    #[must_use]
     pub fn points(&self) -> &[Point2] {
         &self.points
     }
@@ -95,7 +94,6 @@ impl Mesh {
     ///
     /// # Panics
     /// If there are fewer values than points, or no triangle `near`.
-    #[must_use]
     pub fn interpolate(&self, values: &[f64], x: Point2, near: &mut u32) -> Option<f64> {
         let triangle = self.locate(x, near)?;
         let [a, b, c] = self.corners(triangle);

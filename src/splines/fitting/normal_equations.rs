@@ -52,7 +52,6 @@ impl NormalEquations {
     }
 
     /// The weighted sum of squared residuals for these coefficients. Accuracy: about 1e-15 of z'Wz.
-    #[must_use]
     pub fn residual_square(&self, coefficients: &[f64]) -> f64 {
         let mixed: f64 = self.right.iter().zip(coefficients).map(|(right, c)| right * c).sum();
         (self.square - 2.0 * mixed + self.matrix.form(coefficients)).max(0.0)
@@ -65,14 +64,12 @@ impl NormalEquations {
     /// A thin plate with total weight W on an area A multiplies waves of wave number k by
     /// 1 / (1 + lambda k^4 A / W). Here k is pi over the spacing, and n observations have a spacing of
     /// sqrt(A / n).
-    #[must_use]
     pub fn default_lambda(&self, basis: &Basis) -> f64 {
         let area = polygon::area(&basis.domain_corners());
         self.weight * area / (self.count as f64 * std::f64::consts::PI.powi(2)).powi(2)
     }
 
     /// The area of the domain per observation.
-    #[must_use]
     pub fn area_per_observation(&self, basis: &Basis) -> f64 {
         polygon::area(&basis.domain_corners()) / self.count as f64
     }

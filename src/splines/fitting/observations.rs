@@ -20,7 +20,6 @@ pub struct Observation {
 
 impl Observation {
     /// An observation of weight one.
-    #[must_use]
     pub fn new(point: Point2, value: f64) -> Observation {
         Observation { point, value, weight: 1.0 }
     }
@@ -44,18 +43,12 @@ impl Observation {
 /// Observations that can be read several times, always in the same order.
 pub trait Observations {
     /// Starts a pass over all of them.
-    ///
-    /// # Errors
-    /// If they cannot be read.
     fn read(&self) -> Result<Box<dyn ObservationReader + '_>>;
 }
 
 /// One pass over observations.
 pub trait ObservationReader {
     /// Appends the next observations; appends none at the end.
-    ///
-    /// # Errors
-    /// If they cannot be read, or are malformed.
     fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()>;
 }
 

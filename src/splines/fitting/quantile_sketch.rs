@@ -27,7 +27,6 @@ impl QuantileSketch {
     }
 
     /// The lower median of magnitudes. Accuracy: as [`QuantileSketch::quantile`].
-    #[must_use]
     pub fn median(&self) -> Option<f64> {
         self.quantile(0.5)
     }
@@ -36,7 +35,6 @@ impl QuantileSketch {
     /// its class, at most half a percent off. `None` without numbers.
     ///
     /// Domain: 0 < `part` <= 1.
-    #[must_use]
     pub fn quantile(&self, part: f64) -> Option<f64> {
         let enough = (part * self.total as f64).ceil() as u64;
         let mut below = 0;

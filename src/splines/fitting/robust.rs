@@ -143,14 +143,12 @@ pub fn robust_on<O: Observations + ?Sized>(
 impl RobustFit {
     /// Observations of weight one whose residual is greater are *rejected*, unless many residuals near them
     /// are great, too.
-    #[must_use]
     pub fn limit(&self) -> f64 {
         TUKEY * self.scale
     }
 
     /// Whether an observation is rejected: its residual, times the root of the weight, is greater than 4.685
     /// local scales.
-    #[must_use]
     pub fn is_rejected(&self, found: &Residual) -> bool {
         found.residual.abs() * found.weight.sqrt() > self.limit_at(found.point)
     }
@@ -195,9 +193,6 @@ pub(super) struct Rounds<'a, O: ?Sized> {
 
 impl<O: Observations + ?Sized> Rounds<'_, O> {
     /// Fits with a loss, from the normal equations of all observations.
-    ///
-    /// # Errors
-    /// Those of [`robust()`].
     pub(super) fn fit(&self, loss: Loss, plain: &NormalEquations) -> Result<RobustFit> {
         let mut start = self.start(plain)?;
         if loss == Loss::Tukey {
@@ -207,9 +202,6 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
     }
 
     /// The fit with Huber's loss.
-    ///
-    /// # Errors
-    /// Those of [`robust()`].
     pub(super) fn start(&self, plain: &NormalEquations) -> Result<RobustStart> {
         let equations = Equations::new(self.basis, plain, self.energy)?;
         let Solution { coefficients, has_converged: is_solved } = equations.solution(self.lambda)?;

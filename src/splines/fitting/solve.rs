@@ -101,7 +101,6 @@ impl<'a> Equations<'a> {
 
     /// The equations with the energy that splines have after the best linear function is subtracted. Only
     /// constants may have no energy, as with [`with_tension`](super::with_tension).
-    #[must_use]
     pub fn in_tension(self) -> Equations<'a> {
         Equations { linear: self.energy.map(|energy| LinearPart::of(self.basis, energy)), ..self }
     }
@@ -112,13 +111,11 @@ impl<'a> Equations<'a> {
     }
 
     /// The normal equations.
-    #[must_use]
     pub fn normal(&self) -> &NormalEquations {
         self.normal
     }
 
     /// The default `lambda`: see [`NormalEquations::default_lambda`].
-    #[must_use]
     pub fn default_lambda(&self) -> f64 {
         self.normal.default_lambda(self.basis)
     }
@@ -166,7 +163,6 @@ impl<'a> Equations<'a> {
     /// The `lambda` for which observations and energy count alike: the median ratio of their diagonals. It
     /// serves as the unit of `lambda`, and is zero without an energy. (The ratio of traces would depend on
     /// the few functions with knots near lines, which are stiff.)
-    #[must_use]
     pub fn unit(&self) -> f64 {
         let Some(energy) = self.energy else { return 0.0 };
         let both = self.normal.matrix.diagonal().zip(energy.diagonal());
@@ -226,9 +222,6 @@ impl<'a> Equations<'a> {
     ///
     /// Some coefficients are held by springs, as many as there are functions without energy: the determinant
     /// is then that of the springs, times that of the energy for fixed ends, which is a known multiple.
-    ///
-    /// # Errors
-    /// No energy; not enough memory.
     pub(super) fn log_determinant_of_energy(&self) -> Result<f64> {
         let energy = self.energy.ok_or_else(|| Error::usage("there is no energy"))?;
         let (held, volume) = if self.linear.is_some() { (vec![0], 0.0) } else { corners(self.basis) };

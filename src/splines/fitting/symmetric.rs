@@ -40,19 +40,16 @@ impl Symmetric {
     }
 
     /// Number of rows.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.offsets.len() - 1
     }
 
     /// Whether there is no row.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Number of entries of the upper triangle that are held.
-    #[must_use]
     pub fn entries_len(&self) -> usize {
         self.values.len()
     }
@@ -69,7 +66,6 @@ impl Symmetric {
     }
 
     /// The entry at a row and a column: zero where nothing is held.
-    #[must_use]
     pub fn at(&self, row: usize, column: usize) -> f64 {
         let (row, column) = (row.min(column), row.max(column));
         let range = self.offsets[row]..self.offsets[row + 1];
@@ -78,13 +74,11 @@ impl Symmetric {
     }
 
     /// The sum of the diagonal.
-    #[must_use]
     pub fn trace(&self) -> f64 {
         self.diagonal().sum()
     }
 
     /// The product with a vector.
-    #[must_use]
     pub fn times(&self, x: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.len()];
         for row in 0..self.len() {
@@ -101,7 +95,6 @@ impl Symmetric {
     }
 
     /// The quadratic form x'Mx.
-    #[must_use]
     pub fn form(&self, x: &[f64]) -> f64 {
         self.times(x).iter().zip(x).map(|(product, x)| product * x).sum()
     }

@@ -32,7 +32,6 @@ pub enum Attribute {
 
 impl Attribute {
     /// The names of its columns in tables.
-    #[must_use]
     pub fn columns(self) -> &'static [&'static str] {
         match self {
             Attribute::Value => &["value"],
@@ -46,13 +45,11 @@ impl Attribute {
     }
 
     /// Whether the attribute is a single number.
-    #[must_use]
     pub fn is_single(self) -> bool {
         self.columns().len() == 1
     }
 
     /// The attribute at a point, or its first number if it has several, from a jet in world coordinates.
-    #[must_use]
     pub fn of(self, jet: &Jet) -> f64 {
         let [p, q] = jet.gradient;
         let [r, s, t] = jet.hessian;

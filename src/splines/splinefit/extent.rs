@@ -43,7 +43,6 @@ impl Extent {
     ///
     /// Cost: an evaluation at each Greville site and knot. Accuracy: rounding errors for the places, and
     /// local extremes there; a narrow peak between all sites may be higher.
-    #[must_use]
     pub fn of(spline: &Spline) -> Option<Extent> {
         let basis = &spline.layout.basis;
         let mut scratch = Scratch::default();
@@ -68,7 +67,6 @@ impl Extent {
     }
 
     /// How far it leaves a range; `None` if it does not.
-    #[must_use]
     pub fn excess(&self, [low, high]: [f64; 2]) -> Option<Excess> {
         let (below, above) = (low - self.least.0, self.greatest.0 - high);
         let ((value, place), by) = if below > above { (self.least, below) } else { (self.greatest, above) };

@@ -25,7 +25,6 @@ impl Frame {
     }
 
     /// The frame of world coordinates.
-    #[must_use]
     pub fn world(crs: Crs) -> Frame {
         Frame::new(Coordinates::F64, crs)
     }
@@ -44,7 +43,6 @@ impl Frame {
 
     /// The stored coordinates of a place in the world, not rounded to the grid of knots.
     #[inline]
-    #[must_use]
     pub fn to_stored(&self, world: Point2) -> Point2 {
         match self.coordinates {
             Coordinates::F64 => world,
@@ -55,20 +53,17 @@ impl Frame {
     }
 
     /// The world coordinates of a stored place.
-    #[must_use]
     pub fn to_world(&self, stored: Point2) -> Point2 {
         to_world(&self.coordinates, stored)
     }
 
     /// The world coordinates of a stored place as users read them.
-    #[must_use]
     pub fn to_decimal(&self, [x, y]: Point2) -> Point2 {
         let [x, y, _] = self.coordinates.to_decimal([x, y, 0.0]);
         [x, y]
     }
 
     /// Length of a step of stored coordinates. Units: those of the world.
-    #[must_use]
     pub fn step(&self) -> f64 {
         match self.coordinates {
             Coordinates::F64 => 1.0,
@@ -77,7 +72,6 @@ impl Frame {
     }
 
     /// Converts a jet with respect to stored coordinates to world coordinates. Values are the same in both.
-    #[must_use]
     pub fn jet_to_world(&self, jet: Jet) -> Jet {
         let step = self.step();
         Jet {
@@ -98,9 +92,6 @@ impl Frame {
     }
 
     /// Adopts the reference system of the points if the reference system of the knots is unknown.
-    ///
-    /// # Errors
-    /// Usage, if both are known and differ.
     pub(super) fn join(&mut self, crs: &Crs) -> Result<()> {
         match (&self.crs, crs) {
             (_, Crs::Unknown) => Ok(()),

@@ -11,9 +11,6 @@ use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::source::{Input, Opened};
 
 /// The layout of functions over given knots.
-///
-/// # Errors
-/// Knots on one line; a degree that the file does not have; those of reading.
 pub(super) fn layout(source: Opened, name: &str, options: &Options) -> Result<Layout> {
     let degree = options.degree;
     match source {

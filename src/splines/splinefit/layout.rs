@@ -49,9 +49,6 @@ impl Layout {
     /// Builds a layout from a set of knots. Of several degrees, it takes the configurations for splines of
     /// degree `degree`. If that is `None`, it takes those of the functions listed, or else the highest
     /// degree.
-    ///
-    /// # Errors
-    /// Usage, if the set lacks the degree; those of [`Basis`].
     fn of_set(set: ConfigurationSet, header: &Header, degree: Option<usize>) -> Result<Layout> {
         let ConfigurationSet { points, mut degrees, functions, .. } = set;
         let wanted = match degree {
@@ -83,9 +80,6 @@ impl Layout {
     }
 
     /// Reads a stream of configurations, or of a spline. The coefficients are empty if it has none.
-    ///
-    /// # Errors
-    /// Those of [`Layout::of_set`]; a damaged stream.
     pub(super) fn read(
         mut source: Box<dyn EventSource>,
         name: &str,
@@ -120,7 +114,6 @@ impl Layout {
     }
 
     /// Number of distinct places of knots.
-    #[must_use]
     pub fn places(&self) -> usize {
         (0..self.knots.len() as u32).filter(|&id| self.knots.rank(id) == 0).count()
     }

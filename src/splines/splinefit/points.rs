@@ -92,32 +92,27 @@ impl Points {
     }
 
     /// The name of the input in messages.
-    #[must_use]
     pub fn name(&self) -> String {
         self.input.name()
     }
 
     /// Notices about the files for the user.
-    #[must_use]
     pub fn notices(&self) -> Vec<String> {
         let dropped = self.input.withheld_notice().into_iter().chain(self.input.invalid_notice());
         self.input.notices().iter().cloned().chain(dropped).collect()
     }
 
     /// The coordinate reference system.
-    #[must_use]
     pub fn crs(&self) -> &Crs {
         &self.input.description().crs
     }
 
     /// Number of points.
-    #[must_use]
     pub fn count(&self) -> u64 {
         self.count
     }
 
     /// The range of most elevations, estimated from a sample, so that a few gross errors change it little.
-    #[must_use]
     pub fn range(&self) -> [f64; 2] {
         let ends = [OUTSIDE, 1.0 - OUTSIDE];
         let place = |part: f64| (part * self.sample.len().saturating_sub(1) as f64).round() as usize;
@@ -253,9 +248,6 @@ impl<'a> Cursor<'a> {
     }
 
     /// The point with this number; numbers must not decrease from call to call.
-    ///
-    /// # Errors
-    /// Those of the source; fewer points than in the first pass.
     pub(super) fn at(&mut self, index: u64) -> Result<(Point2, f64)> {
         while index >= self.first + self.batch.len() as u64 {
             self.first += self.batch.len() as u64;

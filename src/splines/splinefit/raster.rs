@@ -29,7 +29,6 @@ impl Spline {
     }
 
     /// The coordinate reference system of its domain.
-    #[must_use]
     pub fn crs(&self) -> &Crs {
         &self.layout.frame.crs
     }

@@ -30,9 +30,6 @@ pub fn write_residuals(
 }
 
 /// Writes the points that a robust fit rejects. Returns their number.
-///
-/// # Errors
-/// As [`write_residuals`].
 pub(super) fn write_rejected(
     fit: &RobustFit,
     spline: &Spline,

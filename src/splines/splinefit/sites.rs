@@ -15,9 +15,6 @@ pub(super) struct Site {
 
 /// Calls `take` with each site, in their order. `take` returns whether the site is in the domain. Returns the
 /// number of sites, and the number of sites outside. `done` gets the number of sites so far.
-///
-/// # Errors
-/// If sites cannot be read; those of `take`.
 pub(super) fn for_each_site(
     sites: &Input,
     mut done: impl FnMut(u64),

@@ -37,7 +37,6 @@ pub struct Statistics {
 
 impl Statistics {
     /// How far the spline leaves the range of elevations; `None` if it does not.
-    #[must_use]
     pub fn excess(&self) -> Option<Excess> {
         self.extent?.excess(self.range?)
     }

@@ -7,9 +7,6 @@ use std::io::Write;
 use spmesh_base::error::{Error, Result};
 
 /// Writes the line of names.
-///
-/// # Errors
-/// If writing fails.
 pub(super) fn write_title<'a>(
     output: &mut (impl Write + ?Sized),
     columns: impl IntoIterator<Item = &'a &'a str>,

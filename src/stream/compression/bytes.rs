@@ -7,9 +7,6 @@ pub(super) struct Bytes<'a>(pub(super) &'a [u8]);
 
 impl<'a> Bytes<'a> {
     /// The next `len` bytes.
-    ///
-    /// # Errors
-    /// If fewer are left.
     pub(super) fn take(&mut self, len: usize) -> Result<&'a [u8], Fault> {
         let (taken, rest) = self.0.split_at_checked(len).ok_or("cut off")?;
         self.0 = rest;

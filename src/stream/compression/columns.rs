@@ -105,9 +105,6 @@ impl<'a> ColumnReader<'a> {
     }
 
     /// Tokens that are bytes as they are.
-    ///
-    /// # Errors
-    /// If fewer are left.
     pub(super) fn bytes(&mut self, count: usize) -> Result<&'a [u8], Fault> {
         let (taken, rest) = self.tokens.split_at_checked(count).ok_or("too few tokens")?;
         self.tokens = rest;
@@ -115,9 +112,6 @@ impl<'a> ColumnReader<'a> {
     }
 
     /// A column of `count` numbers with the parameter `k`.
-    ///
-    /// # Errors
-    /// If there is no such parameter, a token stands for no number, or tokens or bits are missing.
     pub(super) fn column(&mut self, count: usize, k: u8) -> Result<Vec<u32>, Fault> {
         let codes = codes(k)?;
         let tokens = self.bytes(count)?;
@@ -145,9 +139,6 @@ impl<'a> ColumnReader<'a> {
     }
 
     /// Checks that nothing is left but the rest of the last byte of bits.
-    ///
-    /// # Errors
-    /// If not.
     pub(super) fn check_end(&self) -> Result<(), Fault> {
         if !self.tokens.is_empty() {
             return Err("tokens are left");

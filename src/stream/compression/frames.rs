@@ -95,9 +95,6 @@ pub(super) struct Unpacker {
 
 impl Unpacker {
     /// The content of the one frame that `frame` is, at most `len_max` bytes.
-    ///
-    /// # Errors
-    /// If it is not one frame, is damaged or needs a dictionary, or its content is longer.
     pub(super) fn unpack(&mut self, frame: &[u8], len_max: usize) -> Result<&[u8], Fault> {
         let is_one = frame.starts_with(&MAGIC)
             && find_frame_compressed_size(frame).is_ok_and(|len| len == frame.len());

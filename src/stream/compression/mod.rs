@@ -55,7 +55,6 @@ impl Method {
 
 /// A zstd frame (RFC 8878) of any bytes, for formats that hold such frames.
 #[cfg(feature = "zstd")]
-#[must_use]
 pub fn zstd_frame(bytes: &[u8]) -> Vec<u8> {
     Packer::default().records(bytes).to_vec()
 }
@@ -101,9 +100,6 @@ pub(super) struct Decompressor {
 impl Decompressor {
     /// Puts the payload that `compressed` stands for into `payload`, at most
     /// [`spmesh_base::limits::BLOCK_PAYLOAD_MAX`] bytes.
-    ///
-    /// # Errors
-    /// Malformed, if it stands for none.
     pub(super) fn decompress(&mut self, compressed: &[u8], payload: &mut Vec<u8>) -> Result<()> {
         payload.clear();
         let Some((&byte, body)) = compressed.split_first() else {

@@ -74,9 +74,6 @@ impl Operation {
     }
 
     /// The operation of a token.
-    ///
-    /// # Errors
-    /// If there is none.
     pub(super) fn of_code(code: u8) -> Result<Operation, Fault> {
         if code < LOOSE {
             let given = [code / 9, code / 3 % 3, code % 3];

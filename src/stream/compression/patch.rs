@@ -110,8 +110,6 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// # Errors
-    /// If the payload is not that of a patch of triangles.
     fn of(payload: &'a [u8]) -> Result<Parts<'a>, Fault> {
         let mut bytes = Bytes(payload);
         let head = Head::take(&mut bytes)?;
@@ -165,9 +163,6 @@ fn id_gaps(ids: &[u8]) -> Vec<u64> {
 }
 
 /// Appends the patch of a compressed payload, which is given without its method.
-///
-/// # Errors
-/// If it is malformed.
 pub(super) fn decode(body: &[u8], unpacker: &mut Unpacker, payload: &mut Vec<u8>) -> Result<(), Fault> {
     let mut bytes = Bytes(body);
     let head = Head::take(&mut bytes)?;

@@ -192,9 +192,6 @@ impl Corners {
 
 /// The triangles of the columns, and the parents of the new vertices. Vertices of triangles are in range and
 /// different.
-///
-/// # Errors
-/// If the columns are too short, or refer to what does not exist.
 pub(super) fn decode(
     new: usize,
     vertices: usize,

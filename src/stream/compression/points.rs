@@ -60,9 +60,6 @@ fn add_lengths(keys: &mut [u8], residuals: &[u32], axis: usize) {
 }
 
 /// Appends the points of a compressed payload, which is given without its method.
-///
-/// # Errors
-/// If it is malformed.
 pub(super) fn decode(body: &[u8], unpacker: &mut Unpacker, payload: &mut Vec<u8>) -> Result<(), Fault> {
     let mut bytes = Bytes(body);
     let count = bytes.count()?;

@@ -71,9 +71,6 @@ pub(super) fn encode(payload: &[u8], shape: Shape, packer: &mut Packer, compress
 }
 
 /// Appends the payload of its compressed form, which is given without its method.
-///
-/// # Errors
-/// If it is malformed.
 pub(super) fn decode(body: &[u8], unpacker: &mut Unpacker, payload: &mut Vec<u8>) -> Result<(), Fault> {
     let mut bytes = Bytes(body);
     let record_len = bytes.u16()?;

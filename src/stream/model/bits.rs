@@ -2,7 +2,6 @@
 
 /// Moves bit i to bit 2i.
 #[inline(always)]
-#[must_use]
 pub fn spread2(x: u32) -> u64 {
     let mut x = u64::from(x);
     x = (x | x << 16) & 0x0000_ffff_0000_ffff;
@@ -14,7 +13,6 @@ pub fn spread2(x: u32) -> u64 {
 
 /// Undoes [`spread2`]: moves bit 2i to bit i and ignores odd bits.
 #[inline(always)]
-#[must_use]
 pub(crate) fn gather2(x: u64) -> u32 {
     let mut x = x & 0x5555_5555_5555_5555;
     x = (x | x >> 1) & 0x3333_3333_3333_3333;
@@ -26,7 +24,6 @@ pub(crate) fn gather2(x: u64) -> u32 {
 
 /// Moves bit i to bit 3i, for the lowest 21 bits.
 #[inline(always)]
-#[must_use]
 pub fn spread3(x: u32) -> u64 {
     let mut x = u64::from(x) & 0x1f_ffff;
     x = (x | x << 32) & 0x001f_0000_0000_ffff;
@@ -38,7 +35,6 @@ pub fn spread3(x: u32) -> u64 {
 
 /// Undoes [`spread3`]: moves bit 3i to bit i and ignores the other bits.
 #[inline(always)]
-#[must_use]
 pub fn gather3(x: u64) -> u32 {
     let mut x = x & 0x1249_2492_4924_9249;
     x = (x | x >> 2) & 0x10c3_0c30_c30c_30c3;

@@ -18,13 +18,11 @@ pub struct Bounds {
 impl Bounds {
     /// The bounding box of a single point.
     #[inline]
-    #[must_use]
     pub fn of_point(point: Point) -> Self {
         Bounds { min: point, max: point }
     }
 
     /// The bounding box of `points`, or `None` if there are none.
-    #[must_use]
     pub fn of_points(points: &[Point]) -> Option<Self> {
         let (&first, rest) = points.split_first()?;
         let mut bounds = Bounds::of_point(first);
@@ -52,7 +50,6 @@ impl Bounds {
 
     /// The smallest box that holds all points of this box in a region; `None` if there are none. `are_whole`
     /// says that coordinates are integers.
-    #[must_use]
     pub fn within<const D: usize>(&self, region: &Region<D>, are_whole: bool) -> Option<Bounds> {
         let mut bounds = *self;
         for axis in 0..D {
@@ -67,7 +64,6 @@ impl Bounds {
 
     /// Whether `point` lies in the closed box.
     #[inline]
-    #[must_use]
     pub fn contains(&self, point: Point) -> bool {
         (0..3).all(|axis| self.min[axis] <= point[axis] && point[axis] <= self.max[axis])
     }
@@ -90,7 +86,6 @@ impl Region {
 
 impl Region<3> {
     /// The region with the given lower and upper sides along the first axes, unbounded along the others.
-    #[must_use]
     pub fn of_sides(lower: &[f64], upper: &[f64]) -> Self {
         let mut region = Region::EVERYTHING;
         region.min.iter_mut().zip(lower).for_each(|(side, &given)| *side = given);
@@ -104,14 +99,12 @@ impl<const D: usize> Region<D> {
     pub const EVERYTHING: Region<D> = Region { min: [f64::NEG_INFINITY; D], max: [f64::INFINITY; D] };
 
     /// The region between two corners; only their first D coordinates count.
-    #[must_use]
     pub fn between(min: Point, max: Point) -> Self {
         Region { min: std::array::from_fn(|axis| min[axis]), max: std::array::from_fn(|axis| max[axis]) }
     }
 
     /// The same region in space, unbounded along the axes that it does not have.
     #[inline]
-    #[must_use]
     pub fn in_space(&self) -> Region<3> {
         Region::of_sides(&self.min, &self.max)
     }
@@ -124,21 +117,18 @@ impl<const D: usize> Region<D> {
 
     /// Whether the first D coordinates of `point` lie in the half-open box.
     #[inline]
-    #[must_use]
     pub fn contains(&self, point: Point) -> bool {
         (0..D).all(|axis| self.min[axis] <= point[axis] && point[axis] < self.max[axis])
     }
 
     /// Whether no point of `inner` lies outside of this box.
     #[inline]
-    #[must_use]
     pub fn covers(&self, inner: &Self) -> bool {
         (0..D).all(|axis| self.min[axis] <= inner.min[axis] && inner.max[axis] <= self.max[axis])
     }
 
     /// Whether the two half-open boxes have a point in common.
     #[inline]
-    #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
         (0..D).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
     }

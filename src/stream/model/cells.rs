@@ -34,7 +34,6 @@ impl CellTree {
     /// Domain: `side` is a normal power of two; `origin` is a multiple of `side / 2^31`, and
     /// `|origin| + side < side * 2^22`. Then every border down to level 31 is a multiple of `side / 2^31`
     /// with a factor below 2^53, which f64 represents exactly.
-    #[must_use]
     pub fn new(dims: u8, depth: u8, origin: Point, side: f64) -> Option<Self> {
         let unit = side / FINEST_CELLS;
         let is_power_of_two = side > 0.0 && side.is_normal() && mantissa(side) == 0;
@@ -54,7 +53,6 @@ impl CellTree {
     /// The smallest tree of `depth` levels whose cube contains `bounds` and whose borders are exact.
     ///
     /// `None` if no such cube is finite (extents near the end of the range of f64).
-    #[must_use]
     pub fn covering(bounds: &Bounds, dims: u8, depth: u8) -> Option<Self> {
         let axes = 0..usize::from(dims);
         let extent = axes.clone().map(|axis| bounds.max[axis] - bounds.min[axis]).fold(0.0, f64::max);
@@ -80,38 +78,32 @@ impl CellTree {
     }
 
     /// Number of dimensions, 2 or 3.
-    #[must_use]
     pub fn dims(&self) -> u8 {
         self.dims
     }
 
     /// Deepest level that a cell can have; the root has level 0.
-    #[must_use]
     pub fn depth(&self) -> u8 {
         self.depth
     }
 
     /// Lower corner of the cube.
-    #[must_use]
     pub fn origin(&self) -> Point {
         self.origin
     }
 
     /// Side of the cube, a power of two.
-    #[must_use]
     pub fn side(&self) -> f64 {
         self.side
     }
 
     /// Whether `point` lies in the half-open cube.
-    #[must_use]
     pub fn contains(&self, point: Point) -> bool {
         self.axes()
             .all(|axis| self.origin[axis] <= point[axis] && point[axis] < self.origin[axis] + self.side)
     }
 
     /// The cell of `level` that contains `point`, which must lie in the cube.
-    #[must_use]
     pub fn cell_of(&self, point: Point, level: u8) -> CellCode {
         debug_assert!(level <= self.depth && self.contains(point));
         let mut index = [0u32; 3];
@@ -122,7 +114,6 @@ impl CellTree {
     }
 
     /// The cell of `level` at integer coordinates `index`, each below `2^level`.
-    #[must_use]
     pub fn encode(&self, level: u8, index: [u32; 3]) -> CellCode {
         let morton = if self.dims == 2 {
             spread2(index[0]) | spread2(index[1]) << 1
@@ -133,7 +124,6 @@ impl CellTree {
     }
 
     /// Level and integer coordinates of `cell`.
-    #[must_use]
     pub fn decode(&self, cell: CellCode) -> (u8, [u32; 3]) {
         let level = self.level(cell);
         let morton = cell.0 ^ 1 << (self.dims * level);
@@ -146,20 +136,17 @@ impl CellTree {
     }
 
     /// Whether `cell` is a cell of this tree.
-    #[must_use]
     pub fn is_valid(&self, cell: CellCode) -> bool {
         let bits = 63 - cell.0.max(1).leading_zeros();
         cell.0 > 0 && bits.is_multiple_of(u32::from(self.dims)) && bits <= u32::from(self.dims * self.depth)
     }
 
     /// Level of `cell`; the root has level 0.
-    #[must_use]
     pub fn level(&self, cell: CellCode) -> u8 {
         (63 - cell.0.leading_zeros()) as u8 / self.dims
     }
 
     /// The cell that contains `cell` one level up; `None` for the root.
-    #[must_use]
     pub fn parent(&self, cell: CellCode) -> Option<CellCode> {
         (cell != CellCode::ROOT).then_some(CellCode(cell.0 >> self.dims))
     }
@@ -171,14 +158,12 @@ impl CellTree {
     }
 
     /// The range of location codes of the deepest level inside `cell`; they are consecutive.
-    #[must_use]
     pub fn deepest_range(&self, cell: CellCode) -> std::ops::Range<u64> {
         let shift = self.dims * (self.depth - self.level(cell));
         cell.0 << shift..(cell.0 + 1) << shift
     }
 
     /// Lower (included) and upper (excluded) corner of `cell`, exact.
-    #[must_use]
     pub fn corners(&self, cell: CellCode) -> (Point, Point) {
         let (level, index) = self.decode(cell);
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);

@@ -55,7 +55,6 @@ impl Cells4 {
     ///
     /// # Panics
     /// If `order` contains other numbers.
-    #[must_use]
     pub fn from_lists(mut vertices: Lists4, neighbours: Lists4, order: &[u32], finite: usize) -> Cells4 {
         let starts = |&list: &u32| [vertices.starts[list as usize], neighbours.starts[list as usize]];
         let starts = order.iter().map(starts).collect();
@@ -67,13 +66,11 @@ impl Cells4 {
 
     /// Number of cells.
     #[inline]
-    #[must_use]
     pub fn len(&self) -> usize {
         self.starts.len()
     }
 
     /// Whether there are no cells.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.starts.is_empty()
     }
@@ -97,7 +94,6 @@ impl Cells4 {
 
     /// The cell of this number.
     #[inline]
-    #[must_use]
     pub fn get(&self, number: usize) -> Cell4<'_> {
         let [start, neighbours_start] = self.starts[number].map(|start| start as usize);
         let [count, vertices @ ..] = &self.vertices[start..] else { unreachable!("a word before each list") };
@@ -145,7 +141,6 @@ impl Eq for Cells4 {}
 
 impl Lists4 {
     /// No lists, with capacity for some lists of so many numbers in total.
-    #[must_use]
     pub fn with_capacity(lists: usize, numbers: usize) -> Lists4 {
         let mut words = Vec::with_capacity(lists + numbers + 1);
         words.push(0);
@@ -158,7 +153,6 @@ impl Lists4 {
     ///
     /// # Panics
     /// As [`Lists4::end`].
-    #[must_use]
     pub fn joined(parts: impl IntoIterator<Item = Lists4>) -> Lists4 {
         let mut parts = parts.into_iter();
         let mut joined = parts.next().unwrap_or_else(|| Lists4::with_capacity(0, 0));
@@ -175,26 +169,22 @@ impl Lists4 {
 
     /// Number of lists.
     #[inline]
-    #[must_use]
     pub fn len(&self) -> usize {
         self.starts.len() - 1
     }
 
     /// Whether there are no lists.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Bytes that the lists take.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         size_of::<u32>() * (self.words.len() + self.starts.len())
     }
 
     /// The list of this number.
     #[inline(always)]
-    #[must_use]
     pub fn get(&self, number: usize) -> &[u32] {
         list(&self.words, self.starts[number] as usize)
     }

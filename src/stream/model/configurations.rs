@@ -116,25 +116,21 @@ impl Configurations {
     }
 
     /// Boundaries of all groups, concatenated.
-    #[must_use]
     pub fn boundaries(&self) -> &[[u32; 3]] {
         &self.boundaries
     }
 
     /// The interior set of group `index`.
-    #[must_use]
     pub fn interior(&self, index: usize) -> &[u32] {
         &self.interiors[index * self.degree..][..self.degree]
     }
 
     /// The number of the first boundary after group `index`.
-    #[must_use]
     pub fn group_end(&self, index: usize) -> usize {
         self.offsets[index + 1] as usize
     }
 
     /// An empty list, to be filled with [`Configurations::extend`].
-    #[must_use]
     pub fn new(degree: usize, claim: Claim) -> Configurations {
         Configurations::empty(degree, claim)
     }
@@ -165,44 +161,37 @@ impl Configurations {
     }
 
     /// The claim; it follows from the way the configurations were made.
-    #[must_use]
     pub fn claim(&self) -> Claim {
         self.claim
     }
 
     /// The degree k: the size of interior sets.
-    #[must_use]
     pub fn degree(&self) -> usize {
         self.degree
     }
 
     /// Number of configurations, without the infinite ones.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.finite
     }
 
     /// Whether there are no configurations but infinite ones.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.finite == 0
     }
 
     /// Number of infinite configurations, that is, of directed lines through two knots with k knots to their
     /// left.
-    #[must_use]
     pub fn infinite_len(&self) -> usize {
         self.boundaries.len() - self.finite
     }
 
     /// Number of interior sets that have a configuration, finite or infinite.
-    #[must_use]
     pub fn group_count(&self) -> usize {
         self.offsets.len() - 1
     }
 
     /// Group `index` of the order of interior sets.
-    #[must_use]
     pub fn group(&self, index: usize) -> Group<'_> {
         let all = &self.boundaries[self.offsets[index] as usize..self.offsets[index + 1] as usize];
         let (triangles, infinite) = all.split_at(all.partition_point(|triangle| triangle[2] != FARAWAY));
@@ -221,7 +210,6 @@ impl Configurations {
     }
 
     /// Bytes held.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         4 * (self.interiors.capacity() + self.offsets.capacity()) + 12 * self.boundaries.capacity()
     }
@@ -265,13 +253,11 @@ pub struct Link<'a> {
 
 impl Link<'_> {
     /// Whether the link bounds a null polygon: two edges, back and forth.
-    #[must_use]
     pub fn is_null(&self) -> bool {
         self.polygon.len() == 2
     }
 
     /// Whether the link goes through the faraway point, where B-splines are not defined.
-    #[must_use]
     pub fn is_infinite(&self) -> bool {
         self.polygon.contains(&FARAWAY)
     }
@@ -285,7 +271,6 @@ impl Link<'_> {
 
 impl Links {
     /// An empty list for links of sets of this size.
-    #[must_use]
     pub fn new(size: usize) -> Links {
         Links { size, sets: Vec::new(), offsets: vec![0], vertices: Vec::new() }
     }
@@ -299,25 +284,21 @@ impl Links {
     }
 
     /// Size of the sets: one more than the degree of the configurations.
-    #[must_use]
     pub fn size(&self) -> usize {
         self.size
     }
 
     /// Number of links.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.offsets.len() - 1
     }
 
     /// Whether there is no link.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Link `index` in the order of sets.
-    #[must_use]
     pub fn link(&self, index: usize) -> Link<'_> {
         Link {
             set: &self.sets[index * self.size..][..self.size],
@@ -331,7 +312,6 @@ impl Links {
     }
 
     /// Index of the link of a sorted set. Cost: a binary search.
-    #[must_use]
     pub fn find(&self, set: &[u32]) -> Option<usize> {
         let (mut low, mut high) = (0, self.len());
         while low < high {

@@ -7,9 +7,6 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::wide::{Loop, run_wide};
 
 /// Appends the stored form of `point`.
-///
-/// # Errors
-/// [`spmesh_base::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
 pub(super) fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
     for &value in &point[..header.coordinates_per_point()] {
         if !header.coordinates.can_store(value) {

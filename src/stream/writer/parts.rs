@@ -9,9 +9,6 @@ use spmesh_base::error::Result;
 
 impl<W: Write> StreamWriter<W> {
     /// Writes what a patch says about vertices of other parts, if anything, before the patch.
-    ///
-    /// # Errors
-    /// Malformed, if it breaks a rule; I/O, if writing fails.
     pub(super) fn write_shared(&mut self, patch: &Patch) -> Result<()> {
         check_shared(self.header.part, patch)?;
         self.write_origins(patch.origins.iter().copied())?;

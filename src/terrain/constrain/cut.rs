@@ -128,9 +128,6 @@ impl Cut {
 
     /// Keeps a triangle until the end if it may be removed, and returns whether it did. Vertices have their
     /// ids in the output; `on` are the segments of the sides opposite to them.
-    ///
-    /// # Errors
-    /// As [`ConcaveOutline::take_edges`].
     pub(super) fn waits(
         &mut self,
         ids: [u64; 3],
@@ -164,9 +161,6 @@ impl Cut {
     }
 
     /// Ends the mesh: the triangles that waited, and their vertices, in order.
-    ///
-    /// # Errors
-    /// If the temporary file cannot be read.
     pub(super) fn finish(&mut self) -> Result<Option<(Inside, Vec<u64>)>> {
         let Some(mut outline) = self.outline.take() else { return Ok(None) };
         let vertices = outline.take_vertices();

@@ -34,9 +34,6 @@ pub(super) struct Strip {
 ///
 /// Vertices with elevations come first, and the segments between them. The others take their elevation from
 /// this surface.
-///
-/// # Errors
-/// Malformed, if segments cross.
 pub(super) fn triangulate(
     triangles: &[Held],
     holding: &Holding,

@@ -76,9 +76,6 @@ impl<W: Write> Writing<W> {
 
     /// Whether a triangle of the input stays in its patch: it is not cut off, and cannot be later. `ids` are
     /// those of the input, `on` the segments of its sides.
-    ///
-    /// # Errors
-    /// If triangles that wait need too much memory.
     #[inline]
     pub(super) fn keeps(
         &mut self,

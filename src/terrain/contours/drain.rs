@@ -38,9 +38,6 @@ impl<'a, W: Write> Drain<'a, W> {
     }
 
     /// Writes lines, and takes them from the list.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn write<P: Place>(&mut self, complete: &mut Vec<Contour<P>>) -> Result<()> {
         for Contour { level, points, is_closed } in complete.drain(..) {
             let mut points = P::line(points, is_closed, &self.plane);

@@ -53,9 +53,6 @@ impl<W: Write> LineWriter<W> {
 
     /// Writes a line of at least two points, in world coordinates. A ring repeats its first point at the end. An
     /// index line is one that maps draw thicker.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn line(
         &mut self,
         elevation: f64,
@@ -91,9 +88,6 @@ impl<W: Write> LineWriter<W> {
     }
 
     /// Ends the output.
-    ///
-    /// # Errors
-    /// If writing fails.
     pub(super) fn end(mut self) -> Result<()> {
         if self.format == LineFormat::GeoJson {
             self.text.extend_from_slice(b"\n]}\n");
@@ -127,7 +121,6 @@ impl<W: Write> LineWriter<W> {
 }
 
 /// The EPSG code of the system of x and y, if it has one.
-#[must_use]
 pub fn epsg_code(crs: &Crs) -> Option<u32> {
     System::of(crs).horizontal?.code
 }

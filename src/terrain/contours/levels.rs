@@ -38,7 +38,6 @@ impl Levels {
     }
 
     /// The elevation of a level.
-    #[must_use]
     pub fn elevation(&self, level: i64) -> f64 {
         self.decimals.at(level)
     }
@@ -50,9 +49,6 @@ impl Levels {
 
     /// The highest level at or below an elevation. A vertex there counts as above this level and all lower
     /// ones.
-    ///
-    /// # Errors
-    /// Usage, if levels are too close to each other to be told apart there.
     pub(super) fn rank(&self, elevation: f64) -> Result<i64> {
         let near = ((elevation - self.base) / self.interval).floor();
         if near.abs() < LEVEL_MAX {

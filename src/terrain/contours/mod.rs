@@ -67,7 +67,6 @@ pub struct Options {
 
 impl Options {
     /// Plain lines at some levels: all of them, with every fifth as index line.
-    #[must_use]
     pub fn new(levels: Levels) -> Options {
         Options {
             levels,

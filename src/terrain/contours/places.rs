@@ -45,18 +45,12 @@ impl Plane {
     /// in the elevation.
     ///
     /// Domain: the elevation is between those of the ends, which differ.
-    ///
-    /// # Errors
-    /// Usage, if differences overflow.
     #[inline]
     pub(super) fn place(&self, p: &Vertex, q: &Vertex, elevation: f64) -> Result<Point2> {
         self.unrounded(p, q, elevation).map(|place| self.rounded(place))
     }
 
     /// As [`Plane::place`], before it is rounded to the digits of places.
-    ///
-    /// # Errors
-    /// As [`Plane::place`].
     #[inline]
     pub(super) fn unrounded(&self, p: &Vertex, q: &Vertex, elevation: f64) -> Result<Point2> {
         let [p, q] = if (p.at, p.elevation) < (q.at, q.elevation) { [p, q] } else { [q, p] };

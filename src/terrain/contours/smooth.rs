@@ -32,9 +32,6 @@ const CUT: f64 = 0.25;
 /// A point of a line on an edge.
 pub(super) trait Place: Copy {
     /// The point of a level on an edge; `interval` is the distance between levels.
-    ///
-    /// # Errors
-    /// As [`Plane::place`].
     fn of(plane: &Plane, edge: [&Vertex; 2], elevation: f64, interval: f64) -> Result<Self>;
 
     /// The places of a whole line.

@@ -72,9 +72,6 @@ impl Coverage {
     }
 
     /// Adds a triangle with corners in the coordinates of cells.
-    ///
-    /// # Errors
-    /// If the temporary file fails; usage, if values are too great.
     pub(super) fn add(&mut self, placed: [Point; 3]) -> Result<()> {
         let limits = placed.map(|corner| corner[2]);
         let [low, high] = [
@@ -114,9 +111,6 @@ impl Coverage {
 
     /// Passes all tiles to `stages`; `cache` knows which cells are outside of the mask. Returns the number of tiles and
     /// the bytes in temporary files.
-    ///
-    /// # Errors
-    /// Those of `stages`; if the temporary file fails.
     pub(super) fn finish(mut self, cache: &TileCache, stages: &mut Stages) -> Result<[u64; 2]> {
         let mut values = vec![f32::NAN; CELLS];
         for at in places(cache.tiles()) {

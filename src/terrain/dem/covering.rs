@@ -31,9 +31,6 @@ pub(super) struct Covering {
 
 impl Covering {
     /// Starts the thread.
-    ///
-    /// # Errors
-    /// [`spmesh_base::error::ErrorKind::Io`] if the system refuses a thread.
     pub(super) fn start(coverage: Coverage, grid: Grid, coordinates: Coordinates) -> Result<Covering> {
         let coverage = Arc::new(Mutex::new(coverage));
         let covered = Arc::clone(&coverage);
@@ -51,9 +48,6 @@ impl Covering {
 
     /// Adds a triangle with corners in stored coordinates and elevations of the world. Its error may come
     /// with a later triangle, or at the end.
-    ///
-    /// # Errors
-    /// Those of [`Coverage::add`].
     #[inline]
     pub(super) fn add(&mut self, corners: [Point; 3]) -> Result<()> {
         let placed = corners.map(|corner| self.placed(corner));
@@ -62,9 +56,6 @@ impl Covering {
     }
 
     /// Waits until all triangles are added.
-    ///
-    /// # Errors
-    /// Those of [`Coverage::add`].
     pub(super) fn finish(mut self) -> Result<Coverage> {
         let batch = take(&mut self.next);
         self.pool.give(batch, 1);

@@ -109,9 +109,6 @@ impl Cutter {
 
     /// Calls `part` with the part of a triangle in each cell that it meets, of a raster of `size` columns and
     /// rows.
-    ///
-    /// # Errors
-    /// Those of `part`.
     pub(super) fn cells_of(
         &mut self,
         corners: [Point; 3],

@@ -35,9 +35,6 @@ pub(super) struct Derived {
 
 impl Derived {
     /// Fills the holes of elevations; `step` is the side of a cell.
-    ///
-    /// # Errors
-    /// If a temporary file fails.
     pub(super) fn new(
         mut heights: TileCache,
         filler: &mut Filler,
@@ -62,9 +59,6 @@ impl Derived {
     }
 
     /// Sets the values of filled cells of a tile.
-    ///
-    /// # Errors
-    /// If a temporary file fails; usage, if differences overflow.
     pub(super) fn set(&mut self, at: TilePlace, values: &mut [f32]) -> Result<()> {
         if !self.filled.contains_key(&at) {
             return Ok(());

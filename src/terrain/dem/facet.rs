@@ -51,9 +51,6 @@ impl Facet {
     }
 
     /// The elevations at places of one ordinate in the closed triangle, clamped to those of its corners.
-    ///
-    /// # Errors
-    /// Usage, if coordinates overflow.
     #[inline]
     pub(super) fn row(&self, y: f64, abscissae: impl Iterator<Item = f64>, row: &mut [f32]) -> Result<()> {
         if !self.is_broad {

@@ -33,9 +33,6 @@ const NOTHING: Seen = Seen { value: f32::NAN, steps: 0 };
 
 impl Filler {
     /// A filler with a reach in cells.
-    ///
-    /// # Errors
-    /// Usage, if it is zero or greater than a tile.
     pub(super) fn new(reach: u32) -> Result<Filler> {
         if !(1..=REACH_MAX).contains(&reach) {
             return Err(Error::usage(format!(
@@ -55,9 +52,6 @@ impl Filler {
 
     /// Fills cells of a tile; `read` reads tiles as drawn, and returns false for blank ones. Returns false if
     /// no data are near.
-    ///
-    /// # Errors
-    /// Those of `read`.
     pub(super) fn fill(
         &mut self,
         [column, row]: TilePlace,

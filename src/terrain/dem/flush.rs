@@ -39,9 +39,6 @@ pub(super) struct Flush<'a> {
 
 impl<'a> Flush<'a> {
     /// A pass over the tiles of a rasterizer; `step` is the side of a cell.
-    ///
-    /// # Errors
-    /// As [`Derived::new`].
     pub(super) fn new(
         rasterizer: &'a mut Rasterizer,
         filler: Option<Filler>,
@@ -63,9 +60,6 @@ impl<'a> Flush<'a> {
 
     /// Reads the final values of a tile; returns false for one without values. `read_written` reads tiles that
     /// were written.
-    ///
-    /// # Errors
-    /// Those of `read_written`; if the temporary file fails.
     fn tile(&mut self, at: TilePlace, read_written: &mut ReadTile, values: &mut [f32]) -> Result<bool> {
         if !self.cache.read(at, values)? {
             return Ok(false);
@@ -84,9 +78,6 @@ impl<'a> Flush<'a> {
     }
 
     /// Passes the tiles that were not written to `stages`, row by row, except blank ones.
-    ///
-    /// # Errors
-    /// Those of `stages` and of [`Flush::tile`].
     pub(super) fn write_rest(&mut self, stages: &mut Stages) -> Result<()> {
         let mut values = vec![f32::NAN; TILE * TILE];
         for at in places(self.cache.tiles()) {
@@ -101,9 +92,6 @@ impl<'a> Flush<'a> {
 
 /// Fills the cells of a tile that have no value and lie inside of the outline; `values` are those of the tile as
 /// drawn. Returns whether there are such cells near data.
-///
-/// # Errors
-/// Those of `read_written`, which reads tiles that were written; if the temporary file fails.
 pub(super) fn fill_holes(
     cache: &mut TileCache,
     filler: &mut Filler,

@@ -50,9 +50,6 @@ impl Neighbours {
     }
 
     /// Takes the elevations of a tile, and passes each tile that can now be derived to `target`.
-    ///
-    /// # Errors
-    /// Those of `target`, and of the temporary file; usage, if gradients overflow.
     pub(super) fn take(
         &mut self,
         at: TilePlace,
@@ -64,9 +61,6 @@ impl Neighbours {
     }
 
     /// Derives the rest: tiles that have not come are blank.
-    ///
-    /// # Errors
-    /// As [`Neighbours::take`].
     pub(super) fn finish(&mut self, target: &mut dyn TileTarget) -> Result<()> {
         places(self.tiles)
             .try_for_each(|at| if self.dependencies.has_come(at) { Ok(()) } else { self.come(at, target) })

@@ -55,7 +55,6 @@ pub enum Sample {
 
 impl Sample {
     /// Whether the surface over the whole cell counts.
-    #[must_use]
     pub fn is_whole(self) -> bool {
         self != Sample::Centre
     }
@@ -161,9 +160,6 @@ impl Quantity {
     }
 
     /// The value of a whole plane, from its gradient, in which all coordinates have one unit; `None` if it varies.
-    ///
-    /// # Errors
-    /// Usage, if the gradient overflows.
     pub(super) fn of_plane(&self, gradient: Point2) -> Result<Option<f32>> {
         let value = match self {
             Quantity::Elevation | Quantity::Attribute(..) => return Ok(None),
@@ -178,9 +174,6 @@ impl Quantity {
     }
 
     /// The value of a cell from its elevation and those of its eight neighbours.
-    ///
-    /// # Errors
-    /// As [`Quantity::of_plane`].
     #[inline]
     pub(super) fn of_cells(&self, gradient: &Gradient, cells: &[f32; 9]) -> Result<f32> {
         let gradient = match self {

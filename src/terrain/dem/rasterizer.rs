@@ -54,9 +54,6 @@ pub(super) struct Rasterizer {
 
 impl Rasterizer {
     /// Nothing drawn so far. `memory` is for tiles, and for triangles that wait for the outline. Units: bytes.
-    ///
-    /// # Errors
-    /// As [`TileCache::new`].
     pub(super) fn new(
         grid: Grid,
         coordinates: &Coordinates,
@@ -96,9 +93,6 @@ impl Rasterizer {
 
     /// Draws a triangle of vertices with ids, or keeps it until [`Rasterizer::draw_inside`] if it may be outside
     /// of the outline. The rest is as for [`Rasterizer::draw`].
-    ///
-    /// # Errors
-    /// As [`Rasterizer::draw`] and [`ConcaveOutline::take`].
     #[inline]
     pub(super) fn take(
         &mut self,
@@ -120,9 +114,6 @@ impl Rasterizer {
     }
 
     /// Draws the kept triangles that are inside of the outline.
-    ///
-    /// # Errors
-    /// As [`Rasterizer::draw`]; if the temporary file fails.
     pub(super) fn draw_inside(&mut self, mut complete: Option<&mut TileSink>) -> Result<()> {
         let Some(outline) = self.outline.take() else { return Ok(()) };
         let mut inside = outline.finish()?;

@@ -27,9 +27,6 @@ struct Colours {
 
 impl Derivation {
     /// The derivation of a quantity from the mesh with this header.
-    ///
-    /// # Errors
-    /// Usage, if colours have no range.
     pub(super) fn new(quantity: &Quantity, gradient: Gradient, header: &Header) -> Result<Derivation> {
         let colours = match *quantity {
             Quantity::ShadedRelief(shading, range) => {
@@ -49,9 +46,6 @@ impl Derivation {
     /// Derives a row of a tile from the lines of elevations above, in, and below it, with a cell more at each end. A cell
     /// has no value if it or a neighbour has none, as on the border of the raster. `values` are those of the tile, band
     /// by band.
-    ///
-    /// # Errors
-    /// Usage, if gradients overflow.
     pub(super) fn row(&self, lines: [&[f32]; 3], values: &mut [f32], row: usize) -> Result<()> {
         let [above, here, below] = lines.map(|line| line.windows(3));
         for (((cell, above), here), below) in (row * TILE..).zip(above).zip(here).zip(below) {

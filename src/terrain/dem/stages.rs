@@ -43,9 +43,6 @@ impl<'t> Stages<'t> {
     }
 
     /// Takes the values of a tile; NaN marks cells without data.
-    ///
-    /// # Errors
-    /// Those of the stages.
     pub(super) fn take(&mut self, at: TilePlace, values: &[f32]) -> Result<()> {
         match &mut self.neighbours {
             Some(neighbours) => neighbours.take(at, values, &mut self.counted),
@@ -54,17 +51,11 @@ impl<'t> Stages<'t> {
     }
 
     /// Reads a tile back that went to the target unchanged; returns false if there is none.
-    ///
-    /// # Errors
-    /// If it cannot be read.
     pub(super) fn read(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool> {
         self.counted.get(at, values)
     }
 
     /// Ends the stages. Returns how many cells have a value, and how many tiles and bytes are in temporary files.
-    ///
-    /// # Errors
-    /// Those of the stages.
     pub(super) fn finish(mut self) -> Result<[u64; 3]> {
         let mut spilled = [0; 2];
         if let Some(neighbours) = &mut self.neighbours {

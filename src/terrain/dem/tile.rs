@@ -88,9 +88,6 @@ impl Tile {
     }
 
     /// Marks cells of a row as owned by a triangle, and returns their values for it to set.
-    ///
-    /// # Errors
-    /// If one of them belongs to another triangle.
     #[inline]
     pub(super) fn own(&mut self, row: usize, cells: Range<usize>) -> Result<&mut [f32], Error> {
         for (word, bits) in words_of(cells.clone()) {

@@ -61,9 +61,6 @@ pub(super) struct TileCache {
 impl TileCache {
     /// Blank tiles. Those in memory take `memory` bytes at most, or one tile if that is more. Cells outside of
     /// the mask have no data when they are read or taken.
-    ///
-    /// # Errors
-    /// As [`tiles_of`].
     pub(super) fn new(
         grid: Grid,
         memory: u64,
@@ -96,9 +93,6 @@ impl TileCache {
     }
 
     /// A tile to draw on; `None` if it was written.
-    ///
-    /// # Errors
-    /// If the temporary file fails.
     pub(super) fn tile(&mut self, at: TilePlace) -> Result<Option<&mut Tile>> {
         let number = self.number(at);
         let place = match self.states[number] {
@@ -138,9 +132,6 @@ impl TileCache {
     }
 
     /// Reads the values of a tile without changing its state; returns false if it is blank or was written.
-    ///
-    /// # Errors
-    /// If the temporary file fails.
     pub(super) fn read(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool> {
         match self.states[self.number(at)] {
             State::Blank | State::Written => return Ok(false),
@@ -154,9 +145,6 @@ impl TileCache {
     }
 
     /// Reads which cells of a tile lie in triangles, holes included, and in the mask: a bit for each cell.
-    ///
-    /// # Errors
-    /// If the temporary file fails.
     pub(super) fn read_outline(&mut self, at: TilePlace) -> Result<Vec<u64>> {
         let mut bits = vec![0; 2 * WORDS_OF_TILE];
         match self.states[self.number(at)] {

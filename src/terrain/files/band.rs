@@ -24,9 +24,6 @@ impl Band {
     }
 
     /// Reads a row of cells; NaN marks those without data.
-    ///
-    /// # Errors
-    /// If the temporary file fails.
     pub(super) fn read(&mut self, tiles: &mut dyn TileSource, row: u32, values: &mut [f32]) -> Result<()> {
         let (row, width) = (row as usize, self.across * TILE);
         if self.at != Some(row / TILE) {

@@ -42,9 +42,6 @@ pub(super) struct Strip {
 impl Division {
     /// The columns and rows of sheets of a grid. The sheets of least x and least y are the first column and
     /// the last row.
-    ///
-    /// # Errors
-    /// Usage, if sheets have no cells, or there are too many of them.
     pub(super) fn strips(&self, grid: &Grid) -> Result<[Strips; 2]> {
         self.check(grid)?;
         let columns = self.along(grid.columns, 0, grid.step, |column| grid.x_of(column))?;

@@ -35,9 +35,6 @@ pub enum Destination<'o, W> {
 impl<W: Write + Seek> Destination<'_, W> {
     /// Writes a raster of the tiles that `draw` supplies, which has the memory that is left to it. Returns
     /// what `draw` does, and how many tiles and bytes were in temporary files beside it.
-    ///
-    /// # Errors
-    /// Those of `draw`; usage, if the raster cannot be divided; if writing fails.
     pub(crate) fn write<T>(
         self,
         file: &RasterFile,

@@ -66,9 +66,6 @@ fn copy(tile: &[f32], at: TilePlace, window: &[Range<usize>; 2], values: &mut [f
 }
 
 /// Writes a raster file from tiles.
-///
-/// # Errors
-/// Those of `source`; if writing fails.
 pub(super) fn write<W: Write + Seek>(
     output: &mut W,
     file: &RasterFile,

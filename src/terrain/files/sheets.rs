@@ -94,9 +94,6 @@ pub(super) struct Cutter<'s> {
 
 impl<'s> Cutter<'s> {
     /// A cutter of a raster; tiles beyond `memory` wait in a temporary file.
-    ///
-    /// # Errors
-    /// Usage, if the raster cannot be divided, or sheets would replace inputs.
     pub(super) fn new(sheets: &'s mut Sheets, file: &RasterFile<'s>, memory: u64) -> Result<Cutter<'s>> {
         let tiles = tiles_of(&file.grid)?;
         let strips = sheets.division.strips(&file.grid)?;
@@ -110,9 +107,6 @@ impl<'s> Cutter<'s> {
 
     /// Writes the sheets that are left. Returns the number of tiles and the bytes that were in temporary
     /// files.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
     pub(super) fn finish(mut self) -> Result<[u64; 2]> {
         for at in places(self.tiles) {
             if !self.dependencies.has_come(at) {

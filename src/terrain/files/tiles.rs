@@ -14,24 +14,15 @@ pub(crate) type TilePlace = [usize; 2];
 pub(crate) trait TileSource {
     /// Reads the values of a tile, band by band; NaN marks cells without data. Returns false if there is no
     /// such tile.
-    ///
-    /// # Errors
-    /// If they cannot be read.
     fn get(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool>;
 }
 
 /// Takes complete tiles in any order, each once, and gives them back.
 pub(crate) trait TileTarget: TileSource {
     /// Takes the values of a tile, band by band; NaN marks cells without data.
-    ///
-    /// # Errors
-    /// If they cannot be stored.
     fn put(&mut self, at: TilePlace, values: &[f32]) -> Result<()>;
 
     /// Takes note of a tile without any data. A tile that never comes has none either.
-    ///
-    /// # Errors
-    /// Those of the files that are complete with it.
     fn skip(&mut self, _at: TilePlace) -> Result<()> {
         Ok(())
     }
@@ -51,9 +42,6 @@ impl TileTarget for Tiles<'_> {
 }
 
 /// The number of tiles in a row of a grid, and in a column.
-///
-/// # Errors
-/// Usage, if there are more tiles than [`RASTER_TILES_MAX`].
 pub(crate) fn tiles_of(grid: &Grid) -> Result<[usize; 2]> {
     let [across, down] = [grid.columns, grid.rows].map(|count| (count as usize).div_ceil(TILE));
     let count = across as u64 * down as u64;

@@ -34,9 +34,6 @@ pub(super) enum RasterOutput {
 impl SheetFlags {
     /// Opens the output, so that a failure shows before the work. None of many rasters may replace one of
     /// `inputs`.
-    ///
-    /// # Errors
-    /// Usage, if flags are wrong; if it cannot be created.
     pub(super) fn create<'p>(
         &self,
         path: &Path,
@@ -66,9 +63,6 @@ impl RasterOutput {
     }
 
     /// Gives the file its name; those of `--tiles` have theirs. Returns the bytes of all files.
-    ///
-    /// # Errors
-    /// If that fails.
     pub(super) fn commit(self) -> Result<Committed> {
         match self {
             RasterOutput::One(output) => {

@@ -56,9 +56,6 @@ struct Divided {
 impl BlockWriter {
     /// No triangles. The file is in `folder`, or in the system's folder for temporary files. `is_integer`
     /// says whether coordinates are integers of 32 bits, which take half of the space.
-    ///
-    /// # Errors
-    /// If the file cannot be created, or the system refuses a thread.
     pub(super) fn new(is_integer: bool, folder: Option<&Path>) -> Result<BlockWriter> {
         let file = TemporaryFile::create(folder)?;
         let work = move |piece| divide(piece, is_integer);
@@ -67,9 +64,6 @@ impl BlockWriter {
     }
 
     /// Adds triangles with corners among `vertices`.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub(super) fn add(
         &mut self,
         vertices: impl Iterator<Item = Point>,
@@ -82,9 +76,6 @@ impl BlockWriter {
     }
 
     /// Ends the additions.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
     pub(super) fn finish(mut self) -> Result<Blocks> {
         self.give()?;
         while let Some(divided) = self.divider.take() {

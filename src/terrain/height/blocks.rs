@@ -87,9 +87,6 @@ impl Blocks {
     }
 
     /// Replaces `loaded` with a block.
-    ///
-    /// # Errors
-    /// If the file cannot be read.
     pub(super) fn read(&self, block: usize, loaded: &mut LoadedBlock) -> Result<()> {
         let Block { at, vertices, triangles, .. } = self.blocks[block];
         let vertex_len = if self.is_integer { size_of::<[i32; 3]>() } else { size_of::<Point>() };

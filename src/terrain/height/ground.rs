@@ -62,19 +62,16 @@ impl Ground {
     }
 
     /// How its stored coordinates are encoded.
-    #[must_use]
     pub fn coordinates(&self) -> &Coordinates {
         &self.coordinates
     }
 
     /// Its coordinate reference system.
-    #[must_use]
     pub fn crs(&self) -> &Crs {
         &self.crs
     }
 
     /// Its name in messages.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -98,7 +95,6 @@ impl Ground {
     }
 
     /// Number of its triangles.
-    #[must_use]
     pub fn triangles(&self) -> u64 {
         self.blocks.triangles()
     }

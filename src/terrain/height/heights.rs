@@ -62,7 +62,6 @@ pub struct Heights<'g> {
 
 impl<'g> Heights<'g> {
     /// Prepares to find heights above `ground` on `threads` threads.
-    #[must_use]
     pub fn new(ground: &'g Ground, unit: Unit, outside: Outside, threads: NonZeroUsize) -> Heights<'g> {
         let (blocks, grid) = (ground.blocks(), PointGrid::default());
         Heights { blocks, unit, outside, threads, grid, nearest: Nearest::new(blocks) }

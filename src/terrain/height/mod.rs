@@ -24,7 +24,6 @@ pub use points::{HeightPoints, LayerReader};
 
 /// A warning if most of some points are `below` the ground, which happens when z is not the elevation that it
 /// is taken for.
-#[must_use]
 pub fn about_below(below: u64, points: u64) -> Option<String> {
     let is_odd = below > points / 2;
     is_odd.then(|| {

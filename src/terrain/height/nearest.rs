@@ -32,9 +32,6 @@ impl<'b> Nearest<'b> {
     /// The elevation of the mesh at the place nearest to a point outside of it; `None` if it has no triangles.
     ///
     /// Cost: looks at the boxes of all groups of blocks, and at the triangles of a few blocks.
-    ///
-    /// # Errors
-    /// If the temporary file cannot be read.
     pub(super) fn elevation(&mut self, point: &Point) -> Result<Option<f64>> {
         let blocks = self.blocks;
         let Some(first) = blocks.closest(point) else { return Ok(None) };

@@ -109,37 +109,31 @@ impl HeightPoints {
     }
 
     /// Properties of the points; their third coordinate is the height.
-    #[must_use]
     pub fn description(&self) -> &Description {
         &self.description
     }
 
     /// Number of points.
-    #[must_use]
     pub fn points(&self) -> u64 {
         self.points
     }
 
     /// Number of points that were left out because they are outside of the ground.
-    #[must_use]
     pub fn outside(&self) -> u64 {
         self.outside
     }
 
     /// Number of points with heights below zero, which became zero.
-    #[must_use]
     pub fn below(&self) -> u64 {
         self.below
     }
 
     /// The greatest height, in the unit of the world.
-    #[must_use]
     pub fn greatest(&self) -> f64 {
         self.description.coordinates.to_world([0.0, 0.0, self.greatest])[2]
     }
 
     /// Reads the points that are at least this high, in the unit of the world.
-    #[must_use]
     pub fn layer(&self, threshold: f64) -> LayerReader<'_> {
         let least = match self.description.coordinates {
             Coordinates::F64 => threshold,

@@ -57,9 +57,6 @@ fn place(&[x, y, _]: &Point) -> Point2 {
 }
 
 /// The height of `point` above a triangle, in which it has `shares`.
-///
-/// # Errors
-/// Usage, if coordinates are too great or too small to interpolate.
 pub(super) fn height(corners: &[Point; 3], shares: [f64; 3], point: &Point) -> Result<f64> {
     let [a, b, c] = corners.map(|corner| corner[2]);
     let sum = shares[0] + shares[1] + shares[2];

@@ -85,9 +85,6 @@ impl Default for Cell {
 
 impl Cell {
     /// Counts a point with this value.
-    ///
-    /// # Errors
-    /// Usage, if sums overflow.
     #[inline]
     pub(super) fn add(&mut self, steps: i64) -> Result<()> {
         let wide = i128::from(steps);
@@ -144,9 +141,6 @@ impl Steps {
     }
 
     /// The nearest number of steps.
-    ///
-    /// # Errors
-    /// Usage, if it is too great.
     #[inline]
     pub(super) fn to_steps(self, value: f64) -> Result<i64> {
         let steps = (value * self.per_value).round();

@@ -37,7 +37,6 @@ impl BoundedFloatPredicates3 {
     pub const GREATEST_MAGNITUDE: f64 = f64::from_bits((1023 + 200) << 52);
 
     /// Whether all points within `extent` are in the domain.
-    #[must_use]
     pub fn covers(extent: &Extent<3>) -> bool {
         extent.least_magnitude >= Self::LEAST_MAGNITUDE
             && extent.greatest_magnitude() <= Self::GREATEST_MAGNITUDE

@@ -88,7 +88,6 @@ pub enum Arithmetic3 {
 
 impl Arithmetic3 {
     /// Cheapest arithmetic that is exact for all points within `extent`.
-    #[must_use]
     pub fn of(extent: &Extent<3>) -> Arithmetic3 {
         let difference = extent.max_difference();
         if extent.integral && difference <= Int128::MAX_SIDE {

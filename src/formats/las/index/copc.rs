@@ -30,9 +30,6 @@ struct Info {
 }
 
 /// The chunks of which the node reaches `reach`, a closed box of the world.
-///
-/// # Errors
-/// If the hierarchy is damaged, or does not have exactly one node for each chunk.
 pub(crate) fn find_parts(
     file: &FileView,
     header: &LasHeader,

@@ -45,9 +45,6 @@ struct Cell {
 
 impl Lax {
     /// Reads an index.
-    ///
-    /// # Errors
-    /// If it is damaged, or of another kind.
     pub(crate) fn read(bytes: &[u8]) -> Result<Lax> {
         let mut input = Words { rest: bytes };
         input.expect(*b"LASX")?;

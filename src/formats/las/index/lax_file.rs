@@ -41,9 +41,6 @@ fn appended(file: &FileView, header: &LasHeader) -> Option<std::ops::Range<u64>>
 }
 
 /// Reads an index beside the file `of`.
-///
-/// # Errors
-/// If it cannot be read, is too long, or is older than the file.
 fn read_beside(of: &Path, path: &Path) -> Result<Vec<u8>> {
     let changed = |path: &Path| fs::metadata(path).and_then(|metadata| metadata.modified());
     let changed = |path: &Path| changed(path).map_err(|e| Error::io("reading its time", e));

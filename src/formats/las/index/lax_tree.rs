@@ -28,9 +28,6 @@ pub(crate) struct Tree {
 
 impl Tree {
     /// The tree of a root in the world, with so many levels below it.
-    ///
-    /// # Errors
-    /// If there are more than 15 levels, or the root is empty.
     pub(crate) fn new(levels: u32, min: [f32; 2], max: [f32; 2]) -> Result<Tree> {
         let is_root = |axis: usize| min[axis] < max[axis] && (max[axis] - min[axis]).is_finite();
         if levels > LEVELS_MAX || !(0..2).all(is_root) {

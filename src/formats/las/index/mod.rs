@@ -28,9 +28,6 @@ const TEST_DISTANCE: usize = 50_000;
 /// An index of LAStools that does not fit the file is left out with a notice.
 ///
 /// Cost: the chunk table, the index, and the first record of each chunk.
-///
-/// # Errors
-/// If the file cannot be read, or its COPC index contradicts it.
 pub(crate) fn find_parts(
     origin: &Origin,
     header: &LasHeader,

@@ -51,9 +51,6 @@ pub(crate) fn ranges_of_parts(points: u64, parts: Option<&[Part]>) -> Vec<Range<
 
 /// Checks that `records`, of which the first has the number `first` in the file, lie in the box that the index
 /// promises. Cost: nothing without a box.
-///
-/// # Errors
-/// If one does not: other records that should be read may then have been left out.
 pub(crate) fn check_records(
     records: &[u8],
     record_len: usize,

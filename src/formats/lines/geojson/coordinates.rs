@@ -29,9 +29,6 @@ pub(crate) struct Coordinates {
 
 impl Coordinates {
     /// Enters the lines of a geometry whose coordinates have this depth.
-    ///
-    /// # Errors
-    /// As [`Collector::add`].
     pub(crate) fn enter(
         &self,
         shape: Shape,

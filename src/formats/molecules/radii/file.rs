@@ -84,9 +84,6 @@ fn steps(word: &[u8]) -> Result<u32> {
 }
 
 /// Adds a radius.
-///
-/// # Errors
-/// If there is another one for the same key.
 fn insert<K: Eq + Hash>(radii: &mut HashMap<K, u32>, key: K, steps: u32, shown: &str) -> Result<()> {
     match radii.entry(key) {
         Entry::Vacant(entry) => {

@@ -82,7 +82,6 @@ impl<'s> RadiusFinder<'s> {
 
 impl AtomView<'_> {
     /// Atomic number of its element, as the file states it or its names tell; 0 if they do not.
-    #[must_use]
     pub fn atomic_number(&self) -> u8 {
         labels(&looked_up_texts(self), self).element().map_or(0, Element::number)
     }

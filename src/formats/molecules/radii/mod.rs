@@ -82,7 +82,6 @@ impl Radii {
     ///
     /// The radii of `protor` and `united` include those of hydrogens, which are usually left out with them
     /// ([`Atoms::Heavy`](crate::molecules::Atoms::Heavy)).
-    #[must_use]
     pub fn named(name: &str) -> Option<Radii> {
         Some(match name {
             "protor" => Radii::of_tables(PROTOR, &[]),
@@ -160,7 +159,6 @@ impl Radii {
     }
 
     /// Finds the radii of the atoms of `structure`.
-    #[must_use]
     pub fn finder<'s>(&'s self, structure: &'s Structure) -> RadiusFinder<'s> {
         RadiusFinder::new(self, structure)
     }

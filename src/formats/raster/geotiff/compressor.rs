@@ -23,9 +23,6 @@ pub(super) struct Compressor {
 
 impl Compressor {
     /// Starts the thread.
-    ///
-    /// # Errors
-    /// [`spmesh_base::error::ErrorKind::Io`] if the system refuses a thread.
     pub(super) fn start(code: TileCode) -> Result<Compressor> {
         let compress = move |(name, values): (TileName, Vec<f32>)| {
             let bytes = code.encode(&values);

@@ -73,9 +73,6 @@ impl Overviews {
     }
 
     /// Reduces a tile to a quarter of a tile of the next level, and returns that tile if it is complete.
-    ///
-    /// # Errors
-    /// If the temporary file fails.
     pub(super) fn add(
         &mut self,
         (level, at): TileName,
@@ -106,9 +103,6 @@ impl Overviews {
     }
 
     /// Removes and returns a tile; quarters that have not come are NaN.
-    ///
-    /// # Errors
-    /// If the temporary file fails.
     pub(super) fn take(&mut self, name: TileName) -> Result<(TileName, Vec<f32>)> {
         let mut values = vec![f32::NAN; self.bands * TILE * TILE];
         let Some(OpenTile { record, present }) = self.open.remove(&name) else { return Ok((name, values)) };

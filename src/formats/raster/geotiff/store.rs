@@ -34,26 +34,17 @@ impl<T: Write + Seek> WriteSeek for T {}
 
 impl<'a> Store<'a> {
     /// Writes pieces directly to the output, after `head_len` bytes left free.
-    ///
-    /// # Errors
-    /// If the output cannot be written.
     pub(super) fn direct(output: &'a mut dyn WriteSeek, head_len: u64) -> Result<Store<'a>> {
         std::io::copy(&mut std::io::Read::take(std::io::repeat(0), head_len), output).map_err(write_error)?;
         Ok(Store::Direct { output, end: head_len })
     }
 
     /// Writes pieces to a temporary file.
-    ///
-    /// # Errors
-    /// If it cannot be made.
     pub(super) fn staged(output: &'a mut dyn WriteSeek, temp_dir: Option<&Path>) -> Result<Store<'a>> {
         Ok(Store::Staged { output, file: TemporaryFile::create(temp_dir)?, end: 0 })
     }
 
     /// Adds a piece.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub(super) fn put(&mut self, bytes: &[u8]) -> Result<Extent> {
         let end = match self {
             Store::Direct { output, end } => {
@@ -71,9 +62,6 @@ impl<'a> Store<'a> {
     }
 
     /// Reads a staged piece back. Leaves `bytes` empty if pieces are not staged.
-    ///
-    /// # Errors
-    /// If it cannot be read.
     pub(super) fn read(&self, [offset, len]: Extent, bytes: &mut Vec<u8>) -> Result<()> {
         bytes.clear();
         if let Store::Staged { file, .. } = self {
@@ -103,9 +91,6 @@ impl<'a> Store<'a> {
     }
 
     /// Writes the head, and copies staged pieces after it.
-    ///
-    /// # Errors
-    /// If writing or the temporary file fails.
     pub(super) fn finish(self, head: &[u8], staged: &[Extent]) -> Result<()> {
         match self {
             Store::Direct { output, .. } => {

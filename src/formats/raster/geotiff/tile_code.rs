@@ -54,9 +54,6 @@ impl TileCode {
     }
 
     /// Decodes the values of a tile of floating-point numbers.
-    ///
-    /// # Errors
-    /// If `bytes` are not an encoded tile of them.
     pub(super) fn decode(self, bytes: &[u8], values: &mut [f32]) -> std::io::Result<()> {
         debug_assert_eq!(self.samples, Samples::Floats);
         expect_inflate_memory();

@@ -46,17 +46,11 @@ impl Chunk {
     }
 
     /// Ends the page if it is full.
-    ///
-    /// # Errors
-    /// If it has more bytes than a page may have.
     pub(crate) fn end_row(&mut self) -> Result<()> {
         if self.page.values.len() >= PAGE_LEN { self.end_page() } else { Ok(()) }
     }
 
     /// Ends the page unless it has no rows.
-    ///
-    /// # Errors
-    /// If it has more bytes than a page may have.
     pub(crate) fn end_page(&mut self) -> Result<()> {
         if self.page.rows == 0 {
             return Ok(());

@@ -77,9 +77,6 @@ impl ParquetRows {
     }
 
     /// Ends a row; returns whether the group is full.
-    ///
-    /// # Errors
-    /// If a text is too long for Parquet.
     pub(crate) fn end(&mut self) -> Result<bool> {
         self.rows += 1;
         self.chunks.iter_mut().try_for_each(Chunk::end_row)?;
@@ -87,9 +84,6 @@ impl ParquetRows {
     }
 
     /// Ends the group; returns the bytes of the file that are new.
-    ///
-    /// # Errors
-    /// If a text is too long for Parquet.
     pub(crate) fn group(&mut self) -> Result<&mut Vec<u8>> {
         if self.rows > 0 {
             self.chunks.iter_mut().try_for_each(Chunk::end_page)?;

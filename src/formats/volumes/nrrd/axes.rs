@@ -8,9 +8,6 @@ use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 
 /// The sites of the volume.
-///
-/// # Errors
-/// If there are not three or four axes with coordinates, or too many sites.
 pub(crate) fn lattice(fields: &Fields, warnings: &mut Vec<String>) -> Result<Lattice> {
     let dimension = fields.parse("dimension", |text| match integer(text, "3 or 4")? {
         dimension @ (3 | 4) => Ok(dimension as usize),

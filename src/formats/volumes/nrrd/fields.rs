@@ -157,9 +157,6 @@ impl Fields {
     }
 
     /// The result of `parse` for a field.
-    ///
-    /// # Errors
-    /// If the field is missing, or `parse` fails.
     pub(crate) fn parse<T>(&self, name: &str, parse: impl Fn(&str) -> Result<T>) -> Result<T> {
         let text =
             self.get(name).ok_or_else(|| Error::malformed(format!("has no field {name}")).at("header"))?;

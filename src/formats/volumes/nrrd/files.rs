@@ -10,9 +10,6 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::NRRD_FILES_MAX;
 
 /// The files that hold the values, each with the same number of them.
-///
-/// # Errors
-/// If there is no file, a name makes no sense, or the values cannot be divided evenly.
 pub(crate) fn parts(fields: &Fields, origin: Origin, path: Option<&Path>, sites: u64) -> Result<Vec<Part>> {
     let Some(names) = names(fields).map_err(|e| fields.locate("data file", e))? else {
         if !fields.is_ended {

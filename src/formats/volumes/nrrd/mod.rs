@@ -20,9 +20,6 @@ use crate::volumes::volume::Volume;
 use spmesh_base::error::{Error, Result};
 
 /// Reads the header of a volume; `path` is the file's path, if it has one.
-///
-/// # Errors
-/// If the header is malformed (line and field are named), or the kind of volume is not supported.
 pub(crate) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<String>) -> Result<Volume> {
     let fields = Fields::read(&origin)?;
     warnings.extend(fields.unknown());

@@ -32,7 +32,6 @@ impl Cone {
     }
 
     /// The part on the positive side of a plane through the apex.
-    #[must_use]
     pub(super) fn cut(&self, normal: Point3) -> Cone {
         let mut rays = Vec::with_capacity(self.rays.len() + 1);
         for (i, &ray) in self.rays.iter().enumerate() {

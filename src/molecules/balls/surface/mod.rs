@@ -104,8 +104,6 @@ fn of_tile(tile: &Tile<'_>, balls: Balls<'_>, step: f64, threads: NonZeroUsize) 
     Ok(surface)
 }
 
-/// # Errors
-/// As [`super::check`]; usage, if the step is too small.
 fn check_step(balls: Balls<'_>, step: f64) -> Result<()> {
     super::check(balls)?;
     let greatest = balls.radii.iter().copied().fold(0.0, f64::max);
@@ -116,8 +114,6 @@ fn check_step(balls: Balls<'_>, step: f64) -> Result<()> {
     Err(Error::usage(format!("a step of {step:e} is too fine: at least {:e} fits", greatest / FINEST)))
 }
 
-/// # Errors
-/// Usage, if a mesh has more vertices than formats can number.
 fn check_count(points: &[Point3]) -> Result<()> {
     if points.len() > VERTICES_MAX {
         return Err(Error::usage("more than 2^31 - 1 vertices: take a coarser resolution"));

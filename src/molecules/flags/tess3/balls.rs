@@ -122,9 +122,6 @@ impl BallFlags {
     }
 
     /// The options.
-    ///
-    /// # Errors
-    /// Those of reading radii; usage, if there is nothing to measure.
     pub(super) fn options(&self, product: Product, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
         let takes_weights = matches!(product, Product::Filtration | Product::Mesh);
         let has_weights = takes_weights && self.radii.is_some();
@@ -172,9 +169,6 @@ impl BallFlags {
     }
 
     /// Refuses flags of tables for a mesh.
-    ///
-    /// # Errors
-    /// Usage, if there is one.
     pub(super) fn check_for_mesh(&self) -> Result<()> {
         match (self.per, self.volumes) {
             _ if self.mouths => Err(Error::usage("--mouths is a table: give a name that ends in .tsv")),

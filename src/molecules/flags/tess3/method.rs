@@ -83,8 +83,6 @@ enum SequenceFlag {
 }
 
 impl MethodFlags {
-    /// # Errors
-    /// Usage, if exact signs are to be checked, or if the build lacks experiments and a flag asks for one.
     pub(super) fn method(&self, threads: NonZeroUsize) -> Result<Method> {
         if !HAS_EXPERIMENTS && !self.is_default() {
             return Err(Error::usage(NO_EXPERIMENTS));

@@ -33,9 +33,6 @@ enum ColourFlag {
 
 impl PictureFlags {
     /// The mesh that the ending of the output asks for; `None` for a table.
-    ///
-    /// # Errors
-    /// Usage, if flags are for the other one.
     pub(super) fn of_output(
         &self,
         output: &Path,
@@ -62,9 +59,6 @@ impl PictureFlags {
     }
 
     /// Refuses flags of meshes where there is none.
-    ///
-    /// # Errors
-    /// Usage, if there is one, because of `reason`.
     pub(super) fn refuse(&self, reason: &str) -> Result<()> {
         let flag = match (self.resolution, self.colour_by) {
             (Some(_), _) => "--resolution",

@@ -30,9 +30,6 @@ impl From<TableFlag> for TableFormat {
 }
 
 /// The format that `--format` asks for, or else the ending of the output.
-///
-/// # Errors
-/// Usage, if the two differ, or if there is no table.
 pub(super) fn format(
     flag: Option<TableFlag>,
     output: Option<&Path>,

@@ -81,7 +81,6 @@ pub enum Level {
 
 impl Level {
     /// Its name, which heads the column of names.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Level::Atom => "atom",
@@ -132,17 +131,11 @@ impl Molecule<'_> {
     }
 
     /// The weights of all atoms: squares of their radii, in stored units.
-    ///
-    /// # Errors
-    /// If an atom has no radius.
     pub(super) fn weights(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
         Ok(self.radii(options, report)?.into_iter().map(|radius| radius * radius).collect())
     }
 
     /// Writes a mesh of the surface, of contacts or of pockets. The output is opened at first.
-    ///
-    /// # Errors
-    /// If an atom has no radius; those of writing.
     pub(super) fn draw(
         &self,
         product: Product,
@@ -159,9 +152,6 @@ impl Molecule<'_> {
 
     /// Measures the balls, and writes the rows of a table: of cells, of the molecular surface, of contacts,
     /// or of pockets. The output is opened when they are measured.
-    ///
-    /// # Errors
-    /// If an atom has no radius; those of measuring and writing.
     pub(super) fn write<'o>(
         &self,
         product: Product,

@@ -62,9 +62,6 @@ pub(super) struct Picture<'p> {
 
 impl Picture<'_> {
     /// Writes the mesh of a product. Returns the number of atoms that it lacks.
-    ///
-    /// # Errors
-    /// Those of measuring and of writing; usage, if the format cannot hold the mesh.
     pub(super) fn write(&self, product: Product, output: &mut impl Write) -> Result<u64> {
         if (product, self.picture.form) == (Product::Pockets, PictureForm::Vtu) {
             return self.bodies(output).map(|()| 0);
@@ -210,8 +207,6 @@ impl Picture<'_> {
         }
     }
 
-    /// # Errors
-    /// Usage, if the resolution is too fine for the geometry.
     fn check(&self) -> Result<()> {
         let greatest = self.balls.radii.iter().copied().fold(0.0, f64::max);
         let least = greatest / FINEST * self.molecule.scale;
@@ -223,8 +218,6 @@ impl Picture<'_> {
         Err(Error::usage(format!("--resolution {resolution} is too fine: here the least is {least:.4} Å")))
     }
 
-    /// # Errors
-    /// Usage, if the surface has too many vertices at this resolution.
     fn check_size(&self, cells: &[Cell]) -> Result<()> {
         let area: f64 = cells.iter().map(|cell| cell.area).sum();
         // Of triangles with sides of the resolution, each vertex has two.

@@ -12,9 +12,6 @@ use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
 use spmesh_delaunay::predicates::Point3;
 
 /// The tetrahedralization of the points and of as few others as possible, which come after them.
-///
-/// # Errors
-/// Those of the kernel.
 pub(super) fn tetrahedralize(points: &[Point3], weights: Option<&[f64]>) -> Result<Tetrahedralization> {
     let mut kernel = Kernel::new();
     let mut mesh = Tetrahedralization::default();

@@ -38,9 +38,6 @@ impl DoneFile {
 
 impl Done {
     /// Reads the summary of an earlier run; empty if there is none. An incomplete last line is ignored.
-    ///
-    /// # Errors
-    /// If the file cannot be read, or is not a summary.
     pub(super) fn read(path: &Path) -> Result<Done> {
         let name = path.display();
         let text = match fs::read(path) {

@@ -64,9 +64,6 @@ impl End {
 }
 
 /// Checks before the work that the output of a file replaces none of the files that are `taken`.
-///
-/// # Errors
-/// Usage, if it does.
 pub(super) fn check(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<()> {
     check_free(&sweep.folder.join(output_name(&job.stem, &sweep.options, None)), taken)
 }

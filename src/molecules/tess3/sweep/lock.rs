@@ -15,9 +15,6 @@ pub(super) struct Lock {
 }
 
 /// Locks a file or folder. `None` for devices and pipes, and on file systems without locks.
-///
-/// # Errors
-/// Usage, if another sweep has locked it; I/O, if it cannot be opened.
 pub(super) fn lock(path: &Path) -> Result<Option<Lock>> {
     let failed = |e| Error::io("locking it", e).of_input(path.display().to_string());
     if is_device(path) {
@@ -41,9 +38,6 @@ pub(super) fn lock(path: &Path) -> Result<Option<Lock>> {
 }
 
 /// Locks a file that may not exist yet: then it is created, without content. `None` as for [`lock`].
-///
-/// # Errors
-/// As [`lock`]; I/O, if it cannot be created.
 pub(super) fn lock_or_create(path: &Path) -> Result<Option<Lock>> {
     // Opening a pipe and closing it would tell its reader that all is written.
     if is_device(path) {

@@ -157,8 +157,6 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     Ok(outcome)
 }
 
-/// # Errors
-/// Usage, if two names are those of one file, as far as the names alone tell.
 fn check_distinct(files: &[&Path]) -> Result<()> {
     let mut places: HashMap<PathBuf, &Path> = HashMap::new();
     for &file in files {

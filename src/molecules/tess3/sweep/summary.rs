@@ -16,9 +16,6 @@ use spmesh_base::output::Output;
 use spmesh_formats::sink::{TableFormat, TableSink};
 
 /// Writes a summary, which is a file, once more as Parquet.
-///
-/// # Errors
-/// If it cannot be read, or the other one cannot be written.
 pub(super) fn write_parquet(summary: &Path, output: Output) -> Result<()> {
     let failed = |e| Error::io("reading the summary", e).of_input(summary.display().to_string());
     let lines = BufReader::new(fs::File::open(summary).map_err(failed)?).lines();
@@ -105,9 +102,6 @@ pub(super) struct Summary {
 
 impl Summary {
     /// Begins a summary with the rows of what was done before; "-" is stdout.
-    ///
-    /// # Errors
-    /// If it cannot be written, or another sweep writes it.
     pub(super) fn create(path: &Path, done: &Done) -> Result<Summary> {
         let format = Format::of(path);
         let mut summary = Summary {
@@ -136,9 +130,6 @@ impl Summary {
     }
 
     /// Adds the rows of a file, in one piece.
-    ///
-    /// # Errors
-    /// If they cannot be written.
     pub(super) fn add(&mut self, lines: &[Line<'_>]) -> Result<()> {
         lines.iter().for_each(|line| self.text += &self.format.line(&line.row()));
         self.flush()

@@ -30,9 +30,6 @@ impl AreaFlags {
     }
 
     /// Reads the polygons, and messages for the user.
-    ///
-    /// # Errors
-    /// As [`read_polygons`].
     pub(super) fn read(&self, target: &Target) -> Result<(Areas, Vec<String>)> {
         let (clip, mut notices) = read_polygons(&self.clip, target)?;
         let (drop, more) = read_polygons(&self.drop_inside, target)?;

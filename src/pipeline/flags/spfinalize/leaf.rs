@@ -36,9 +36,6 @@ pub(crate) struct LeafCounts {
 }
 
 /// Writes the finalized points of a leaf to `output`.
-///
-/// # Errors
-/// Those of reading and finalizing; usage, if a file has changed since the plan was made.
 pub(crate) fn write_leaf(
     plan: &Plan,
     node: &Node,

@@ -42,9 +42,6 @@ pub(super) struct PlanFlags {
 }
 
 /// Makes a plan.
-///
-/// # Errors
-/// If the files do not go together, a header cannot be read, or the plan cannot be written.
 pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     endings::check(path, &[endings::JSON])?;
     check_flags(flags)?;

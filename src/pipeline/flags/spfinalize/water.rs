@@ -54,9 +54,6 @@ impl WaterFlags {
 
     /// Finds the levels, from points of `input` that `areas` select if none are stated; the points in water
     /// are then dropped, too.
-    ///
-    /// # Errors
-    /// Those of the input; as [`Levels::find`].
     pub(super) fn levels<P: Passes>(
         &self,
         (network, water): (&Network, &Water),

@@ -47,9 +47,6 @@ pub(super) struct Weighing {
 
 impl WeightFlags {
     /// What points are weighed by, if they are.
-    ///
-    /// # Errors
-    /// Those of reading a file of radii.
     pub(super) fn load(&self) -> Result<Option<Weighing>> {
         if let Some(attribute) = &self.weights {
             return Ok(Some(Weighing { source: WeightSource::Weights(attribute.clone()), radii: None }));

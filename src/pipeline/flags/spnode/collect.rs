@@ -33,9 +33,6 @@ pub(super) struct Flags {
 }
 
 /// Checks all parts, makes missing ones, and writes the manifest.
-///
-/// # Errors
-/// Those of making nodes; malformed, if points are not accounted for; usage, if nodes were made with different options.
 pub(super) fn run(flags: &Flags, common: &Common) -> anyhow::Result<()> {
     endings::check(&flags.output, &[endings::JSON])?;
     let plan = Plan::read(&flags.plan)?;

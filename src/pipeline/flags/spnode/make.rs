@@ -55,9 +55,6 @@ impl<'a> Maker<'a> {
     }
 
     /// Makes a node, unless it is complete.
-    ///
-    /// # Errors
-    /// Everything that making it fails with.
     pub(super) fn run(&self, number: u32, is_forced: bool) -> anyhow::Result<()> {
         let node = self.folder.plan.node(number)?;
         let done = self.folder.complete(node)?;
@@ -68,9 +65,6 @@ impl<'a> Maker<'a> {
     }
 
     /// Makes a node.
-    ///
-    /// # Errors
-    /// Everything that making it fails with.
     pub(super) fn make(&self, node: &Node) -> anyhow::Result<()> {
         // Without its report, a node counts as incomplete while its files are replaced.
         self.forget(node.number)?;

@@ -43,9 +43,6 @@ impl Folder<'_> {
     }
 
     /// The report of a node, if it is one of this plan.
-    ///
-    /// # Errors
-    /// I/O, if it is there and cannot be read.
     pub(super) fn report(&self, number: u32) -> Result<Option<NodeReport>> {
         let report = NodeReport::read(&self.report_path(number))?;
         Ok(report.filter(|report| report.plan == self.plan.id() && report.node == number))
@@ -57,18 +54,12 @@ impl Folder<'_> {
     }
 
     /// The report of a node whose part is there.
-    ///
-    /// # Errors
-    /// As [`Folder::report`].
     pub(super) fn with_mesh(&self, number: u32) -> Result<Option<NodeReport>> {
         Ok(self.report(number)?.filter(|report| self.has(&report.mesh)))
     }
 
     /// The report of a node that need not be made: its part is there, made of the residuals that its children have
     /// left; and its residual is, or the part of its parent, which has used it.
-    ///
-    /// # Errors
-    /// As [`Folder::report`].
     pub(super) fn complete(&self, node: &Node) -> Result<Option<NodeReport>> {
         let Some(report) = self.with_mesh(node.number)? else { return Ok(None) };
         if report.joined != self.residual_hashes(node)? {
@@ -83,18 +74,12 @@ impl Folder<'_> {
     }
 
     /// Whether the residual of a node is there, as it was written.
-    ///
-    /// # Errors
-    /// As [`Folder::report`].
     pub(super) fn has_whole_residual(&self, number: u32) -> Result<bool> {
         let written = self.report(number)?.and_then(|report| report.residual).map(|residual| residual.hash);
         Ok(written.is_some() && hash_of_file(&self.residual(number)).ok() == written)
     }
 
     /// The hashes of the residuals that a node joins, as the reports of its children state them.
-    ///
-    /// # Errors
-    /// As [`Folder::report`].
     pub(super) fn residual_hashes(&self, node: &Node) -> Result<Vec<String>> {
         let hash = |&child: &u32| -> Result<String> {
             let residual = self.report(child)?.and_then(|report| report.residual);
@@ -104,9 +89,6 @@ impl Folder<'_> {
     }
 
     /// What is wrong with the part of a node, if anything: it is read to its end.
-    ///
-    /// # Errors
-    /// Failures of the machine rather than of the file.
     pub(super) fn damage_of(&self, node: &Node) -> Result<Option<Error>> {
         let read = || -> Result<()> {
             let path = self.mesh(node.number);

@@ -11,9 +11,6 @@ use spmesh_stream::PatchBlocks;
 
 impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     /// Writes simplices, all that are left of all points, and the points that are finalized with them.
-    ///
-    /// # Errors
-    /// As [`super::PatchBuilder::close`] and `flush`.
     pub(super) fn write_all(
         &mut self,
         simplices: &mut Corners,
@@ -39,9 +36,6 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     }
 
     /// Writes the final simplices that were planned, after hidden points.
-    ///
-    /// # Errors
-    /// As [`super::PatchBuilder::close`] and `flush`.
     pub(super) fn write_planned(
         &mut self,
         points: &Residual<D>,

@@ -35,9 +35,6 @@ const INFINITE: u32 = u32::MAX;
 const INT128_MAX: f64 = 670.0;
 
 /// The diagram of sites.
-///
-/// # Errors
-/// All points are in a hyperplane.
 pub(super) fn cells(sites: &Sites, stats: &mut Stats) -> Result<Cells4> {
     let started = Instant::now();
     let order = insertions(sites)?;

@@ -91,9 +91,6 @@ impl<'a, C: Coefficient> Complex<'a, C> {
 
     /// Takes places for new simplices: free ones first, then those behind all others, which are reserved but
     /// not part of the arrays until [`Complex::extend`]. Returns the length of the arrays with them.
-    ///
-    /// # Errors
-    /// I/O, if there are too many simplices.
     #[inline(always)]
     pub(super) fn allocate(
         &mut self,

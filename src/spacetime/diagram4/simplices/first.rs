@@ -7,9 +7,6 @@ use spmesh_delaunay::predicates::exact_integers::integers;
 use spmesh_stream::model::cells4::Point4;
 
 /// Moves the first five points that span space to the front; the others keep their order.
-///
-/// # Errors
-/// Usage, if no five points span space; the message gives the dimension of the points.
 pub(super) fn to_front(sites: &Sites, order: &mut [u32]) -> Result<()> {
     if order.is_empty() {
         return Err(Error::usage("no points, where a diagram in 4 dimensions needs at least 5"));

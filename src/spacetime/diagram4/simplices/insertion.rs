@@ -78,9 +78,6 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
     }
 
     /// Inserts all other points, with AVX2 where the processor has it.
-    ///
-    /// # Errors
-    /// Too many simplices.
     pub(super) fn run(&mut self) -> Result<()> {
         #[cfg(target_arch = "x86_64")]
         if let Some(token) = Avx2Fma::detect() {

@@ -43,9 +43,6 @@ use std::time::Instant;
 /// Triangulates sites.
 ///
 /// Cost: 40 bytes and six coefficients per simplex.
-///
-/// # Errors
-/// All points are in a hyperplane, or there are too many simplices.
 pub(super) fn triangulate<'a, C: Coefficient>(sites: &'a Sites, stats: &mut Stats) -> Result<Complex<'a, C>> {
     let started = Instant::now();
     let order = insertions(sites)?;

@@ -11,9 +11,6 @@ use spmesh_delaunay::predicates::Extent;
 ///
 /// On a full grid, compared with rounds of sublattices, one pass along the curve creates four times as many
 /// simplices, rounds of random points twice as many, and lexicographic order twenty times as many.
-///
-/// # Errors
-/// Usage, if no five sites span space.
 pub(in crate::diagram4) fn insertions(sites: &Sites) -> Result<Vec<u32>> {
     let extent = Extent::of(&sites.points);
     let curve: Vec<u32> = SpatialOrder::default().sort(&sites.points, &extent, Curve::Hilbert).collect();

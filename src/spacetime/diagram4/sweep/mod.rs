@@ -40,16 +40,10 @@ pub trait CellSink {
 
     /// Takes a cell, with the numbers of those of its neighbours that are known already. Cells are numbered
     /// from 0, in the order in which they come.
-    ///
-    /// # Errors
-    /// Ends the sweep.
     fn cell(&mut self, number: u32, cell: Cell4) -> Result<()>;
 
     /// Takes another neighbour of the finite cell `number`, which came before; `first` is the first vertex of
     /// that cell.
-    ///
-    /// # Errors
-    /// Ends the sweep.
     fn neighbour(&mut self, number: u32, first: u32, neighbour: u32) -> Result<()>;
 }
 
@@ -155,9 +149,6 @@ impl<S: CellSink> Sweep<'_, S> {
 
     /// Triangulates the points `numbers`, and gives the cells away that no point of `later` can change, in so
     /// many bytes.
-    ///
-    /// # Errors
-    /// Usage, if the points lie in a hyperplane; those of the sink.
     fn stage<C: Coefficient>(&mut self, numbers: &[u32], later: &[u32], bytes: usize) -> Result<Outcome> {
         let simplex = size_of::<Simplex>() + size_of::<Sphere<C>>();
         let complex = match triangulate_part::<C>(self.sites, numbers, bytes / simplex, self.stats) {

@@ -70,9 +70,6 @@ impl<'a> Stage<'a> {
     }
 
     /// Finds the walls among the facets, in the order of spurious cells.
-    ///
-    /// # Errors
-    /// If one is missing, which theory excludes.
     fn met(&self, walls: &Walls) -> Result<Vec<Met>> {
         if walls.len() == 0 {
             return Ok(Vec::new());

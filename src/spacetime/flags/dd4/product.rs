@@ -72,9 +72,6 @@ impl ProductFlags {
     }
 
     /// Whether the product is binary. Does not read sites.
-    ///
-    /// # Errors
-    /// Usage, if the format of the path cannot hold the product.
     pub(super) fn is_binary(&self, output: &Path) -> Result<bool> {
         let has_sites = self.at_file.is_some();
         Ok(!has_sites && self.product(output)?.is_binary())
@@ -133,9 +130,6 @@ fn check_stream(path: &Path) -> Result<()> {
 }
 
 /// The form of a mesh in space at a path: given by its name, or the default.
-///
-/// # Errors
-/// Usage, if the name implies a format that cannot hold the mesh.
 fn form(path: &Path, is_surface: bool) -> Result<Form> {
     match Format::from_path(path) {
         None => Ok(if is_surface { Form::Ply } else { Form::Vtu }),

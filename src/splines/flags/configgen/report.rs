@@ -31,9 +31,6 @@ pub(super) fn notices(report: &Report, options: &Options) -> Vec<String> {
 }
 
 /// Prints what `--stats` asks for.
-///
-/// # Errors
-/// As [`DegreeCounts::of`].
 pub(super) fn print(
     format: Option<StatsFormat>,
     made: &Made,

@@ -48,9 +48,6 @@ pub(super) enum Form {
 }
 
 /// The form that `--format` asks for, or else the ending of the output.
-///
-/// # Errors
-/// Usage, if it is not for sites, cells or the collocation matrix.
 pub(super) fn format_of(
     output: &Path,
     format: Option<FormatFlag>,

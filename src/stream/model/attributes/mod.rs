@@ -39,7 +39,6 @@ pub struct Attribute {
 
 impl Attribute {
     /// An attribute of one number per point, whose stored numbers are its values.
-    #[must_use]
     pub fn new(name: impl Into<String>, number: NumberType) -> Self {
         Attribute {
             name: name.into(),
@@ -53,7 +52,6 @@ impl Attribute {
     }
 
     /// Bytes that it takes in a row.
-    #[must_use]
     pub fn width(&self) -> usize {
         self.number.width() * usize::from(self.components)
     }
@@ -65,7 +63,6 @@ impl Attribute {
     }
 
     /// The value that the bytes of a stored number stand for; `None` if it is unknown.
-    #[must_use]
     pub fn value(&self, stored: &[u8]) -> Option<f64> {
         if self.unknown.as_deref() == Some(stored) {
             return None;
@@ -112,7 +109,6 @@ impl Attribute {
 
 /// The attributes with names that a list may have: control characters left out, long names cut, and a number
 /// behind names that others have, as in `name_2`.
-#[must_use]
 pub fn with_usable_names(attributes: Vec<Attribute>) -> Vec<Attribute> {
     let mut taken: HashSet<String> = HashSet::new();
     let renamed = attributes.into_iter().map(|attribute| {
@@ -160,19 +156,16 @@ impl Attributes {
     }
 
     /// Whether points carry nothing but coordinates.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
     /// Bytes of a row.
-    #[must_use]
     pub fn row_len(&self) -> usize {
         self.0.iter().map(Attribute::width).sum()
     }
 
     /// A row in which all values are unknown; 0 where an attribute has no number for that.
-    #[must_use]
     pub fn unknown_row(&self) -> Vec<u8> {
         let numbers = self.0.iter().flat_map(|attribute| {
             let zero = vec![0; attribute.number.width()];
@@ -192,7 +185,6 @@ impl Attributes {
     }
 
     /// The attribute with this name and its place in a row, if there is one.
-    #[must_use]
     pub fn find(&self, name: &str) -> Option<(&Attribute, Range<usize>)> {
         self.places().find(|(attribute, _)| attribute.name == name)
     }
@@ -240,7 +232,6 @@ impl Attributes {
     }
 
     /// The names, for messages.
-    #[must_use]
     pub fn names(&self) -> String {
         self.0.iter().map(|attribute| attribute.name.as_str()).collect::<Vec<_>>().join(", ")
     }
@@ -256,7 +247,6 @@ pub struct Column {
 
 impl Column {
     /// Name and unit for a legend.
-    #[must_use]
     pub fn label(&self) -> String {
         let Attribute { name, unit, .. } = &self.attribute;
         if unit.is_empty() { name.clone() } else { format!("{name} ({unit})") }
@@ -266,7 +256,6 @@ impl Column {
     ///
     /// # Panics
     /// If there is no such row.
-    #[must_use]
     pub fn of(&self, rows: &[u8], point: usize) -> f64 {
         let stored = &rows[point * self.row_len + self.at..][..self.attribute.number.width()];
         self.attribute.value(stored).unwrap_or(f64::NAN)

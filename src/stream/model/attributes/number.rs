@@ -45,31 +45,26 @@ const TYPES: [(NumberType, &str, usize); 10] = [
 
 impl NumberType {
     /// The code in a stream.
-    #[must_use]
     pub fn code(self) -> u8 {
         self as u8 + 1
     }
 
     /// The type with this code, if there is one.
-    #[must_use]
     pub fn from_code(code: u8) -> Option<Self> {
         TYPES.get(usize::from(code).checked_sub(1)?).map(|row| row.0)
     }
 
     /// The name in texts, such as `u16`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         TYPES[self as usize].1
     }
 
     /// The type with this name, if there is one.
-    #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         TYPES.iter().find(|row| row.1 == name).map(|row| row.0)
     }
 
     /// Bytes of a number.
-    #[must_use]
     pub fn width(self) -> usize {
         TYPES[self as usize].2
     }
@@ -78,7 +73,6 @@ impl NumberType {
     ///
     /// # Panics
     /// If there are fewer bytes than the type has.
-    #[must_use]
     pub fn read(self, bytes: &[u8]) -> Number {
         fn first<const N: usize>(bytes: &[u8]) -> [u8; N] {
             *bytes.first_chunk().expect("all bytes of a number")
@@ -145,7 +139,6 @@ pub enum Number {
 
 impl Number {
     /// The nearest f64.
-    #[must_use]
     pub fn to_f64(self) -> f64 {
         match self {
             Number::Unsigned(value) => value as f64,

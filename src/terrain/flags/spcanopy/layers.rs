@@ -44,9 +44,6 @@ pub(super) struct Layers<'l> {
 
 impl Layers<'_> {
     /// Draws all layers; calls `progress` with the number of layers done.
-    ///
-    /// # Errors
-    /// If a temporary file fails.
     pub(super) fn draw(&self, thresholds: &[f64], mut progress: impl FnMut(u64)) -> Result<Highest> {
         let mut highest = Highest::new(&self.grid, self.bottom)?;
         for (&threshold, done) in thresholds.iter().zip(1..) {

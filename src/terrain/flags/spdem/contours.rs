@@ -71,9 +71,6 @@ pub(super) struct ContourFlags {
 
 impl ContourFlags {
     /// The lines to write, if any. Memory is for triangles that wait for the outline.
-    ///
-    /// # Errors
-    /// As [`Levels::new`] and the functions of [`OutlineFlags`]; usage, if memory is given without an outline.
     pub(super) fn options(
         &self,
         outline: &OutlineFlags,
@@ -121,9 +118,6 @@ pub(super) struct Job<'a> {
 }
 
 /// Writes lines, and calls `notice` with what the user should know of them.
-///
-/// # Errors
-/// As [`contours::contour`], and if the input or the output cannot be opened.
 pub(super) fn run(
     job: &Job,
     options: &Options,

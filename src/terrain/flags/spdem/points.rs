@@ -27,9 +27,6 @@ pub(super) struct Job<'f> {
 }
 
 /// Writes the raster.
-///
-/// # Errors
-/// As [`points::rasterize`], and if the input or the output cannot be opened.
 pub(super) fn run(job: &Job, options: &Options, started: Instant) -> Result<()> {
     let inputs = iter::once(job.input).chain(job.cells.like().map(PathBuf::as_path));
     let mut output = job.sheets.create(job.output, options.raster.format, job.cells, inputs)?;

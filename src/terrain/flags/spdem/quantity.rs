@@ -113,9 +113,6 @@ enum InterpolationFlag {
 
 impl QuantityFlags {
     /// What is said of the points in a cell.
-    ///
-    /// # Errors
-    /// Usage, if it is a quantity of a mesh.
     pub(super) fn statistic(&self) -> Result<Statistic> {
         self.kind.unwrap_or(KindFlag::Count).statistic().ok_or_else(|| {
             Error::usage(
@@ -125,9 +122,6 @@ impl QuantityFlags {
     }
 
     /// The quantity of a mesh.
-    ///
-    /// # Errors
-    /// Usage, if it is one of points, or flags are for another one.
     pub(super) fn quantity(&self) -> Result<Quantity> {
         let kind = self.kind.unwrap_or(KindFlag::Elevation);
         if kind.statistic().is_some() {

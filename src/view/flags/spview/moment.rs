@@ -14,9 +14,6 @@ pub(super) enum Moment {
 pub(super) struct Every(pub(super) u64);
 
 /// Parses a moment: an integer is a count, any other number a part.
-///
-/// # Errors
-/// If it is neither.
 pub(super) fn parse_moment(text: &str) -> Result<Moment, String> {
     if let Ok(count) = text.parse() {
         return Ok(Moment::Count(count));
@@ -28,9 +25,6 @@ pub(super) fn parse_moment(text: &str) -> Result<Moment, String> {
 }
 
 /// Parses `every=N` with N above zero.
-///
-/// # Errors
-/// If it is anything else.
 pub(super) fn parse_every(text: &str) -> Result<Every, String> {
     let count = text.strip_prefix("every=").and_then(|count| count.parse().ok());
     count.filter(|&count| count > 0).map(Every).ok_or_else(|| format!("{text:?} is not like every=1000000"))

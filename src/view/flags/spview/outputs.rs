@@ -93,9 +93,6 @@ impl Outputs {
     }
 
     /// Writes a picture.
-    ///
-    /// # Errors
-    /// If it cannot be rendered or written.
     pub(super) fn put(&mut self, picture: &Picture) -> Result<()> {
         self.pictures += 1;
         match &mut self.target {
@@ -114,9 +111,6 @@ impl Outputs {
 
     /// Completes a single picture when the stream has been read. Returns a message for the user, if there is
     /// one.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub(super) fn finish(self) -> Result<Option<String>> {
         match self.target {
             Target::One { output, .. } => output.commit().map(|()| None),

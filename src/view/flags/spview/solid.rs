@@ -28,9 +28,6 @@ pub(super) fn is_surface(head: &[u8]) -> bool {
 }
 
 /// The picture of a surface.
-///
-/// # Errors
-/// Those of reading; usage, if flags are for streams.
 pub(super) fn draw(flags: &Flags, input: impl Read, name: &str) -> Result<Picture> {
     check(flags).map_err(|e| e.of_input(name))?;
     let title = Path::new(name).file_name().map_or(name.into(), |name| name.to_string_lossy());

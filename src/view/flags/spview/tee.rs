@@ -37,8 +37,6 @@ impl<R: Read> Tee<R> {
 }
 
 impl Passed {
-    /// # Errors
-    /// If stdout is a terminal.
     pub(super) fn to_stdout() -> Result<Passed> {
         let output = Output::create(Path::new("-"), true)?;
         Ok(Passed(Rc::new(RefCell::new(State { output, waiting: Vec::new(), is_right: false }))))
@@ -50,9 +48,6 @@ impl Passed {
     }
 
     /// Writes the rest, which makes the output whole.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub(super) fn finish(&self) -> Result<()> {
         upstream::output_is_whole();
         self.0.borrow_mut().pass().map_err(|e| Error::io("writing", e))
