@@ -13,6 +13,7 @@ mod dem;
 mod formats;
 mod height;
 mod house;
+mod like;
 mod links;
 mod manifest;
 mod output;

@@ -1,14 +1,11 @@
 //! The grid of an existing GeoTIFF.
 
-use std::io::BufReader;
 use std::path::Path;
-
-use tiff::decoder::Decoder;
-use tiff::tags::Tag;
 
 use crate::crs::{GeoKeys, System, differences};
 use crate::raster::Grid;
 use crate::raster::geotiff::{KEY_DIRECTORY, KEY_DOUBLES, KEY_TEXTS, PIXEL_SCALE, TIEPOINT};
+use crate::raster::tags::{HEIGHT, Tags, WIDTH};
 use crate::source::open_file;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::Crs;
@@ -51,12 +48,12 @@ fn located<T>(path: &Path, result: Result<T>) -> Result<T> {
 /// The cells, and what x and y are.
 fn read(path: &Path) -> Result<(Grid, System)> {
     let (file, _) = open_file(path)?;
-    let malformed =
-        |error: tiff::TiffError| Error::malformed(format!("this cannot be read as TIFF: {error}"));
-    let mut decoder = Decoder::new(BufReader::new(file)).map_err(malformed)?;
-    let (columns, rows) = decoder.dimensions().map_err(malformed)?;
-    let mut numbers = |tag: u16| decoder.get_tag_f64_vec(Tag::Unknown(tag)).unwrap_or_default();
-    let (scale, tie) = (numbers(PIXEL_SCALE), numbers(TIEPOINT));
+    let malformed = |fault| Error::malformed(format!("this cannot be read as TIFF: {fault}"));
+    let tags = Tags::read(&file).map_err(malformed)?;
+    let (Some(columns), Some(rows)) = (tags.integer(WIDTH), tags.integer(HEIGHT)) else {
+        return Err(malformed("it has no image of one width and height".to_string()));
+    };
+    let (scale, tie) = (tags.numbers(PIXEL_SCALE), tags.numbers(TIEPOINT));
     let (&[width, height, ..], &[column, row, _, x, y, ..]) = (&scale[..], &tie[..]) else {
         let what =
             "it does not say where its cells are by their size and one place: warp it to a plain grid first";
@@ -65,10 +62,11 @@ fn read(path: &Path) -> Result<(Grid, System)> {
     if !(width > 0.0 && width.is_finite() && [column, row, x, y].iter().all(|number| number.is_finite())) {
         return Err(Error::malformed(format!("cells of size {width} at {x}, {y} cannot be")));
     }
-    let directory = decoder.get_tag_u16_vec(Tag::Unknown(KEY_DIRECTORY)).unwrap_or_default();
-    let doubles = decoder.get_tag_f64_vec(Tag::Unknown(KEY_DOUBLES)).unwrap_or_default();
-    let texts = decoder.get_tag_ascii_string(Tag::Unknown(KEY_TEXTS)).unwrap_or_default();
-    let keys = GeoKeys { directory, doubles, texts };
+    let keys = GeoKeys {
+        directory: tags.shorts(KEY_DIRECTORY),
+        doubles: tags.numbers(KEY_DOUBLES),
+        texts: tags.text(KEY_TEXTS),
+    };
     // The tie point may be the centre of a cell instead of its corner.
     let half = if keys.is_of_points() { 0.5 * width } else { 0.0 };
     if width != height {

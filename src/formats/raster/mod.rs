@@ -11,6 +11,7 @@ mod like;
 mod no_data;
 mod reference;
 mod relief;
+mod tags;
 
 use std::io::{Seek, Write};
 use std::path::PathBuf;
