@@ -69,7 +69,7 @@ fn in_a_way(points: Vec<[f64; 3]>, way: &str) -> Result<(), Box<dyn Error>> {
 
 #[cfg(feature = "experiments")]
 fn in_floating_point(points: &[[f64; 3]], sequence: Sequence) -> Result<(), Box<dyn Error>> {
-    use spmesh_delaunay::delaunay3_float::{Options, triangulate};
+    use spmesh_molecules::float::{Options, triangulate};
     let options = Options { sequence, ..Options::default() };
     let (result, seconds) = timed(|| triangulate(points, &options));
     report(&result?.0, points.len(), seconds);

@@ -46,7 +46,8 @@ pub enum Error {
 }
 
 impl Error {
-    pub(crate) fn not_finite(point: usize, coordinates: &[f64]) -> Error {
+    /// A coordinate of a point that is infinite or not a number.
+    pub fn not_finite(point: usize, coordinates: &[f64]) -> Error {
         Error::NotFinite { point, found: format!("coordinate is not finite: {coordinates:?}") }
     }
 }

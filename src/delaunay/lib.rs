@@ -6,8 +6,6 @@ pub mod cell_walk;
 pub mod constrained2;
 pub mod delaunay2;
 pub mod delaunay3;
-#[cfg(feature = "experiments")]
-pub mod delaunay3_float;
 mod error;
 mod location;
 pub mod network;

@@ -2,9 +2,11 @@
 //! contacts, pockets and surfaces.
 //!
 //! [`balls`] computes, [`tess3`] is the engine of the program; `flags`, with the feature of this name, has its
-//! command line.
+//! command line. `float`, with the feature `experiments`, is the program of the thesis, in floating-point arithmetic.
 
 pub mod balls;
 #[cfg(feature = "flags")]
 pub mod flags;
+#[cfg(feature = "experiments")]
+pub mod float;
 pub mod tess3;

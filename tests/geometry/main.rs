@@ -2,8 +2,6 @@
 
 mod circle;
 mod constrained;
-#[cfg(feature = "experiments")]
-mod delaunay3_float;
 mod grids;
 mod kernel;
 mod kernel3;

@@ -35,7 +35,7 @@ unsafe impl Pod for Vertex {}
 impl Vertex {
     /// The input point of this index.
     #[inline(always)]
-    pub(crate) fn new(at: Point3, index: u32) -> Vertex {
+    pub fn new(at: Point3, index: u32) -> Vertex {
         Vertex { at, index, unused: 0 }
     }
 }
@@ -60,8 +60,7 @@ pub(super) const WORDS: usize = size_of::<Tetrahedron>() / size_of::<u32>();
 
 impl Tetrahedron {
     /// A tetrahedron made elsewhere, with what is across from each corner.
-    #[cfg(feature = "experiments")]
-    pub(crate) fn new(vertices: [u32; 4], neighbours: [Option<Corner>; 4]) -> Tetrahedron {
+    pub fn new(vertices: [u32; 4], neighbours: [Option<Corner>; 4]) -> Tetrahedron {
         let word = |corner: Corner| corner.tetrahedron * WORDS as u32 + corner.corner;
         Tetrahedron { vertices, neighbours: neighbours.map(|corner| corner.map_or(NONE, word)) }
     }
@@ -101,8 +100,7 @@ pub struct Tetrahedralization {
 
 impl Tetrahedralization {
     /// A tetrahedralization made elsewhere, without stats.
-    #[cfg(feature = "experiments")]
-    pub(crate) fn from_parts(
+    pub fn from_parts(
         vertices: Vec<Vertex>,
         duplicates: Vec<[u32; 2]>,
         tetrahedra: Vec<Tetrahedron>,

@@ -9,10 +9,10 @@ use super::Report;
 #[cfg(feature = "experiments")]
 use super::Rounding;
 use super::heap::peak_during;
+#[cfg(feature = "experiments")]
+use crate::float;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
-#[cfg(feature = "experiments")]
-use spmesh_delaunay::delaunay3_float;
 use spmesh_delaunay::order::{Curve, Sequence};
 use spmesh_delaunay::predicates::Point3;
 
@@ -124,7 +124,7 @@ impl Method {
     pub(super) fn count_violations(&self, mesh: &Tetrahedralization, report: &mut Report) {
         #[cfg(feature = "experiments")]
         if self.arithmetic != Arithmetic::Exact {
-            report.rounding.violations = Some(delaunay3_float::violations(mesh));
+            report.rounding.violations = Some(float::violations(mesh));
         }
     }
 
@@ -141,11 +141,10 @@ impl Method {
         report: &mut Report,
     ) -> Result<Tetrahedralization> {
         let Method { curve, sequence, by_bit_levels, seed, .. } = *self;
-        let thesis = delaunay3_float::Options::default();
-        let options =
-            delaunay3_float::Options { curve, sequence, by_bit_levels, seed, check_signs, ..thesis };
-        let (mesh, stats) = delaunay3_float::triangulate(points, &options).map_err(Error::of_computation)?;
-        let delaunay3_float::Stats { wrong_signs, wrong_zeros, rounded, missing, .. } = stats;
+        let thesis = float::Options::default();
+        let options = float::Options { curve, sequence, by_bit_levels, seed, check_signs, ..thesis };
+        let (mesh, stats) = float::triangulate(points, &options).map_err(Error::of_computation)?;
+        let float::Stats { wrong_signs, wrong_zeros, rounded, missing, .. } = stats;
         report.created = stats.created;
         report.in_sphere_tests = stats.in_sphere_tests;
         report.rounding = Rounding { wrong_signs, wrong_zeros, rounded, missing, violations: None };

@@ -2,9 +2,9 @@
 //! level.
 
 use super::options::Options;
-use crate::delaunay3::Vertex;
-use crate::order::{Insertions, SpatialOrder, Suffixes};
-use crate::predicates::{Extent, Point3};
+use spmesh_delaunay::delaunay3::Vertex;
+use spmesh_delaunay::order::{Insertions, SpatialOrder, Suffixes};
+use spmesh_delaunay::predicates::{Extent, Point3};
 
 /// Distinct points, and what was found when they were put in order.
 pub(super) struct Sorted {

@@ -1,6 +1,6 @@
 //! How the program of the thesis is run.
 
-use crate::order::{Curve, Sequence};
+use spmesh_delaunay::order::{Curve, Sequence};
 
 /// Options of [`triangulate`](super::triangulate).
 #[derive(Debug, Clone, Copy)]

@@ -6,9 +6,9 @@ use super::phase_timer::Phase;
 use super::star::Star;
 use super::state::State;
 use super::stats::Stats;
-use crate::delaunay3;
-use crate::error::{Error, Result};
-use crate::order::Insertions;
+use spmesh_delaunay::delaunay3;
+use spmesh_delaunay::order::Insertions;
+use spmesh_delaunay::{Error, Result};
 use std::time::Instant;
 
 impl State<'_> {

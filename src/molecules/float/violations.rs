@@ -1,8 +1,8 @@
 //! Counts the tetrahedra that rounding made wrong.
 
 use super::check::orient3d;
-use crate::delaunay3::Tetrahedralization;
-use crate::predicates::{FiniteFloatPredicates3, Predicates3, Sign};
+use spmesh_delaunay::delaunay3::Tetrahedralization;
+use spmesh_delaunay::predicates::{FiniteFloatPredicates3, Predicates3, Sign};
 
 /// The number of tetrahedra that are inverted or flat, or have a vertex of a neighbour inside of their
 /// sphere, by exact arithmetic. Spheres of flat tetrahedra have no inside.
@@ -32,7 +32,7 @@ fn has_neighbour_inside(mesh: &Tetrahedralization, number: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delaunay3::triangulate;
+    use spmesh_delaunay::delaunay3::triangulate;
 
     #[test]
     fn what_is_not_delaunay_is_counted() {

@@ -2,9 +2,9 @@
 
 use super::check;
 use super::sphere::orientation;
-use crate::delaunay3::Vertex;
-use crate::order::Insertions;
-use crate::predicates::Sign;
+use spmesh_delaunay::delaunay3::Vertex;
+use spmesh_delaunay::order::Insertions;
+use spmesh_delaunay::predicates::Sign;
 
 /// Four vertices, positively oriented for exact arithmetic and for rounded arithmetic; none if all are in a
 /// plane.

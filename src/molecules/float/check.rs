@@ -3,8 +3,8 @@
 use super::mesh::{faraway_corner, finite_facet};
 use super::sphere::difference;
 use super::stats::Stats;
-use crate::delaunay3::Vertex;
-use crate::predicates::{
+use spmesh_delaunay::delaunay3::Vertex;
+use spmesh_delaunay::predicates::{
     FiniteFloatPredicates, FiniteFloatPredicates3, Point3, Predicates2, Predicates3, Sign,
 };
 
@@ -67,7 +67,7 @@ fn is_rounded([o, a, b, c]: [Point3; 4], p: Point3, value: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delaunay3_float::sphere::Sphere;
+    use crate::float::sphere::Sphere;
 
     #[test]
     fn values_of_small_integers_are_not_rounded_and_those_of_great_ones_are() {

@@ -2,8 +2,8 @@
 
 use robust::{Coord3D, insphere, orient3d};
 use spmesh_delaunay::delaunay3::{Corner, Tetrahedralization};
-use spmesh_delaunay::delaunay3_float::{Options, Stats, triangulate};
 use spmesh_delaunay::order::{Curve, Sequence};
+use spmesh_molecules::float::{Options, Stats, triangulate};
 use spmesh_reference::sets::Random;
 use std::collections::{HashMap, HashSet};
 

@@ -1,6 +1,6 @@
 //! Sphere equations, in rounded arithmetic.
 
-use crate::predicates::Point3;
+use spmesh_delaunay::predicates::Point3;
 
 #[inline(always)]
 pub(super) fn difference(p: Point3, q: Point3) -> Point3 {

@@ -6,8 +6,8 @@ use super::phase_timer::Phase;
 use super::sphere::Sphere;
 use super::state::State;
 use super::wall::Wall;
-use crate::predicates::Point3;
-use crate::simplex::TETRAHEDRON_FACETS;
+use spmesh_delaunay::predicates::Point3;
+use spmesh_delaunay::simplex::TETRAHEDRON_FACETS;
 
 /// Searches for one cavity, each with more decided.
 const SEARCHES_MAX: usize = 20;

@@ -3,7 +3,7 @@
 use super::check::check;
 use super::mesh::{corner_of, tetrahedron_of};
 use super::state::State;
-use crate::predicates::Point3;
+use spmesh_delaunay::predicates::Point3;
 
 /// Walks to one point, each from a start of its own.
 const WALKS_MAX: usize = 4;

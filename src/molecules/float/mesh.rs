@@ -1,9 +1,9 @@
 //! The tetrahedra of a triangulated 3-sphere: those of the points, and infinite ones at the faraway point.
 
 use super::sphere::{Sphere, orientation};
-use crate::delaunay3::{self, Corner, NONE, Vertex};
-use crate::predicates::Point3;
-use crate::simplex::TETRAHEDRON_FACETS;
+use spmesh_delaunay::delaunay3::{self, Corner, NONE, Vertex};
+use spmesh_delaunay::predicates::Point3;
+use spmesh_delaunay::simplex::TETRAHEDRON_FACETS;
 
 /// The faraway point (thesis 4.3), never the first vertex of a tetrahedron.
 pub(super) const FARAWAY: u32 = u32::MAX;

@@ -6,8 +6,8 @@ use super::options::Options;
 use super::phase_timer::PhaseTimer;
 use super::star::Star;
 use super::stats::Stats;
-use crate::delaunay3::Vertex;
-use crate::random::Random;
+use spmesh_base::random::Random;
+use spmesh_delaunay::delaunay3::Vertex;
 
 /// Work per point, in tetrahedra, after which walks and cavities are kept short: rounding must not make a run
 /// endless.

@@ -34,10 +34,10 @@ pub use options::Options;
 pub use stats::{Seconds, Stats};
 pub use violations::violations;
 
-use crate::delaunay3::Tetrahedralization;
-use crate::error::{Error, Result};
-use crate::predicates::{Extent, Point3};
 use sequence::Sorted;
+use spmesh_delaunay::delaunay3::Tetrahedralization;
+use spmesh_delaunay::predicates::{Extent, Point3};
+use spmesh_delaunay::{Error, Result};
 use state::State;
 use std::time::Instant;
 
