@@ -7,12 +7,12 @@
 //!
 //! # Points of the plane
 //!
-//! [`delaunay2::triangulate`](geometry::delaunay2::triangulate) takes points and returns a
-//! [`Triangulation`](geometry::delaunay2::Triangulation). Its vertices are indices of the points.
+//! [`delaunay2::triangulate`](delaunay::delaunay2::triangulate) takes points and returns a
+//! [`Triangulation`](delaunay::delaunay2::Triangulation). Its vertices are indices of the points.
 //!
 //! ```
-//! use spmesh::geometry::Location;
-//! use spmesh::geometry::delaunay2::triangulate;
+//! use spmesh::delaunay::Location;
+//! use spmesh::delaunay::delaunay2::triangulate;
 //!
 //! let points = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [3.0, 3.0], [0.0, 0.0]];
 //! let mesh = triangulate(&points)?;
@@ -27,27 +27,27 @@
 //!     location => panic!("{location:?}"),
 //! }
 //! assert_eq!(mesh.locate([2.0, 0.0]), Location::Edge([0, 1]));
-//! # Ok::<(), spmesh::core::error::Error>(())
+//! # Ok::<(), spmesh::delaunay::Error>(())
 //! ```
 //!
 //! # Points of space
 //!
-//! [`delaunay3::triangulate`](geometry::delaunay3::triangulate) returns a
-//! [`Tetrahedralization`](geometry::delaunay3::Tetrahedralization), which has the same methods.
+//! [`delaunay3::triangulate`](delaunay::delaunay3::triangulate) returns a
+//! [`Tetrahedralization`](delaunay::delaunay3::Tetrahedralization), which has the same methods.
 //!
 //! ```
-//! use spmesh::geometry::delaunay3::triangulate;
+//! use spmesh::delaunay::delaunay3::triangulate;
 //!
 //! let cube: Vec<[f64; 3]> = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from)).collect();
 //! let mesh = triangulate(&cube)?;
 //! // Twelve edges of the cube, and a diagonal on each face at least.
 //! assert!(mesh.edges().len() >= 18);
 //! assert_eq!(mesh.hull().count(), 12);
-//! # Ok::<(), spmesh::core::error::Error>(())
+//! # Ok::<(), spmesh::delaunay::Error>(())
 //! ```
 //!
-//! Programs that triangulate many sets use [`delaunay2::Kernel`](geometry::delaunay2::Kernel) or
-//! [`delaunay3::Kernel`](geometry::delaunay3::Kernel), which keep their buffers.
+//! Programs that triangulate many sets use [`delaunay2::Kernel`](delaunay::delaunay2::Kernel) or
+//! [`delaunay3::Kernel`](delaunay::delaunay3::Kernel), which keep their buffers.
 //!
 //! # Streams
 //!
@@ -76,7 +76,7 @@
 //!     }
 //! }
 //! assert_eq!(triangles, 2);
-//! # Ok::<(), spmesh::core::error::Error>(())
+//! # Ok::<(), spmesh::base::error::Error>(())
 //! ```
 //!
 //! # Features
@@ -89,9 +89,11 @@
 //! | `pipeline`, `terrain`, `view`, `convert`, `molecules`, `spacetime`, `splines` | the programs of one subject |
 //! | `geopackage` (default) | lines of GeoPackages |
 //! | `experiments` | flags that measure the kernels |
+//!
+//! Engines of the programs are crates of their own, such as `spmesh-terrain`, whose feature `flags` adds the command
+//! lines.
 
-pub use spmesh_base as core;
-pub use spmesh_delaunay as geometry;
+pub use spmesh_base as base;
+pub use spmesh_delaunay as delaunay;
 pub use spmesh_pipeline::reduce;
 pub use spmesh_stream as stream;
-pub use spmesh_stream::model;

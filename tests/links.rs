@@ -27,6 +27,31 @@ fn every_relative_link_leads_somewhere() {
     assert!(broken.is_empty(), "broken links:\n{}", broken.join("\n"));
 }
 
+/// Files and folders of the sources that documents name in full are there; CHANGELOG.md tells of those that were.
+#[test]
+fn every_named_source_is_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut documents: Vec<PathBuf> = AT_ROOT[..3].iter().map(|name| root.join(name)).collect();
+    FOLDERS.iter().for_each(|folder| collect(&root.join(folder), &mut documents));
+    let is_part = |c: char| c.is_ascii_alphanumeric() || "/_.-".contains(c);
+    let mut gone = Vec::new();
+    for document in &documents {
+        let text = fs::read_to_string(document).unwrap();
+        for part in text
+            .split('`')
+            .skip(1)
+            .step_by(2)
+            .filter(|part| part.starts_with("src/") && part.chars().all(is_part))
+        {
+            // In rules, capitals stand for a name.
+            if !root.join(part).exists() && !part.contains("NAME") && !part.contains("SUBJECT") {
+                gone.push(format!("{}: {part}", document.strip_prefix(root).unwrap().display()));
+            }
+        }
+    }
+    assert!(gone.is_empty(), "documents name sources that are not there:\n{}", gone.join("\n"));
+}
+
 /// Adds the Markdown files below a folder.
 fn collect(folder: &Path, documents: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
