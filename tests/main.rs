@@ -16,6 +16,7 @@ mod house;
 mod like;
 mod links;
 mod manifest;
+mod masks;
 mod output;
 mod pipelines;
 mod point_rasters;

@@ -112,8 +112,8 @@ pub const NRRD_FILES_MAX: usize = 1 << 16;
 /// Longest number in the text of a volume or of coordinates without lines, in bytes.
 pub const NUMBER_LEN_MAX: usize = 128;
 
-/// Longest GeoJSON file, in bytes: its values take ten times as much.
-pub const GEOJSON_LEN_MAX: u64 = 1 << 25;
+/// Longest well-known text of polygons, in bytes: its vertices take ten times as much.
+pub const WKT_LEN_MAX: u64 = 1 << 25;
 
 /// Most vertices of breaklines, of which each becomes a knot.
 pub const BREAKLINE_VERTICES_MAX: usize = 1 << 20;

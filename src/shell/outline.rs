@@ -1,13 +1,15 @@
 //! Flags about the outline of a surface.
 
 use std::path::{Path, PathBuf};
+use std::slice;
 use std::sync::Arc;
 
 use clap::Args;
 
-use super::open_held;
+use super::refuse_terminal;
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::source::{Mask, read_mask};
+use spmesh_formats::source::{Mask, read_polygons};
+use spmesh_stream::{Coordinates, Crs};
 
 /// Flags about the outline of a surface.
 #[derive(Debug, Clone, Args)]
@@ -21,8 +23,8 @@ pub struct OutlineFlags {
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     concave: Option<f64>,
 
-    /// Leave out what is outside of these polygons: GeoJSON, or WKT such as POLYGON((0 0,9 0,9 9,0 0)), in
-    /// coordinates of the mesh
+    /// Leave out what is outside of these polygons, in the system of the mesh: GeoJSON, Shapefile,
+    /// GeoPackage, or WKT such as POLYGON((0 0,9 0,9 9,0 0))
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
 }
@@ -49,14 +51,18 @@ impl OutlineFlags {
         self.mask.as_deref()
     }
 
-    /// The polygons of the mask.
+    /// The polygons of the mask, for a surface in the system `crs`. `notice` gets messages for the user.
     ///
     /// # Errors
-    /// If the file cannot be read, or is malformed.
-    pub fn mask(&self) -> Result<Option<Arc<Mask>>> {
+    /// As [`read_polygons`]; usage, if the file is a terminal.
+    pub fn mask(&self, crs: &Crs, mut notice: impl FnMut(&str)) -> Result<Option<Arc<Mask>>> {
         let Some(path) = &self.mask else { return Ok(None) };
-        let (input, name) = open_held(path)?;
-        read_mask(input).map(|mask| Some(Arc::new(mask))).map_err(|error| error.of_input(name))
+        if path.as_os_str() == "-" {
+            refuse_terminal()?;
+        }
+        let (polygons, notices) = read_polygons(slice::from_ref(path), &Coordinates::F64, crs)?;
+        notices.iter().for_each(|text| notice(text));
+        Ok(Some(Arc::new(Mask { polygons })))
     }
 }
 

@@ -2,11 +2,12 @@
 
 use spmesh_base::limits::{
     BREAKLINE_VERTICES_MAX, CONDITION_DEPTH_MAX, CONDITION_LEN_MAX, CONTOURS_PER_TRIANGLE_MAX,
-    GEOJSON_LEN_MAX, LIST_FILES_MAX, NPY_HEADER_MAX, NRRD_FILES_MAX, NRRD_HEADER_MAX, NUMBER_LEN_MAX,
-    STRUCTURE_LINE_MAX, TEXT_LINE_MAX, XML_DEPTH_MAX, XML_TAG_MAX,
+    LIST_FILES_MAX, NPY_HEADER_MAX, NRRD_FILES_MAX, NRRD_HEADER_MAX, NUMBER_LEN_MAX, STRUCTURE_LINE_MAX,
+    TEXT_LINE_MAX, XML_DEPTH_MAX, XML_TAG_MAX,
 };
-use spmesh_formats::source::{read_mask, read_polylines};
+use spmesh_formats::source::{read_polygons, read_polylines};
 use spmesh_formats::volumes::Condition;
+use spmesh_stream::{Coordinates, Crs};
 
 use crate::programs::{Folder, outcome, run};
 
@@ -124,14 +125,19 @@ fn breaklines_and_masks() {
         }
         text
     };
-    let read = |count: usize| read_polylines(lines(count).as_bytes()).map_err(|error| error.to_string());
+    let folder = Folder::new();
+    let read = |count: usize| {
+        let path = folder.file("lines.txt", lines(count));
+        read_polylines(&path).map_err(|error| error.to_string())
+    };
     assert!(read(BREAKLINE_VERTICES_MAX).is_ok(), "{:?}", read(BREAKLINE_VERTICES_MAX).err());
     assert!(read(BREAKLINE_VERTICES_MAX + 1).unwrap_err().contains("more than 1048576 vertices"));
     let mask = |len: usize| {
         let text = padded("POLYGON((0 0,4 0,4 4,0 0))", len - 1);
-        read_mask(&text[..]).map_err(|error| error.to_string())
+        let path = folder.file("mask.wkt", text);
+        read_polygons(&[path], &Coordinates::F64, &Crs::Unknown).map_err(|error| error.to_string())
     };
-    let most = GEOJSON_LEN_MAX as usize;
+    let most = WKT_LEN_MAX as usize;
     assert!(mask(most).is_ok());
     assert!(mask(most + 1).unwrap_err().contains("more than 33554432 bytes"));
 }

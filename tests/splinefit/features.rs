@@ -104,7 +104,7 @@ fn features_far_from_the_points_are_refused_before_they_take_memory() {
                 let (code, message) = outcome(&run("splinefit", &arguments, &[]));
                 assert_eq!(code, Some(2), "{arguments:?}: {message}");
                 let place =
-                    if text.starts_with('{') { "features.txt: polyline 0" } else { "features.txt: line 2" };
+                    if text.starts_with('{') { "features.txt: feature 0" } else { "features.txt: line 2" };
                 for part in [place, "is far from the points", "ogr2ogr -clipsrc"] {
                     assert!(message.contains(part), "{text} {way:?}: {message}");
                 }
@@ -127,4 +127,32 @@ fn features_need_no_more_knots_than_asked_for() {
     assert_eq!(code, Some(2), "{message}");
     assert!(message.contains("the features need 71 knots, at most 40"), "{message}");
     output(&["fit", "--max-knots", "80", "--features", &features, &points], &[]);
+}
+
+#[test]
+fn features_are_in_the_system_of_the_points() {
+    let folder = Folder::new();
+    let points = folder.write("points.txt", points(500, 3, roof));
+    let text = folder.write("ridge.txt", "crease 43 0 43 80\n");
+    let crs = |code: u32| format!(r#""crs":{{"type":"name","properties":{{"name":"EPSG:{code}"}}}},"#);
+    let line = r#""type":"LineString","coordinates":[[43,0],[43,80]]"#;
+    let write = |name: &str, crs: &str| folder.write(name, format!("{{{crs}{line}}}"));
+    let fit = |features: &str| {
+        run(
+            "splinefit",
+            &["fit", "--step", "20", "--crs", "EPSG:25832", "--features", features, &points],
+            &[],
+        )
+    };
+    let expected = fit(&text).stdout;
+    assert!(!expected.is_empty());
+    assert!(fit(&write("same.geojson", &crs(25832))).stdout == expected);
+    for (name, crs, part) in [
+        ("other.geojson", crs(25833), "the lines are in EPSG:25833, the points in EPSG:25832 ("),
+        ("degrees.geojson", String::new(), "the lines are in EPSG:4326 (GeoJSON without the member crs)"),
+    ] {
+        let (code, message) = outcome(&fit(&write(name, &crs)));
+        assert_eq!(code, Some(2), "{message}");
+        assert!(message.contains(part), "{message}");
+    }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::lines::systems::LineSystem;
 use crate::lines::{Breakline, Breaklines, Properties};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::check_line_vertices;
@@ -30,7 +31,10 @@ pub(crate) struct Collector {
 impl Collector {
     /// Starts a feature.
     pub(crate) fn feature(&mut self, properties: Properties) {
-        self.properties = Arc::new(properties);
+        // Most features have the properties of the one before.
+        if *self.properties != properties {
+            self.properties = Arc::new(properties);
+        }
     }
 
     /// Starts a polygon.
@@ -66,6 +70,7 @@ impl Collector {
         self.lines.push(Breakline {
             vertices: vertices.iter().map(|&[x, y, _]| [x, y]).collect(),
             elevations: vertices.iter().map(|&[_, _, z]| Some(z).filter(|z| z.is_finite())).collect(),
+            is_point: shape == Shape::Points,
             polygon: (shape == Shape::Ring).then(|| self.polygons - 1),
             properties: Arc::clone(&self.properties),
             position: Arc::clone(position),
@@ -77,6 +82,6 @@ impl Collector {
         if self.lines.is_empty() {
             return Err(Error::malformed("found no lines"));
         }
-        Ok(Breaklines { lines: self.lines, crs })
+        Ok(Breaklines { lines: self.lines, system: LineSystem { crs, may_be_degrees: false } })
     }
 }

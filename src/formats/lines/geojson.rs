@@ -13,12 +13,21 @@ use serde_core::de::{DeserializeSeed, Deserializer, Error as _, IgnoredAny, MapA
 use crate::crs::requested;
 use crate::detect::BYTE_ORDER_MARK;
 use crate::lines::collect::Shape;
-use crate::lines::{Breaklines, Collector, Properties};
+use crate::lines::{Breaklines, Collector, Properties, without_mark};
 use coordinates::{Coordinates, Whole};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::Crs;
+use spmesh_stream::model::points::Point2;
 
 type JsonResult<T, E> = std::result::Result<T, E>;
+
+/// Greatest longitude and latitude.
+const DEGREES: [f64; 2] = [180.0, 90.0];
+
+/// Whether a text that starts with these bytes is JSON.
+pub(crate) fn is_json(head: &[u8]) -> bool {
+    without_mark(head).trim_ascii_start().starts_with(b"{")
+}
 
 /// Reads GeoJSON.
 pub(crate) fn read(mut input: impl Read) -> Result<Breaklines> {
@@ -34,7 +43,11 @@ pub(crate) fn read(mut input: impl Read) -> Result<Breaklines> {
     let read = read.and_then(|root| root.finish(&mut file).map_err(serde_json::Error::custom));
     read.and_then(|()| json.end()).map_err(|error| failure(error, file.failure.take()))?;
     let crs = file.system.as_deref().map_or(Ok(Crs::Unknown), system)?;
-    file.lines.finish(crs)
+    let mut lines = file.lines.finish(crs)?;
+    let are_degrees = |[x, y]: &Point2| x.abs() <= DEGREES[0] && y.abs() <= DEGREES[1];
+    lines.system.may_be_degrees =
+        file.system.is_none() && lines.lines.iter().flat_map(|line| &line.vertices).all(are_degrees);
+    Ok(lines)
 }
 
 /// The error of a file: that of this program if it found one.
@@ -267,7 +280,7 @@ mod tests {
         assert_eq!(lines[5].elevations, [Some(1.0)]);
         let alone =
             read("\u{feff} {\"type\":\"LineString\",\"coordinates\":[[0,1],[2,3]]} ".as_bytes()).unwrap();
-        assert_eq!((alone.lines.len(), alone.crs), (1, Crs::Unknown));
+        assert_eq!((alone.lines.len(), alone.system.crs), (1, Crs::Unknown));
     }
 
     #[test]
@@ -277,7 +290,7 @@ mod tests {
             let crs = format!(r#""crs":{{"type":"name","properties":{{"name":"{name}"}}}}"#);
             read(format!(r#"{{"type":"FeatureCollection",{crs},"features":[{}]}}"#, feature(line)).as_bytes())
         };
-        let name = |name: &str| crate::crs::name(&of(name).unwrap().crs).unwrap();
+        let name = |name: &str| crate::crs::name(&of(name).unwrap().system.crs).unwrap();
         assert_eq!(name("urn:ogc:def:crs:EPSG::25832"), "EPSG:25832");
         assert_eq!(name("EPSG:2991"), "EPSG:2991");
         assert_eq!(name("urn:ogc:def:crs:OGC:1.3:CRS84"), "EPSG:4326");

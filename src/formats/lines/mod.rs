@@ -4,33 +4,32 @@
 pub(crate) mod collect;
 pub(crate) mod dbase;
 pub(crate) mod geojson;
-pub(crate) mod geojson_polygons;
 #[cfg(feature = "geopackage")]
 pub(crate) mod geopackage;
 pub(crate) mod mask;
 pub(crate) mod polygon;
 pub(crate) mod polylines;
+pub(crate) mod rings;
 pub(crate) mod shapefile;
+pub(crate) mod systems;
 pub(crate) mod text;
 #[cfg(feature = "geopackage")]
 pub(crate) mod wkb;
 pub(crate) mod wkt;
-pub(crate) mod wkt_polygons;
 pub(crate) mod write_geojson;
 
 use std::io::{BufReader, Read};
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::detect::{self, Format, read_head};
-use crate::lines::geojson_polygons::is_json;
+use crate::detect::{self, BYTE_ORDER_MARK, Format, read_head};
 use crate::source::gzip::Plain;
 use crate::source::origin::{name_of, open_file, open_stdin};
 use spmesh_base::error::{Error, Result};
-use spmesh_stream::Crs;
 use spmesh_stream::model::points::Point2;
 
 use collect::Collector;
+use systems::LineSystem;
 
 /// First bytes of a GeoPackage, which is an SQLite database.
 const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
@@ -45,6 +44,8 @@ pub struct Breakline {
     pub vertices: Vec<Point2>,
     /// Elevation of each vertex, where the file states one.
     pub elevations: Vec<Option<f64>>,
+    /// Whether its only vertex is a point of the file. Those of a multipoint share one `position`.
+    pub is_point: bool,
     /// Number of the polygon in the file that it is a ring of.
     pub polygon: Option<u32>,
     /// Those of its feature, which all of its lines share.
@@ -53,7 +54,7 @@ pub struct Breakline {
     pub position: Arc<str>,
 }
 
-/// What a feature says about water, as text.
+/// What a feature says about water or splines, as text.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Properties {
     /// Elevation of a lake.
@@ -62,6 +63,8 @@ pub struct Properties {
     pub river: Option<String>,
     /// Side of a river that a line is the bank of.
     pub bank: Option<String>,
+    /// Role in a spline.
+    pub spline: Option<String>,
 }
 
 impl Properties {
@@ -71,6 +74,7 @@ impl Properties {
             _ if name.eq_ignore_ascii_case("level") => Some(&mut self.level),
             _ if name.eq_ignore_ascii_case("river") => Some(&mut self.river),
             _ if name.eq_ignore_ascii_case("bank") => Some(&mut self.bank),
+            _ if name.eq_ignore_ascii_case("spline") => Some(&mut self.spline),
             _ => None,
         }
     }
@@ -81,8 +85,8 @@ impl Properties {
 pub struct Breaklines {
     /// In the order of the file.
     pub lines: Vec<Breakline>,
-    /// Coordinate reference system, if the file states one.
-    pub crs: Crs,
+    /// What the file says about their coordinate reference system.
+    pub system: LineSystem,
 }
 
 /// Reads the lines of a file; `-` is stdin, from which text and GeoJSON are read. Both may be compressed with
@@ -98,19 +102,22 @@ pub struct Breaklines {
 /// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a
 /// coordinate is not finite, or there are more than `LINE_VERTICES_MAX` vertices.
 pub fn read_breaklines(path: &Path) -> Result<Breaklines> {
-    read(path, false).map_err(|error| error.of_input(name_of(path)))
+    read(path, text_of_lines).map_err(|error| error.of_input(name_of(path)))
 }
 
-/// Reads the polygons of a file as [`read_breaklines`], also from WKT, of which third coordinates are
-/// ignored.
-///
-/// # Errors
-/// As there. Lines that are no rings are no error.
-pub fn read_polygons(path: &Path) -> Result<Breaklines> {
-    read(path, true).map_err(|error| error.of_input(name_of(path)))
+/// How what is no GeoJSON, Shapefile or GeoPackage is read: its first bytes, and all of it.
+type ReadText = fn(&[u8], &mut dyn Read) -> Result<Breaklines>;
+
+fn text_of_lines(head: &[u8], input: &mut dyn Read) -> Result<Breaklines> {
+    check_text(head)?;
+    text::read(input)
 }
 
-fn read(path: &Path, takes_wkt: bool) -> Result<Breaklines> {
+fn text_or_wkt(head: &[u8], input: &mut dyn Read) -> Result<Breaklines> {
+    if wkt::is_wkt(head) { wkt::read(input) } else { text_of_lines(head, input) }
+}
+
+fn read(path: &Path, read_text: ReadText) -> Result<Breaklines> {
     let (input, is_file): (Box<dyn Read>, bool) = if path.as_os_str() == "-" {
         (Box::new(open_stdin()?), false)
     } else {
@@ -121,25 +128,22 @@ fn read(path: &Path, takes_wkt: bool) -> Result<Breaklines> {
     // Other formats are read by their names again, or with files beside them.
     let is_plain = is_file && !input.is_compressed();
     let head = read_head(&mut input).map_err(|e| Error::io("reading", e))?;
+    let mut whole = BufReader::with_capacity(1 << 17, head.chain(input));
+    let check_plain = |format: &str| if is_plain { Ok(()) } else { Err(not_in_pipe(format)) };
     if head.starts_with(SQLITE_MAGIC) {
-        return if is_plain { read_geopackage(path) } else { Err(not_in_pipe("GeoPackage")) };
+        check_plain("GeoPackage")?;
+        return read_geopackage(path);
     }
-    let is_shapefile = head.starts_with(SHAPEFILE_MAGIC);
-    if is_shapefile && !is_plain {
-        return Err(not_in_pipe("Shapefile"));
+    if head.starts_with(SHAPEFILE_MAGIC) {
+        check_plain("Shapefile")?;
+        return shapefile::read(whole, path);
     }
-    let is_json = is_json(&head);
-    if takes_wkt && wkt::is_wkt(&head) {
-        return wkt::read(head, input);
-    }
-    if !is_json && !is_shapefile {
-        check_text(&head)?;
-    }
-    let rest = BufReader::with_capacity(1 << 17, head.chain(input));
-    if is_shapefile {
-        return shapefile::read(rest, path);
-    }
-    if is_json { geojson::read(rest) } else { text::read(rest) }
+    if geojson::is_json(&head) { geojson::read(whole) } else { read_text(&head, &mut whole) }
+}
+
+/// Bytes without the byte order mark before them, if there is one.
+fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes)
 }
 
 /// Checks that a file that starts with `head` may be text.

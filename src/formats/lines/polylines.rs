@@ -1,17 +1,18 @@
-//! Polylines along which splines are not smooth, and corner points: lines of text, or GeoJSON.
+//! Polylines along which splines are not smooth, and corner points.
 
 use std::io::Read;
+use std::path::Path;
+use std::sync::Arc;
 
-use serde_json::Value;
-
-use crate::detect::read_head;
-use crate::lines::geojson_polygons::{
-    array, for_each_feature, geometry_of, is_json, member, parse, position, read_rest, type_of,
-};
+use crate::lines::collect::Shape;
+use crate::lines::systems::LineSystem;
+use crate::lines::{Breakline, Breaklines, Collector, Properties, check_text, read};
+use crate::source::origin::name_of;
 use crate::text::lines::quote;
 use crate::text::words::{finite, for_each_line_at};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::BREAKLINE_VERTICES_MAX;
+use spmesh_stream::Crs;
 use spmesh_stream::model::points::Point2;
 
 /// The role of a polyline in a spline, as in the features of configurations.
@@ -45,32 +46,46 @@ const NAMES: [(&str, PolylineKind); 4] = [
     ("linear", PolylineKind::Linear),
 ];
 
-/// The property of GeoJSON features that states the role.
-const PROPERTY: &str = "spline";
-
-/// Reads text or GeoJSON. A line of text is a word, `corner`, `crease`, `smooth-crease` or `linear`, and
-/// coordinates X Y X Y ... In GeoJSON, points are corners, and lines and rings of polygons are creases,
-/// unless a feature has a property `spline` with one of these words.
+/// Reads the polylines of a file, and what it says about their system. A line of text is a word, `corner`,
+/// `crease`, `smooth-crease` or `linear`, and coordinates X Y X Y ... Other formats are those of
+/// [`super::read_breaklines`]: points are corners, and lines and rings of polygons are creases, unless a
+/// feature has a property `spline` with one of these words.
 ///
-/// Coordinates of GeoJSON are not transformed; third coordinates are ignored.
+/// Coordinates are not transformed; third coordinates are ignored.
 ///
 /// # Errors
 /// If reading fails, a line or geometry is not of these forms, or there is none at all.
-pub fn read_polylines(mut input: impl Read) -> Result<Vec<Polyline>> {
-    let head = read_head(&mut input).map_err(|e| Error::io("reading", e))?;
-    let polylines = if is_json(&head) {
-        of_json(&read_rest(input, head, "write the lines as text")?)?
-    } else {
-        of_text(head.chain(input))?
-    };
-    if polylines.is_empty() {
-        return Err(Error::malformed("found no polyline"));
+pub fn read_polylines(path: &Path) -> Result<(Vec<Polyline>, LineSystem)> {
+    let of_text = |head: &[u8], input: &mut dyn Read| check_text(head).and_then(|()| text(input));
+    let Breaklines { lines, system } = read(path, of_text).map_err(|error| error.of_input(name_of(path)))?;
+    let polylines = polylines(&lines).map_err(|error| error.of_input(name_of(path)))?;
+    Ok((polylines, system))
+}
+
+fn polylines(lines: &[Breakline]) -> Result<Vec<Polyline>> {
+    check_count(lines.iter().map(|line| line.vertices.len()).sum())?;
+    // The points of a multipoint are vertices of one polyline.
+    let same = lines.chunk_by(|a, b| a.is_point && Arc::ptr_eq(&a.position, &b.position));
+    same.map(|lines| Polyline::new(lines).map_err(|error| error.at(&*lines[0].position))).collect()
+}
+
+fn check_count(vertices: usize) -> Result<()> {
+    if vertices <= BREAKLINE_VERTICES_MAX {
+        return Ok(());
     }
-    polylines.iter().try_for_each(|polyline| polyline.check().map_err(|e| e.at(&polyline.position)))?;
-    Ok(polylines)
+    Err(Error::malformed(format!("more than {BREAKLINE_VERTICES_MAX} vertices")))
 }
 
 impl Polyline {
+    fn new(lines: &[Breakline]) -> Result<Polyline> {
+        let Breakline { is_point, properties, position, .. } = &lines[0];
+        let own = if *is_point { PolylineKind::Corner } else { PolylineKind::Crease };
+        let kind = properties.spline.as_deref().map_or(Ok(own), |word| kind_of(word.as_bytes()))?;
+        let vertices = lines.iter().flat_map(|line| line.vertices.iter().copied()).collect();
+        let polyline = Polyline { kind, vertices, position: position.to_string() };
+        polyline.check().map(|()| polyline)
+    }
+
     fn check(&self) -> Result<()> {
         let (found, needed) = (self.vertices.len(), if self.kind == PolylineKind::Corner { 1 } else { 2 });
         if found < needed {
@@ -90,8 +105,9 @@ fn kind_of(name: &[u8]) -> Result<PolylineKind> {
     })
 }
 
-fn of_text(input: impl Read) -> Result<Vec<Polyline>> {
-    let mut polylines = Vec::new();
+/// Reads lines of text: the words are properties.
+fn text(input: impl Read) -> Result<Breaklines> {
+    let mut lines = Collector::default();
     let mut count = 0;
     for_each_line_at(input, |number, words| {
         let kind = kind_of(words[0])?;
@@ -100,70 +116,28 @@ fn of_text(input: impl Read) -> Result<Vec<Polyline>> {
             let found = numbers.len();
             return Err(Error::malformed(format!("found {found} coordinates, expected pairs of x and y")));
         }
-        let vertices: Vec<Point2> = numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        let vertices: Vec<[f64; 3]> = numbers.chunks_exact(2).map(|at| [at[0], at[1], f64::NAN]).collect();
+        if vertices.is_empty() {
+            Polyline { kind, vertices: Vec::new(), position: String::new() }.check()?;
+        }
         count += vertices.len();
-        if count > BREAKLINE_VERTICES_MAX {
-            return Err(Error::malformed(format!("more than {BREAKLINE_VERTICES_MAX} vertices")));
-        }
-        let position = format!("line {number}");
-        polylines.push(Polyline { kind, vertices, position });
-        Ok(())
+        check_count(count)?;
+        let spline = Some(String::from_utf8_lossy(words[0]).into_owned());
+        lines.feature(Properties { spline, ..Properties::default() });
+        lines.add(Shape::Line, &vertices, || format!("line {number}"))
     })?;
-    Ok(polylines)
-}
-
-fn of_json(bytes: &[u8]) -> Result<Vec<Polyline>> {
-    let mut polylines = Vec::new();
-    for_each_feature(&parse(bytes)?, |feature| {
-        let word = member(member(feature, "properties"), PROPERTY).as_str();
-        let kind = word.map(|word| kind_of(word.as_bytes())).transpose()?;
-        of_geometry(geometry_of(feature), kind, &mut polylines)
-    })?;
-    Ok(polylines)
-}
-
-fn of_geometry(geometry: &Value, kind: Option<PolylineKind>, polylines: &mut Vec<Polyline>) -> Result<()> {
-    if type_of(geometry) == "GeometryCollection" {
-        let parts = array(member(geometry, "geometries"))?;
-        return parts.iter().try_for_each(|part| of_geometry(part, kind, polylines));
-    }
-    // Nesting depth of the lists around positions, and the default role.
-    let (levels, own) = match type_of(geometry) {
-        "Point" => (0, PolylineKind::Corner),
-        "MultiPoint" => (1, PolylineKind::Corner),
-        "LineString" => (1, PolylineKind::Crease),
-        "MultiLineString" | "Polygon" => (2, PolylineKind::Crease),
-        "MultiPolygon" => (3, PolylineKind::Crease),
-        other => return Err(Error::malformed(format!("{other:?} is no geometry of GeoJSON"))),
-    };
-    of_coordinates(member(geometry, "coordinates"), levels, kind.unwrap_or(own), polylines)
-}
-
-fn of_coordinates(
-    value: &Value,
-    levels: usize,
-    kind: PolylineKind,
-    polylines: &mut Vec<Polyline>,
-) -> Result<()> {
-    let vertices = match levels {
-        0 => vec![position(value)?],
-        1 => array(value)?.iter().map(position).collect::<Result<_>>()?,
-        _ => {
-            let mut parts = array(value)?.iter();
-            return parts.try_for_each(|part| of_coordinates(part, levels - 1, kind, polylines));
-        }
-    };
-    polylines.push(Polyline { kind, vertices, position: format!("polyline {}", polylines.len()) });
-    Ok(())
+    lines.finish(Crs::Unknown)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lines::geojson;
 
-    fn read(text: &str) -> Result<Vec<(PolylineKind, Vec<Point2>)>> {
-        let polylines = read_polylines(text.as_bytes())?;
-        Ok(polylines.into_iter().map(|polyline| (polyline.kind, polyline.vertices)).collect())
+    fn read(bytes: &str) -> Result<Vec<(PolylineKind, Vec<Point2>)>> {
+        let is_json = geojson::is_json(bytes.as_bytes());
+        let file = if is_json { geojson::read(bytes.as_bytes()) } else { text(bytes.as_bytes()) }?;
+        Ok(polylines(&file.lines)?.into_iter().map(|polyline| (polyline.kind, polyline.vertices)).collect())
     }
 
     #[test]
@@ -178,7 +152,8 @@ mod tests {
             expected
         );
         for (text, part) in [
-            ("", "no polyline"),
+            ("", "no lines"),
+            ("crease\n", "line 1: found 0 vertices, expected 2"),
             ("# one\ncrease 0 0\n", "line 2: found 1 vertices, expected 2"),
             ("crease 0 0 1\n", "line 1: found 3 coordinates"),
             ("corner 0 0\ncrease 0 0 0 0\n", "line 2: two consecutive"),
@@ -206,12 +181,17 @@ mod tests {
         assert_eq!((found[1].0, found[1].1.len(), found[2].1[0]), (PolylineKind::Crease, 4, [2.0, 2.0]));
         assert_eq!(found[3], (PolylineKind::Corner, vec![[5.0, 6.5]]));
         assert_eq!(read(line).unwrap(), [(PolylineKind::Crease, vec![[0.0, 0.0], [1.0, 2.0]])]);
+        let points = r#"{"type":"MultiPoint","coordinates":[[0,0],[1,2]]}"#;
+        let vertices = || vec![[0.0, 0.0], [1.0, 2.0]];
+        assert_eq!(read(points).unwrap(), [(PolylineKind::Corner, vertices())]);
+        let along = feature(points, "{\"spline\":\"smooth-crease\"}");
+        assert_eq!(read(&along).unwrap(), [(PolylineKind::SmoothCrease, vertices())]);
         for (text, part) in [
             ("{", "not JSON"),
             (r#"{"type":"Topology"}"#, "feature 0: \"Topology\" is no geometry"),
-            (r#"{"type":"FeatureCollection","features":[]}"#, "no polyline"),
+            (r#"{"type":"FeatureCollection","features":[]}"#, "found no lines"),
             (r#"{"type":"Point","coordinates":[1]}"#, "two numbers"),
-            (r#"{"type":"Point"}"#, "no list"),
+            (r#"{"type":"Point"}"#, "Point has no coordinates"),
             (&feature(point, "{\"spline\":\"ridge\"}"), "found \"ridge\""),
         ] {
             let message = read(text).unwrap_err().to_string();

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use super::numbered::{Bent, Numbered, numbered};
-use super::polygons::check_ring;
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::source::Breaklines;
 
@@ -61,7 +60,7 @@ pub(crate) struct Ring {
 pub(crate) fn rings(files: &[(Role, String, Breaklines)]) -> Result<Vec<Ring>> {
     let of_areas = numbered(files).filter(|line| matches!(line.role, Role::Hull | Role::Holes));
     let ring = |Numbered { role, file, number, polygon, line }: Numbered| {
-        check_ring(line).map_err(|error| error.at(&*line.position).of_input(file))?;
+        line.check_ring().map_err(|error| error.at(&*line.position).of_input(file))?;
         Ok(Ring { role, line: number, polygon: polygon.expect("a ring has a polygon") })
     };
     of_areas.map(ring).collect()

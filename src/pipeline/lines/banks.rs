@@ -59,6 +59,7 @@ fn ends([left, right]: &[Vec<&Breakline>; 2]) -> Vec<Breakline> {
     let end = |[a, b]: [usize; 2]| Breakline {
         vertices: vec![left.vertices[a], right.vertices[b]],
         elevations: vec![left.elevations[a], right.elevations[b]],
+        is_point: false,
         polygon: None,
         properties: Arc::new(Properties { river: left.properties.river.clone(), ..Properties::default() }),
         position: left.position.clone(),

@@ -6,7 +6,6 @@ use super::Target;
 use super::areas::Role;
 use super::banks::Bank;
 use super::numbered::{Numbered, numbered};
-use super::polygons::check_ring;
 use super::water::{Place, Stated};
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::source::{Breakline, Breaklines, Properties};
@@ -67,7 +66,7 @@ fn feature(numbered: &Numbered, target: &Target) -> Result<Feature> {
     let position = Place { file: file.to_string(), position: Arc::clone(&line.position) };
     let kind = kind(numbered).map_err(|message| position.fault(message))?;
     if matches!(kind, FeatureKind::Ring(_)) {
-        check_ring(line).map_err(|error| error.at(&*line.position).of_input(file))?;
+        line.check_ring().map_err(|error| error.at(&*line.position).of_input(file))?;
     }
     let level = level(line, target).map_err(|message| position.fault(message))?;
     let is_hard = line.elevations.iter().any(Option::is_some);

@@ -1,6 +1,6 @@
 //! Breaklines: from lines in files to a planar network on the grid of a stream.
 //!
-//! Steps: `io` reads the lines; their systems are compared with that of the points (`systems`); gaps in
+//! Steps: `io` reads the lines; their systems are compared with that of the points; gaps in
 //! elevations are filled and long parts divided (`prepare`); coordinates are rounded to the grid of the
 //! stream (`grid`); and `geometry::noding` makes crossings and overlaps common vertices.
 
@@ -11,13 +11,11 @@ mod features;
 mod grid;
 mod levels;
 mod numbered;
-mod polygons;
 mod prepare;
 mod report;
 mod rivers;
 mod sections;
 mod stations;
-mod systems;
 mod water;
 
 use std::borrow::Cow;
@@ -35,7 +33,6 @@ pub use changes::{Change, ChangeKind, Changes};
 use grid::Grid;
 pub use levels::Levels;
 use numbered::Bent;
-pub use polygons::read_polygons;
 pub use report::write_report;
 pub use water::{Water, WaterPolygon};
 
@@ -120,7 +117,7 @@ fn read_all(
     for (role, path) in sources.files() {
         let mut file = read_breaklines(path)?;
         let name = name_of(path);
-        changes.notices.extend(systems::check(&name, &file.crs, &target.crs)?);
+        changes.notices.extend(file.system.check(&name, &target.crs)?);
         if !target.has_elevation {
             file.lines.iter_mut().for_each(|line| line.elevations.fill(None));
         }

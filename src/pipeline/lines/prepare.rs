@@ -119,6 +119,7 @@ mod tests {
         let line = Breakline {
             vertices,
             elevations,
+            is_point: false,
             polygon: None,
             properties: Arc::default(),
             position: "".into(),
@@ -166,6 +167,7 @@ mod tests {
                 Breakline {
                     vertices: vec![[0.0, 0.0], [1.0, 0.0]],
                     elevations: vec![None; 2],
+                    is_point: false,
                     polygon: None,
                     properties: Arc::default(),
                     position: "".into()

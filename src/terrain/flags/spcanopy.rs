@@ -27,6 +27,7 @@ use spmesh_shell::outline::{OutlineFlags, length};
 use spmesh_shell::progress::Progress;
 use spmesh_shell::rows::{self, Row};
 use spmesh_shell::{Common, StatsFormat, notice, parse_size, peak_memory, read_list, threads};
+use spmesh_stream::Crs;
 
 const TOOL: &str = "spcanopy";
 
@@ -164,7 +165,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let input = Input::open(&paths, &flags.source_options()?)?;
     input.notices().iter().for_each(|text| flags.notice(text));
     let grid = flags.cells.grid(&input.description().crs, || window(&input))?;
-    let bottom = flags.surface_options(format)?;
+    let mut bottom = flags.surface_options(format)?;
     let settings = flags.settings(&grid)?;
 
     let mut reader = open_stream(&flags.ground)?;
@@ -172,6 +173,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let temp_dir = flags.raster.temp_dir();
     let ground = Ground::read(&mut reader, temp_dir, |vertices| progress.set(vertices))?;
     flags.check_systems(&ground, &input)?;
+    // The system of the ground stands in where points state none.
+    let crs = &input.description().crs;
+    let crs = if *crs == Crs::Unknown { &reader.header().crs } else { crs };
+    bottom.mask = flags.outline.mask(crs, |text| flags.notice(text))?;
     let total = input.description().stated_points;
     let mut progress = Progress::new(&flags.common, "finding heights", total);
     let points =
@@ -258,7 +263,7 @@ impl Flags {
             method: Method::Triangle,
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,
-            mask: self.outline.mask()?,
+            mask: None,
             fill: None,
             memory: self.memory / 2,
             raster: self.raster.options(format)?,

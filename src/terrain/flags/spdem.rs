@@ -206,10 +206,11 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             input: &flags.input,
             output: &flags.output,
             format: flags.line_format()?,
+            outline: &flags.outline,
             stats: flags.stats,
             common: &flags.common,
         };
-        return contours::run(&job, &options, started, |message| notice(TOOL, &flags.common, message));
+        return contours::run(&job, options, started, |message| notice(TOOL, &flags.common, message));
     }
     if flags.quantity.points {
         system::exit_at_abort(points::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
@@ -224,13 +225,15 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         return Ok(points::run(&job, &flags.point_options()?, started)?);
     }
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
-    let options = flags.options()?;
+    let mut options = flags.options()?;
     let mut output =
         flags.sheets.create(&flags.output, options.raster.format, &flags.cells, flags.inputs())?;
     let mut reader = open_stream(&flags.input)?;
     dem::check(reader.header(), &options.quantity).map_err(|e| e.of_input(reader.name()))?;
     let window = || dem::window(reader.header()).map_err(|e| e.of_input(reader.name()));
-    let grid = flags.cells.grid(options.crs.as_ref().unwrap_or(&reader.header().crs), window)?;
+    let crs = options.crs.as_ref().unwrap_or(&reader.header().crs);
+    let grid = flags.cells.grid(crs, window)?;
+    options.mask = flags.outline.mask(crs, |text| notice(TOOL, &flags.common, text))?;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
     let done = |vertices| progress.set(vertices);
     let stats = dem::rasterize(&mut reader, output.destination(), &grid, &options, done)?;
@@ -282,7 +285,7 @@ impl Flags {
             method: self.quantity.method(),
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,
-            mask: self.outline.mask()?,
+            mask: None,
             fill: self.fill,
             memory: self.memory.unwrap_or(MEMORY),
             raster: self.raster.options(format)?,

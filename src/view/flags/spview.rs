@@ -274,6 +274,8 @@ fn draw_stream(
     // The header is right.
     passed.iter().for_each(Passed::confirm);
     let extent = flags.extent(&reader)?;
+    let crs = options.crs.as_ref().unwrap_or(&reader.header().crs);
+    options.mask = flags.outline.mask(crs, |text| notice(TOOL, &flags.common, text))?;
     options.extent = extent.and_then(|extent| extent.bounds);
     let moments =
         Moments { at: flags.moment(&reader, extent)?, every: flags.snapshot.map(|Every(count)| count) };
@@ -336,7 +338,6 @@ impl Flags {
             light: Light::from(azimuth, altitude),
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,
-            mask: self.outline.mask()?,
             range: self.range,
             stretch: match self.stretch {
                 Some(Stretch(percents)) => percents,

@@ -1,24 +1,31 @@
 //! Lines, polygons and coordinate reference systems of other programs.
 
 use std::fs;
+use std::path::Path;
 
 use spmesh_formats::crs::{System, differences, geotiff_keys, name};
-use spmesh_formats::source::{read_breaklines, read_mask, read_polygons};
-use spmesh_stream::Crs;
+use spmesh_formats::source::{read_breaklines, read_polygons};
+use spmesh_stream::{Coordinates, Crs};
 
 use crate::files::{file, file_named};
 use crate::samples::{LINES_GPKG, blobs};
 
 /// Lines and polygons of any format.
 pub fn lines(bytes: &[u8]) {
-    let path = file(bytes);
-    for read in [read_breaklines, read_polygons] {
-        if let Ok(found) = read(&path) {
-            let places = found.lines.iter().flat_map(|line| line.vertices.as_flattened());
-            assert!(places.into_iter().all(|c| c.is_finite()));
-        }
+    read_both(&file(bytes));
+}
+
+fn read_both(path: &Path) {
+    if let Ok(found) = read_breaklines(path) {
+        assert!(found.lines.iter().all(|line| are_finite(&line.vertices)));
     }
-    drop(read_mask(bytes));
+    if let Ok((found, _)) = read_polygons(&[path.to_path_buf()], &Coordinates::F64, &Crs::Unknown) {
+        assert!(found.iter().flatten().all(|ring| are_finite(ring)));
+    }
+}
+
+fn are_finite(vertices: &[[f64; 2]]) -> bool {
+    vertices.as_flattened().iter().all(|c| c.is_finite())
 }
 
 /// A Shapefile and its table: two bytes state the length of the table, which comes first.
@@ -26,16 +33,12 @@ pub fn shapefile(bytes: &[u8]) {
     let Some((&len, rest)) = bytes.split_first_chunk() else { return };
     let (table, shapes) = rest.split_at(usize::from(u16::from_le_bytes(len)).min(rest.len()));
     drop(file_named("shapes.dbf", table));
-    let path = file_named("shapes.shp", shapes);
-    drop(read_breaklines(&path));
-    drop(read_polygons(&path));
+    read_both(&file_named("shapes.shp", shapes));
 }
 
 /// A whole database.
 pub fn geopackage(bytes: &[u8]) {
-    let path = file_named("lines.gpkg", bytes);
-    drop(read_breaklines(&path));
-    drop(read_polygons(&path));
+    read_both(&file_named("lines.gpkg", bytes));
 }
 
 /// A database whose geometries are those bytes, as far as they go.

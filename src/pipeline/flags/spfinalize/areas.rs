@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::finalize::Areas;
-use crate::lines::{Target, read_polygons};
+use crate::lines::Target;
 use spmesh_base::error::Result;
+use spmesh_formats::source::read_polygons;
 
 /// Polygons that select points. They apply after the filters, and before points are thinned.
 #[derive(Debug, Clone, Args)]
@@ -31,8 +32,9 @@ impl AreaFlags {
 
     /// Reads the polygons, and messages for the user.
     pub(super) fn read(&self, target: &Target) -> Result<(Areas, Vec<String>)> {
-        let (clip, mut notices) = read_polygons(&self.clip, target)?;
-        let (drop, more) = read_polygons(&self.drop_inside, target)?;
+        let Target { coordinates, crs, .. } = target;
+        let (clip, mut notices) = read_polygons(&self.clip, coordinates, crs)?;
+        let (drop, more) = read_polygons(&self.drop_inside, coordinates, crs)?;
         notices.extend(more);
         let clip = (!self.clip.is_empty()).then_some(&clip[..]);
         Ok((Areas::new(clip, &drop), notices))

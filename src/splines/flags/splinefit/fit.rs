@@ -16,13 +16,13 @@ use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
 use spmesh_formats::detect::SPLINEFIT;
 use spmesh_formats::source::{
-    Filters, InvalidAdvice, Opened, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines,
-    read_values,
+    Filters, InvalidAdvice, LineSystem, Opened, Polyline, SourceOptions, Values, name_of, open_knots,
+    read_polylines, read_values,
 };
 use spmesh_shell::compression::Compression;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
-use spmesh_shell::{Common, StatsFormat, open_held, parse_box, progress::Progress};
+use spmesh_shell::{Common, StatsFormat, open_held, parse_box, progress::Progress, refuse_terminal};
 use spmesh_stream::model::bounds::Bounds;
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -176,9 +176,12 @@ impl Flags {
         let mut output = Output::create(&self.output, true)?;
         let residuals = self.residuals.as_ref().map(|path| Output::create(path, false)).transpose()?;
         let rejected = self.rejected.as_ref().map(|path| Output::create(path, false)).transpose()?;
-        let options = self.options()?;
+        let (polylines, system) = self.features.as_deref().map(read_features).transpose()?.unzip();
+        let options = self.options(polylines.unwrap_or_default());
         let points = self.points(common)?;
-        points.notices().iter().for_each(|text| say(common, text));
+        let check = |system: LineSystem| system.check(&options.polylines_name, points.crs());
+        let about_system = system.map_or(Ok(None), check)?;
+        points.notices().iter().chain(&about_system).for_each(|text| say(common, text));
         let knots = self.knots(common)?;
         let progress = RefCell::new(Progress::new(common, "fitting", None));
         let fitted =
@@ -221,8 +224,8 @@ impl Flags {
         check_apart(self.inputs.iter().chain(others).map(PathBuf::as_path), &outputs)
     }
 
-    fn options(&self) -> Result<Options> {
-        Ok(Options {
+    fn options(&self, polylines: Vec<Polyline>) -> Options {
+        Options {
             smoothing: self.lambda,
             tension: self.tension,
             loss: self.robust.map(|loss| match loss {
@@ -233,17 +236,12 @@ impl Flags {
             tolerance: self.tol,
             max_knots: self.max_knots,
             step: self.step,
-            polylines: self
-                .features
-                .as_ref()
-                .map(|path| read_features(path))
-                .transpose()?
-                .unwrap_or_default(),
+            polylines,
             polylines_name: self.features.as_deref().map(name_of).unwrap_or_default(),
             degree: self.degree,
             seed: self.seed,
             threads: self.threads.get(),
-        })
+        }
     }
 
     fn points(&self, common: &Common) -> Result<Points> {
@@ -291,9 +289,11 @@ fn list<T>(output: Option<Output>, write: impl FnOnce(&mut Output) -> Result<T>)
     Ok(Some(written))
 }
 
-fn read_features(path: &Path) -> Result<Vec<Polyline>> {
-    let (input, name) = open_held(path)?;
-    read_polylines(input).map_err(|error| error.of_input(name))
+fn read_features(path: &Path) -> Result<(Vec<Polyline>, LineSystem)> {
+    if path.as_os_str() == "-" {
+        refuse_terminal()?;
+    }
+    read_polylines(path)
 }
 
 fn read_weights(path: &Path) -> Result<Vec<f64>> {

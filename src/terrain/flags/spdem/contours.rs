@@ -87,7 +87,6 @@ impl ContourFlags {
             kill: outline.kill()?,
             concave,
             memory: memory.unwrap_or(defaults.memory),
-            mask: outline.mask()?,
             points: self.contour_points.map(|points| points as usize),
             min_length: length("--min-length", self.min_length)?,
             index: self.index,
@@ -113,6 +112,7 @@ pub(super) struct Job<'a> {
     pub(super) input: &'a PathBuf,
     pub(super) output: &'a Path,
     pub(super) format: LineFormat,
+    pub(super) outline: &'a OutlineFlags,
     pub(super) stats: Option<StatsFormat>,
     pub(super) common: &'a Common,
 }
@@ -120,14 +120,16 @@ pub(super) struct Job<'a> {
 /// Writes lines, and calls `notice` with what the user should know of them.
 pub(super) fn run(
     job: &Job,
-    options: &Options,
+    mut options: Options,
     started: Instant,
     notice: impl Fn(&str),
 ) -> anyhow::Result<()> {
     let mut output = Output::create(job.output, false)?;
     let mut reader = open_stream(job.input)?;
+    let crs = options.crs.as_ref().unwrap_or(&reader.header().crs);
+    options.mask = job.outline.mask(crs, &notice)?;
     let mut progress = Progress::new(job.common, "contouring", reader.header().points);
-    let stats = contours::contour(&mut reader, &mut output, job.format, options, |done| progress.set(done))?;
+    let stats = contours::contour(&mut reader, &mut output, job.format, &options, |done| progress.set(done))?;
     drop(progress);
     let output_bytes = output.bytes_written();
     output.commit()?;
