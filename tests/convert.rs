@@ -14,7 +14,8 @@ mod volume;
 use std::io::Cursor;
 
 use spmesh_base::error::{ErrorKind, Result};
-use spmesh_convert::{Format, Options, convert};
+use spmesh_convert::{Options, convert};
+use spmesh_formats::drivers::Format;
 
 use crate::programs::assert_outcome;
 use crate::vectors::load;
@@ -32,7 +33,7 @@ fn with_notices(input: &[u8], from: Format, to: Format) -> Result<(Vec<u8>, Vec<
 }
 
 pub fn text_of(stream: &[u8]) -> String {
-    String::from_utf8(converted(stream, Format::Spm, Format::Text).unwrap()).unwrap()
+    String::from_utf8(converted(stream, Format::Stream, Format::Twin).unwrap()).unwrap()
 }
 
 /// Asserts that a text twin is refused after `found` is replaced by `replaced`, and that the message has the
@@ -40,7 +41,7 @@ pub fn text_of(stream: &[u8]) -> String {
 pub fn assert_refused(text: &str, found: &str, replaced: &str, expected: &str) {
     assert!(text.contains(found), "{found} in {text}");
     let damaged = text.replacen(found, replaced, 1);
-    let error = converted(damaged.as_bytes(), Format::Text, Format::Spm).expect_err(replaced);
+    let error = converted(damaged.as_bytes(), Format::Twin, Format::Stream).expect_err(replaced);
     assert_eq!(error.kind(), ErrorKind::Malformed, "{replaced}: {error}");
     let message = error.to_string();
     assert!(message.contains(expected) && message.starts_with("test: line "), "{replaced}: {message}");
@@ -50,9 +51,10 @@ pub fn assert_refused(text: &str, found: &str, replaced: &str, expected: &str) {
 #[test]
 fn no_refused_vector_goes_on_to_an_output() {
     for vector in load("fail", "err") {
-        for to in [Format::Spm, Format::Text, Format::Obj, Format::Ply, Format::Spa, Format::Smb, Format::Vtu]
+        for to in
+            [Format::Stream, Format::Twin, Format::Obj, Format::Ply, Format::Spa, Format::Smb, Format::VtkXml]
         {
-            let error = converted(&vector.bytes, Format::Spm, to).expect_err(&vector.name);
+            let error = converted(&vector.bytes, Format::Stream, to).expect_err(&vector.name);
             // Some formats refuse the kind of stream by its header.
             let is_expected =
                 error.exit_code() == vector.exit_code && error.to_string().contains(&vector.expected);
@@ -96,7 +98,7 @@ fn rules_that_need_memory_hold_in_twins_and_in_points() {
 /// Asserts that a text twin is refused when cut anywhere but before its last line feed.
 pub fn assert_cuts_are_refused(text: &str) {
     for end in 0..text.len() - 1 {
-        let error = converted(&text.as_bytes()[..end], Format::Text, Format::Spm).expect_err("cut");
+        let error = converted(&text.as_bytes()[..end], Format::Twin, Format::Stream).expect_err("cut");
         assert_eq!(error.kind(), ErrorKind::Malformed, "cut at byte {end}: {error}");
     }
 }

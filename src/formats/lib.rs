@@ -3,6 +3,7 @@
 mod cad;
 pub mod crs;
 pub mod detect;
+pub mod drivers;
 mod historical;
 pub mod las;
 mod lines;

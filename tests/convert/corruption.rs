@@ -1,6 +1,6 @@
 //! Damaged inputs of every format: an error or an equal mesh, never a panic.
 
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 
 use super::samples::{self, Random};
 use super::{converted, text_of};
@@ -10,24 +10,24 @@ fn files() -> Vec<(Format, Vec<u8>)> {
     let mesh = samples::mesh(samples::grids()[1]);
     let points = samples::points(2, true, false);
     let mut files = vec![];
-    for format in [Format::Spm, Format::Text, Format::Obj, Format::Ply, Format::Sma, Format::Smb] {
-        files.push((format, converted(&mesh, Format::Spm, format).unwrap()));
+    for format in [Format::Stream, Format::Twin, Format::Obj, Format::Ply, Format::Sma, Format::Smb] {
+        files.push((format, converted(&mesh, Format::Stream, format).unwrap()));
     }
-    for format in [Format::Spm, Format::Text, Format::Ply, Format::Spa, Format::Spb] {
-        files.push((format, converted(&points, Format::Spm, format).unwrap()));
+    for format in [Format::Stream, Format::Twin, Format::Ply, Format::Spa, Format::Spb] {
+        files.push((format, converted(&points, Format::Stream, format).unwrap()));
     }
     let tetrahedra = samples::tetrahedra(samples::grids()[1], true);
-    files.push((Format::Text, text_of(&tetrahedra).into_bytes()));
-    files.push((Format::Spm, tetrahedra));
+    files.push((Format::Twin, text_of(&tetrahedra).into_bytes()));
+    files.push((Format::Stream, tetrahedra));
     for partial in [samples::partial(), samples::partial_space()] {
-        files.push((Format::Text, text_of(&partial).into_bytes()));
-        files.push((Format::Spm, partial));
+        files.push((Format::Twin, text_of(&partial).into_bytes()));
+        files.push((Format::Stream, partial));
     }
     files
 }
 
 fn accepts(input: &[u8], format: Format) -> bool {
-    match converted(input, format, Format::Spm) {
+    match converted(input, format, Format::Stream) {
         Ok(stream) => {
             text_of(&stream);
             true
@@ -65,7 +65,7 @@ fn cut_files_are_an_error_or_a_mesh() {
         for _ in 0..200 {
             let end = random.below(file.len() as u64 - 1) as usize;
             let is_accepted = accepts(&file[..end], format);
-            let must_be_whole = matches!(format, Format::Spm | Format::Text | Format::Ply | Format::Smb);
+            let must_be_whole = matches!(format, Format::Stream | Format::Twin | Format::Ply | Format::Smb);
             assert!(!is_accepted || !must_be_whole, "{format:?} cut at {end}");
         }
     }

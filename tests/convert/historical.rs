@@ -1,7 +1,7 @@
 //! SPA, SPB, SMA and SMB.
 
 use spmesh_base::error::ErrorKind;
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 
 use super::independent::{obj, sma};
 use super::{converted, samples, text_of, with_notices};
@@ -16,9 +16,9 @@ fn points_and_tags_survive_spa_and_spb() {
     for (dims, elevation) in [(2, true), (3, false)] {
         let stream = samples::points(dims, elevation, false);
         for format in [Format::Spa, Format::Spb] {
-            let (file, notices) = with_notices(&stream, Format::Spm, format).unwrap();
+            let (file, notices) = with_notices(&stream, Format::Stream, format).unwrap();
             assert_eq!(notices, Vec::<String>::new());
-            let (back, notices) = with_notices(&file, format, Format::Text).unwrap();
+            let (back, notices) = with_notices(&file, format, Format::Twin).unwrap();
             assert_eq!(notices, Vec::<String>::new());
             assert_eq!(content(std::str::from_utf8(&back).unwrap()), content(&text_of(&stream)));
         }
@@ -29,10 +29,10 @@ fn points_and_tags_survive_spa_and_spb() {
 fn integer_points_survive_and_their_tags_stay_true() {
     for (dims, elevation) in [(2, true), (3, false)] {
         let stream = samples::points(dims, elevation, true);
-        let file = converted(&stream, Format::Spm, Format::Spa).unwrap();
+        let file = converted(&stream, Format::Stream, Format::Spa).unwrap();
         let spa = String::from_utf8(file.clone()).unwrap();
         check_tags(&spa, usize::from(dims));
-        let (back, notices) = with_notices(&file, Format::Spa, Format::Text).unwrap();
+        let (back, notices) = with_notices(&file, Format::Spa, Format::Twin).unwrap();
         assert!(notices[0].contains("spfinalize"), "{notices:?}");
         let twin = text_of(&stream);
         let expected: Vec<&str> = content(&twin).into_iter().filter(|line| line.starts_with('v')).collect();
@@ -85,12 +85,13 @@ fn tags_that_break_their_promise_are_refused() {
         ("v 1 nan 0\n", "coordinate NaN"),
     ];
     for (lines, expected) in cases {
-        let error = converted((head.to_string() + lines).as_bytes(), Format::Spa, Format::Spm).unwrap_err();
+        let error =
+            converted((head.to_string() + lines).as_bytes(), Format::Spa, Format::Stream).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Malformed);
         assert!(error.to_string().contains(expected) && error.to_string().contains("test: "), "{error}");
     }
     let twice = head.to_string() + "x cell 2\nx cell 2\nx cell 10\nx cell 0\n";
-    let twin = converted(twice.as_bytes(), Format::Spa, Format::Text).unwrap();
+    let twin = converted(twice.as_bytes(), Format::Spa, Format::Twin).unwrap();
     assert_eq!(content(std::str::from_utf8(&twin).unwrap()), ["x cell 4", "x cell 1"]);
 }
 
@@ -98,14 +99,14 @@ fn tags_that_break_their_promise_are_refused() {
 fn meshes_and_finalization_survive_sma() {
     for coordinates in samples::grids() {
         let stream = samples::mesh(coordinates);
-        let first = String::from_utf8(converted(&stream, Format::Spm, Format::Sma).unwrap()).unwrap();
+        let first = String::from_utf8(converted(&stream, Format::Stream, Format::Sma).unwrap()).unwrap();
         let (soup, finals) = sma(&first);
         assert_eq!(soup, obj(&text_of(&stream)));
         // The vertices of all rows but the last are final with their last triangle. The last row is finalized
         // by x lines.
         assert_eq!(finals.len() as u64, samples::SIDE * (samples::SIDE - 1));
-        let back = converted(first.as_bytes(), Format::Sma, Format::Spm).unwrap();
-        let again = String::from_utf8(converted(&back, Format::Spm, Format::Sma).unwrap()).unwrap();
+        let back = converted(first.as_bytes(), Format::Sma, Format::Stream).unwrap();
+        let again = String::from_utf8(converted(&back, Format::Stream, Format::Sma).unwrap()).unwrap();
         let (soup_again, finals_again) = sma(&again);
         assert_eq!(soup_again, soup);
         assert!(finals.iter().all(|(id, after)| finals_again.get(id) == Some(after)));
@@ -115,7 +116,7 @@ fn meshes_and_finalization_survive_sma() {
 #[test]
 fn meshes_survive_smb_but_for_what_it_says() {
     let stream = samples::mesh(samples::grids()[1]);
-    let (file, notices) = with_notices(&stream, Format::Spm, Format::Smb).unwrap();
+    let (file, notices) = with_notices(&stream, Format::Stream, Format::Smb).unwrap();
     assert!(notices.iter().any(|notice| notice.contains("144 of 144 vertices were rounded")), "{notices:?}");
     assert!(notices.iter().any(|notice| notice.contains("12 vertices are final only at the end")));
     let back = converted(&file, Format::Smb, Format::Sma).unwrap();
@@ -153,7 +154,7 @@ fn smb_is_read_in_either_byte_order_whatever_its_flag() {
         [(0, u32::to_le_bytes), (1, u32::to_be_bytes), (1, u32::to_le_bytes), (0, u32::to_be_bytes)];
     for (flag, bytes_of) in files {
         let file = smb_by_hand(flag, bytes_of);
-        let text = String::from_utf8(converted(&file, Format::Smb, Format::Text).unwrap()).unwrap();
+        let text = String::from_utf8(converted(&file, Format::Smb, Format::Twin).unwrap()).unwrap();
         let soup = obj(&text);
         assert_eq!(soup.vertices[3], [100.0, 50.0, 250.0]);
         assert_eq!(soup.triangles, [[0, 1, 2], [0, 3, 2]]);
@@ -167,7 +168,7 @@ fn post_order_and_compact_sma_are_read() {
     let post = "# nverts 4\n# nfaces 2\nf 2 3 1\nf 4 2 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\n";
     let pre = "v 0 0 0\nv 1 0 0\n# in between\nv 0 1 0\nf 2 -1 1\nv 5 5 5\nf -1 2 1\nx -4\nx 2\n";
     for text in [post, pre] {
-        let (twin, notices) = with_notices(text.as_bytes(), Format::Sma, Format::Text).unwrap();
+        let (twin, notices) = with_notices(text.as_bytes(), Format::Sma, Format::Twin).unwrap();
         assert_eq!(notices, Vec::<String>::new());
         let soup = obj(std::str::from_utf8(&twin).unwrap());
         assert_eq!(soup.vertices.len(), 4);
@@ -184,7 +185,7 @@ fn post_order_and_compact_sma_are_read() {
         ("v 0 0 0\nv 1 1 11", "the last line has no end"),
     ];
     for (text, expected) in cases {
-        let error = converted(text.as_bytes(), Format::Sma, Format::Spm).unwrap_err();
+        let error = converted(text.as_bytes(), Format::Sma, Format::Stream).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Malformed);
         assert!(error.to_string().contains(expected), "{text}: {error}");
     }
@@ -199,16 +200,16 @@ fn one_vertex_may_complete_any_number_of_triangles() {
     for i in 2..=40_002 {
         text += &format!("v {i} 0 0\n");
     }
-    let twin = converted(text.as_bytes(), Format::Sma, Format::Text).unwrap();
+    let twin = converted(text.as_bytes(), Format::Sma, Format::Twin).unwrap();
     let soup = obj(std::str::from_utf8(&twin).unwrap());
     assert_eq!((soup.vertices.len(), soup.triangles.len()), (40_001, 39_999));
     let backwards: String = text.lines().rev().flat_map(|line| [line, "\n"]).collect();
-    assert!(converted(backwards.as_bytes(), Format::Obj, Format::Spm).is_ok());
+    assert!(converted(backwards.as_bytes(), Format::Obj, Format::Stream).is_ok());
 }
 
 /// Asserts that the file is refused because it was cut.
 fn assert_cut(file: &[u8], format: Format) {
-    match converted(file, format, Format::Spm) {
+    match converted(file, format, Format::Stream) {
         Ok(_) => panic!("{format:?} of {} bytes passes for a whole file", file.len()),
         Err(error) => {
             assert_eq!(error.kind(), ErrorKind::Malformed, "{error}");
@@ -226,10 +227,10 @@ fn without_last_lines(text: &str, count: usize) -> String {
 #[test]
 fn vertices_that_stay_open_show_that_a_mesh_was_cut() {
     let stream = samples::mesh(samples::grids()[1]);
-    let whole = String::from_utf8(converted(&stream, Format::Spm, Format::Sma).unwrap()).unwrap();
+    let whole = String::from_utf8(converted(&stream, Format::Stream, Format::Sma).unwrap()).unwrap();
     let headless: String = whole.split_inclusive('\n').filter(|line| !line.starts_with('#')).collect();
     for text in [&whole, &headless] {
-        converted(text.as_bytes(), Format::Sma, Format::Spm).unwrap();
+        converted(text.as_bytes(), Format::Sma, Format::Stream).unwrap();
         let lines = text.lines().count();
         for count in 1..lines * 3 / 4 {
             assert_cut(without_last_lines(text, count).as_bytes(), Format::Sma);
@@ -237,18 +238,18 @@ fn vertices_that_stay_open_show_that_a_mesh_was_cut() {
     }
     // With counts that are met, open vertices are final at the end.
     let counted = format!("# nverts 4\n# nfaces 1\n{}", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 -2 3\nv 5 5 5\n");
-    converted(counted.as_bytes(), Format::Sma, Format::Spm).unwrap();
+    converted(counted.as_bytes(), Format::Sma, Format::Stream).unwrap();
     assert_cut(counted.replace("# nfaces 1\n", "").as_bytes(), Format::Sma);
     assert_cut(without_last_lines(&counted, 1).as_bytes(), Format::Sma);
     // No mark at all tells nothing.
     let bare = counted.replace("-2", "2").replace("# nverts 4\n# nfaces 1\n", "");
-    converted(bare.as_bytes(), Format::Sma, Format::Spm).unwrap();
+    converted(bare.as_bytes(), Format::Sma, Format::Stream).unwrap();
 }
 
 #[test]
 fn counts_show_that_a_mesh_was_cut() {
     let stream = samples::mesh(samples::grids()[1]);
-    let whole = converted(&stream, Format::Spm, Format::Smb).unwrap();
+    let whole = converted(&stream, Format::Stream, Format::Smb).unwrap();
     let counts = [8, 12].map(|at| i32::from_le_bytes(whole[at..at + 4].try_into().unwrap()));
     assert_eq!(counts, [144, 2 * 11 * 11]);
     // Elements have 12 bytes, and a block has 4 more: most of these cuts are between two elements.
@@ -263,9 +264,9 @@ fn counts_show_that_a_mesh_was_cut() {
 #[test]
 fn a_last_point_without_a_tag_shows_that_points_were_cut() {
     let stream = samples::points(2, true, false);
-    let spa = String::from_utf8(converted(&stream, Format::Spm, Format::Spa).unwrap()).unwrap();
+    let spa = String::from_utf8(converted(&stream, Format::Stream, Format::Spa).unwrap()).unwrap();
     let uncounted: String = spa.split_inclusive('\n').filter(|line| !line.contains("npoints")).collect();
-    converted(uncounted.as_bytes(), Format::Spa, Format::Spm).unwrap();
+    converted(uncounted.as_bytes(), Format::Spa, Format::Stream).unwrap();
     let lines: Vec<&str> = uncounted.split_inclusive('\n').collect();
     let mut cuts = 0;
     for end in 2..lines.len() {

@@ -3,7 +3,9 @@
 use std::io::Cursor;
 
 use spmesh_base::error::ErrorKind;
-use spmesh_convert::{Format, Options, convert};
+use spmesh_convert::{Options, convert};
+use spmesh_formats::drivers::Format;
+use spmesh_formats::sink::SinkOptions;
 use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Header, Kind, write_triangles};
 
@@ -17,10 +19,11 @@ fn obj_and_ply_hold_the_mesh() {
         streams.into_iter().chain([samples::points(2, false, true), samples::points(3, false, false)])
     {
         let expected = obj(&text_of(&stream));
-        let text = converted(&stream, Format::Spm, Format::Obj).unwrap();
+        let text = converted(&stream, Format::Stream, Format::Obj).unwrap();
         assert_eq!(obj(std::str::from_utf8(&text).unwrap()), expected);
-        assert_eq!(ply(&converted(&stream, Format::Spm, Format::Ply).unwrap()), expected);
-        let options = Options { ascii: true, ..Options::default() };
+        assert_eq!(ply(&converted(&stream, Format::Stream, Format::Ply).unwrap()), expected);
+        let options =
+            Options { sink: SinkOptions { ascii: true, ..SinkOptions::default() }, ..Options::default() };
         let mut ascii = Vec::new();
         convert(Cursor::new(stream), "test", Format::Ply, &mut ascii, &options, |_| ()).unwrap();
         assert_eq!(ply(&ascii), expected);
@@ -30,9 +33,9 @@ fn obj_and_ply_hold_the_mesh() {
 #[test]
 fn plain_obj_is_read() {
     let text = "# cube corner\no thing\nvn 0 0 1\nf 1 2/7 3//1 # late vertices\n";
-    assert!(converted(text.as_bytes(), Format::Obj, Format::Spm).is_err(), "a comment in a face");
+    assert!(converted(text.as_bytes(), Format::Obj, Format::Stream).is_err(), "a comment in a face");
     let text = "o thing\nvn 0 0 1\nf 1 2/7 3//1\nv 0 0 1 0.5\nv 1 0 2\nv 1 1 3\nv 0 1 4\nf -4 -3 -2 -1\n";
-    let (stream, notices) = with_notices(text.as_bytes(), Format::Obj, Format::Spm).unwrap();
+    let (stream, notices) = with_notices(text.as_bytes(), Format::Obj, Format::Stream).unwrap();
     let soup = obj(&text_of(&stream));
     assert_eq!(soup.vertices, [[0.0, 0.0, 1.0], [1.0, 0.0, 2.0], [1.0, 1.0, 3.0], [0.0, 1.0, 4.0]]);
     assert_eq!(soup.triangles, [[0, 1, 2], [0, 1, 2], [0, 2, 3]]);
@@ -40,7 +43,7 @@ fn plain_obj_is_read() {
     for bad in
         ["f 1 2 3\n", "v 0 0 0\nf 1 1 1\n", "v 0 0\n", "f 1 2\n", "hello\n", "f 0 1 2\n", "v 0 0 nan\n"]
     {
-        let error = converted(bad.as_bytes(), Format::Obj, Format::Spm).unwrap_err();
+        let error = converted(bad.as_bytes(), Format::Obj, Format::Stream).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Malformed, "{bad}");
     }
 }
@@ -54,7 +57,7 @@ fn long_obj_is_cut_into_patches() {
     for i in 1..=9_998 {
         text += &format!("f {i} {} {}\n", i + 1, i + 2);
     }
-    let stream = converted(text.as_bytes(), Format::Obj, Format::Spm).unwrap();
+    let stream = converted(text.as_bytes(), Format::Obj, Format::Stream).unwrap();
     let twin = text_of(&stream);
     assert_eq!(obj(&twin), obj(&text));
     assert!(twin.matches("# patch").count() > 5);
@@ -72,7 +75,7 @@ fn kinds_that_a_format_cannot_hold_are_refused() {
     ];
     for (stream, formats) in cases {
         for format in formats {
-            let error = converted(&stream, Format::Spm, format).unwrap_err();
+            let error = converted(&stream, Format::Stream, format).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::Usage);
             assert!(error.to_string().contains("cannot be written as"), "{error}");
         }
@@ -84,18 +87,25 @@ fn formats_are_recognized_by_content() {
     let mesh = samples::mesh(samples::grids()[0]);
     let points = samples::points(2, true, false);
     for (stream, formats) in [
-        (&mesh, [Format::Spm, Format::Text, Format::Obj, Format::Sma, Format::Smb].as_slice()),
-        (&points, [Format::Spm, Format::Text, Format::Spa, Format::Spb].as_slice()),
+        (&mesh, [Format::Stream, Format::Twin, Format::Obj, Format::Sma, Format::Smb].as_slice()),
+        (&points, [Format::Stream, Format::Twin, Format::Spa, Format::Spb].as_slice()),
     ] {
         for &format in formats {
-            let input = converted(stream, Format::Spm, format).unwrap();
+            let input = converted(stream, Format::Stream, format).unwrap();
             let mut output = Vec::new();
-            convert(Cursor::new(input), "-", Format::Text, &mut output, &Options::default(), |_| ()).unwrap();
+            convert(Cursor::new(input), "-", Format::Twin, &mut output, &Options::default(), |_| ()).unwrap();
         }
     }
     let plain = b"v 0 0 0\nv 1 0 0\n".to_vec();
     let guess = |name: &str| {
-        convert(Cursor::new(plain.clone()), name, Format::Spm, &mut Vec::new(), &Options::default(), |_| ())
+        convert(
+            Cursor::new(plain.clone()),
+            name,
+            Format::Stream,
+            &mut Vec::new(),
+            &Options::default(),
+            |_| (),
+        )
     };
     assert_eq!(guess("stdin").unwrap_err().kind(), ErrorKind::Usage);
     guess("mesh.OBJ").unwrap();
@@ -114,8 +124,10 @@ fn local_coordinates_are_exact_in_32_bits() {
     let mut stream = Vec::new();
     let at = |vertex: u32| points[vertex as usize];
     write_triangles(header, &triangles, points.len(), 0, at, &mut stream).unwrap();
-    let expected = obj(std::str::from_utf8(&converted(&stream, Format::Spm, Format::Obj).unwrap()).unwrap());
-    let options = Options { local_origin: true, ..Options::default() };
+    let expected =
+        obj(std::str::from_utf8(&converted(&stream, Format::Stream, Format::Obj).unwrap()).unwrap());
+    let options =
+        Options { sink: SinkOptions { local_origin: true, ..SinkOptions::default() }, ..Options::default() };
     let mut text = Vec::new();
     convert(Cursor::new(stream.clone()), "test", Format::Obj, &mut text, &options, |_| ()).unwrap();
     let text = String::from_utf8(text).unwrap();

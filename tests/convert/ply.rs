@@ -1,7 +1,7 @@
 //! PLY as other programs write it: three encodings, properties of any type and order, polygons, points.
 
 use spmesh_base::error::ErrorKind;
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 
 use super::independent::obj;
 use super::{converted, samples, text_of};
@@ -44,7 +44,7 @@ fn all_encodings_give_the_same_mesh() {
     for bytes in
         [TEXT.as_bytes().to_vec(), TEXT.replace('\n', "\r\n").into_bytes(), binary(false), binary(true)]
     {
-        let soup = obj(&text_of(&converted(&bytes, Format::Ply, Format::Spm).unwrap()));
+        let soup = obj(&text_of(&converted(&bytes, Format::Ply, Format::Stream).unwrap()));
         assert_eq!(soup.vertices[3], [0.0, 1.0, 8.0]);
         assert_eq!(soup.vertices[5], [2.0, 1.0, -9.0]);
         assert_eq!(soup.triangles, [[0, 1, 3], [1, 2, 3], [1, 4, 5], [1, 5, 2]]);
@@ -54,13 +54,13 @@ fn all_encodings_give_the_same_mesh() {
 #[test]
 fn what_is_written_is_read() {
     for stream in samples::grids().into_iter().map(samples::mesh) {
-        let ply = converted(&stream, Format::Spm, Format::Ply).unwrap();
-        let back = converted(&ply, Format::Ply, Format::Spm).unwrap();
+        let ply = converted(&stream, Format::Stream, Format::Ply).unwrap();
+        let back = converted(&ply, Format::Ply, Format::Stream).unwrap();
         assert_eq!(obj(&text_of(&back)), obj(&text_of(&stream)));
     }
     let points = samples::points(2, false, true);
-    let ply = converted(&points, Format::Spm, Format::Ply).unwrap();
-    let back = text_of(&converted(&ply, Format::Ply, Format::Spm).unwrap());
+    let ply = converted(&points, Format::Stream, Format::Ply).unwrap();
+    let back = text_of(&converted(&ply, Format::Ply, Format::Stream).unwrap());
     assert!(back.contains("#spmesh kind points\n"));
     assert_eq!(obj(&back), obj(&text_of(&points)));
 }
@@ -89,7 +89,7 @@ fn bad_headers_and_rows_are_refused() {
         ),
     ];
     for (text, expected) in cases {
-        let error = converted(text.as_bytes(), Format::Ply, Format::Spm).unwrap_err();
+        let error = converted(text.as_bytes(), Format::Ply, Format::Stream).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Malformed, "{error}");
         assert!(error.to_string().contains(expected), "{error}");
     }
@@ -102,7 +102,7 @@ fn binary_files_end_with_their_rows() {
         let longer = [&bytes[..], &[0]].concat();
         let start = bytes.len() - 100;
         for damaged in (start..bytes.len()).map(|end| &bytes[..end]).chain([&longer[..]]) {
-            let error = converted(damaged, Format::Ply, Format::Spm).unwrap_err();
+            let error = converted(damaged, Format::Ply, Format::Stream).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::Malformed, "{error}");
             assert!(error.to_string().starts_with("test: element "), "{error}");
         }
@@ -113,14 +113,14 @@ fn binary_files_end_with_their_rows() {
 fn what_is_read_over_may_be_no_number() {
     let text = TEXT.replace("1 0 0 5\n", "nan 0 0 5\n").replace("2 3 1 0.5", "2 3 1 inf");
     assert_eq!(
-        text_of(&converted(text.as_bytes(), Format::Ply, Format::Spm).unwrap()),
-        text_of(&converted(TEXT.as_bytes(), Format::Ply, Format::Spm).unwrap())
+        text_of(&converted(text.as_bytes(), Format::Ply, Format::Stream).unwrap()),
+        text_of(&converted(TEXT.as_bytes(), Format::Ply, Format::Stream).unwrap())
     );
 }
 
 #[test]
 fn triangle_strips_are_not_lost_without_a_word() {
     let text = TEXT.replace("element face", "element tristrips");
-    let error = converted(text.as_bytes(), Format::Ply, Format::Spm).unwrap_err();
+    let error = converted(text.as_bytes(), Format::Ply, Format::Stream).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Usage, "{error}");
 }

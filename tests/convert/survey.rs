@@ -1,7 +1,7 @@
 //! What surveyors exchange: DXF, LandXML, and GeoJSON of the edges on lines.
 
 use spmesh_base::error::ErrorKind;
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 use spmesh_stream::Coordinates;
 
 use super::{converted, samples, text_of};
@@ -43,12 +43,12 @@ x 3
 ";
 
 fn square(to: Format) -> String {
-    String::from_utf8(converted(SQUARE.as_bytes(), Format::Text, to).unwrap()).unwrap()
+    String::from_utf8(converted(SQUARE.as_bytes(), Format::Twin, to).unwrap()).unwrap()
 }
 
 #[test]
 fn the_stream_keeps_what_constrains_it() {
-    let stream = converted(SQUARE.as_bytes(), Format::Text, Format::Spm).unwrap();
+    let stream = converted(SQUARE.as_bytes(), Format::Twin, Format::Stream).unwrap();
     assert_eq!(text_of(&stream), SQUARE);
 }
 
@@ -109,13 +109,13 @@ fn geojson_has_each_edge_once() {
 #[test]
 fn ordinary_meshes_have_no_lines() {
     let mesh = samples::mesh(Coordinates::F64);
-    let text = |to| String::from_utf8(converted(&mesh, Format::Spm, to).unwrap()).unwrap();
+    let text = |to| String::from_utf8(converted(&mesh, Format::Stream, to).unwrap()).unwrap();
     let triangles = 2 * (samples::SIDE - 1) * (samples::SIDE - 1);
     assert_eq!(text(Format::Dxf).matches("\n3DFACE\n").count() as u64, triangles);
     assert!(!text(Format::Dxf).contains("\nLINE\n"));
     assert_eq!(text(Format::LandXml).matches("<F>").count() as u64, triangles);
     assert!(!text(Format::LandXml).contains("Breakline"));
-    let error = converted(&mesh, Format::Spm, Format::GeoJson).unwrap_err();
+    let error = converted(&mesh, Format::Stream, Format::GeoJson).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Usage);
     assert!(error.to_string().contains("not constrained"), "{error}");
 }

@@ -1,6 +1,6 @@
 //! The text twin loses nothing.
 
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 
 use super::{assert_cuts_are_refused, assert_refused, converted, samples, text_of};
 use crate::vectors::load;
@@ -9,7 +9,7 @@ use crate::vectors::load;
 fn stream_to_text_to_stream_is_the_identity() {
     for stream in samples::all() {
         let text = text_of(&stream);
-        let back = converted(text.as_bytes(), Format::Text, Format::Spm).unwrap();
+        let back = converted(text.as_bytes(), Format::Twin, Format::Stream).unwrap();
         assert!(back == stream, "differs after {}", text.lines().next().unwrap());
         assert_eq!(text_of(&back), text);
     }
@@ -19,7 +19,7 @@ fn stream_to_text_to_stream_is_the_identity() {
 fn text_to_text_is_the_identity() {
     for stream in samples::all() {
         let text = text_of(&stream);
-        let again = converted(text.as_bytes(), Format::Text, Format::Text).unwrap();
+        let again = converted(text.as_bytes(), Format::Twin, Format::Twin).unwrap();
         assert_eq!(String::from_utf8(again).unwrap(), text);
     }
 }
@@ -38,7 +38,7 @@ fn every_truncation_is_refused() {
 fn free_spacing_and_comments_are_accepted() {
     let text = text_of(&samples::partial());
     let loose = text.replace(" 0\n", "\t0  \r\n").replace("# patch", "\n# a comment\n#patch\n  # patch");
-    let stream = converted(loose.as_bytes(), Format::Text, Format::Spm).unwrap();
+    let stream = converted(loose.as_bytes(), Format::Twin, Format::Stream).unwrap();
     assert_eq!(text_of(&stream), text);
 }
 
@@ -120,12 +120,12 @@ fn errors_in_tetrahedra_and_labels_name_the_line() {
     for (found, replaced, expected) in cases {
         assert!(text.contains(found), "{found} in {text}");
         let damaged = text.replacen(found, replaced, 1);
-        let error = converted(damaged.as_bytes(), Format::Text, Format::Spm).unwrap_err();
+        let error = converted(damaged.as_bytes(), Format::Twin, Format::Stream).unwrap_err();
         let message = error.to_string();
         assert!(message.contains(expected) && message.starts_with("test: line "), "{replaced}: {message}");
     }
     let triangles = text_of(&samples::mesh(samples::grids()[0])).replacen("# patch", "label 1\n# patch", 1);
-    let error = converted(triangles.as_bytes(), Format::Text, Format::Spm).unwrap_err();
+    let error = converted(triangles.as_bytes(), Format::Twin, Format::Stream).unwrap_err();
     assert!(error.to_string().contains("a triangle mesh cannot have this line here"), "{error}");
 }
 
@@ -151,7 +151,7 @@ fn numbers_off_the_grid_are_refused_at_their_line() {
     assert_refused(&twin("points-f64-2d"), "v 1.5 -0.1 0", "v 1.5 -0.1 0.5", "z is 0.5, but the points");
     // Other decimals of the same grid points: with the noise of f64, with zeros, with an exponent.
     for other in ["28.016000000000002", "28.01600", "2.8016e1"] {
-        let stream = |text: &str| converted(text.as_bytes(), Format::Text, Format::Spm).unwrap();
+        let stream = |text: &str| converted(text.as_bytes(), Format::Twin, Format::Stream).unwrap();
         let changed = millimetres.replacen("v 28.016 ", &format!("v {other} "), 1);
         assert!(stream(&changed) == stream(&millimetres), "{other}");
     }
@@ -175,18 +175,18 @@ fn header_lines_are_known_and_come_first() {
         assert_refused(&text, found, replaced, expected);
     }
     let commented = text.replacen("# patch", "# a comment\n#spmeshes\n# patch", 1);
-    assert_eq!(text_of(&converted(commented.as_bytes(), Format::Text, Format::Spm).unwrap()), text);
+    assert_eq!(text_of(&converted(commented.as_bytes(), Format::Twin, Format::Stream).unwrap()), text);
 }
 
 #[test]
 fn lines_and_patches_have_a_maximum() {
     let line = [b"#spmesh version 2\n# ".as_slice(), &vec![b'x'; 1 << 17]].concat();
-    let error = converted(&line, Format::Text, Format::Spm).unwrap_err();
+    let error = converted(&line, Format::Twin, Format::Stream).unwrap_err();
     assert!(error.to_string().contains("line of more than 65536 bytes"), "{error}");
     let header = "#spmesh version 2\n#spmesh kind triangle mesh\n#spmesh coordinates f64\n#spmesh dims 2\n\
                   #spmesh elevation no\n#spmesh chunked no\n#spmesh producer \"\"\n# patch\n";
     let patch = header.to_string() + &"v 0 0 0\n".repeat(70_000);
-    let error = converted(patch.as_bytes(), Format::Text, Format::Spm).unwrap_err();
+    let error = converted(patch.as_bytes(), Format::Twin, Format::Stream).unwrap_err();
     assert!(error.to_string().contains("longer than a block"), "{error}");
 }
 
@@ -194,7 +194,7 @@ fn lines_and_patches_have_a_maximum() {
 fn twins_of_the_vectors_are_those_of_the_specification() {
     for vector in load("pass", "txt") {
         assert_eq!(text_of(&vector.bytes), vector.expected, "{}", vector.name);
-        let back = converted(vector.expected.as_bytes(), Format::Text, Format::Spm).unwrap();
+        let back = converted(vector.expected.as_bytes(), Format::Twin, Format::Stream).unwrap();
         assert_eq!(text_of(&back), vector.expected, "{}", vector.name);
     }
 }
@@ -208,7 +208,7 @@ fn the_examples_of_the_specification_are_twins() {
     for (i, &start) in starts.iter().enumerate() {
         let end = starts.get(i + 1).copied().unwrap_or(lines.len());
         let example = lines[start..end].join("\n") + "\n";
-        let stream = converted(example.as_bytes(), Format::Text, Format::Spm).unwrap();
+        let stream = converted(example.as_bytes(), Format::Twin, Format::Stream).unwrap();
         assert_eq!(text_of(&stream), example);
     }
 }

@@ -1,7 +1,7 @@
 //! Tetrahedral meshes in other formats: VTU, Medit, and the hull as OBJ and PLY.
 
 use spmesh_base::error::ErrorKind;
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 use spmesh_formats::source::{Input, SourceOptions};
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::Point;
@@ -70,10 +70,10 @@ fn vtu_and_medit_hold_what_the_twin_says() {
     streams.extend([samples::points(3, false, true), samples::points(2, true, false)]);
     for stream in streams {
         let twin = of_twin(&stream);
-        let written = converted(&stream, Format::Spm, Format::Vtu).unwrap();
+        let written = converted(&stream, Format::Stream, Format::VtkXml).unwrap();
         let vtu = independent::vtu(&written);
         assert_eq!(vertices_read(&written), vtu.vertices);
-        let medit = converted(&stream, Format::Spm, Format::Medit).unwrap();
+        let medit = converted(&stream, Format::Stream, Format::Medit).unwrap();
         let medit = independent::medit(std::str::from_utf8(&medit).unwrap());
         assert_eq!((&vtu.vertices, &vtu.labels), (&twin.vertices, &twin.labels));
         let references =
@@ -96,12 +96,12 @@ fn meshes_without_cells_are_written_too() {
         let vector =
             crate::vectors::load("pass", "txt").into_iter().find(|vector| vector.name == name).unwrap();
         let twin = of_twin(&vector.bytes);
-        let vtu = independent::vtu(&converted(&vector.bytes, Format::Spm, Format::Vtu).unwrap());
+        let vtu = independent::vtu(&converted(&vector.bytes, Format::Stream, Format::VtkXml).unwrap());
         assert_eq!(vtu, twin);
-        let medit = converted(&vector.bytes, Format::Spm, Format::Medit).unwrap();
+        let medit = converted(&vector.bytes, Format::Stream, Format::Medit).unwrap();
         assert_eq!(independent::medit(std::str::from_utf8(&medit).unwrap()), twin);
         for format in [Format::Obj, Format::Ply] {
-            converted(&vector.bytes, Format::Spm, format).unwrap();
+            converted(&vector.bytes, Format::Stream, format).unwrap();
         }
     }
 }
@@ -112,7 +112,7 @@ fn labels_that_medit_cannot_say_are_dropped_with_a_notice() {
     for (greatest, is_kept) in [("2147483647", true), ("2147483648", false), ("18446744073709551615", false)]
     {
         let text = text.replace("label 1000\n", &format!("label {greatest}\n"));
-        let (medit, notices) = with_notices(text.as_bytes(), Format::Text, Format::Medit).unwrap();
+        let (medit, notices) = with_notices(text.as_bytes(), Format::Twin, Format::Medit).unwrap();
         let medit = independent::medit(std::str::from_utf8(&medit).unwrap());
         assert_eq!(medit.labels[0].to_string() == greatest, is_kept);
         assert_eq!(medit.labels.iter().all(|&label| label == 0), !is_kept);
@@ -124,10 +124,10 @@ fn labels_that_medit_cannot_say_are_dropped_with_a_notice() {
 fn obj_and_ply_get_the_hull_seen_from_outside() {
     let stream = samples::tetrahedra(Coordinates::F64, true);
     let twin = of_twin(&stream);
-    let (obj, notices) = with_notices(&stream, Format::Spm, Format::Obj).unwrap();
+    let (obj, notices) = with_notices(&stream, Format::Stream, Format::Obj).unwrap();
     assert!(notices.iter().any(|notice| notice.contains("108 facets of the hull")), "{notices:?}");
     let obj = independent::obj(std::str::from_utf8(&obj).unwrap());
-    let ply = independent::ply(&converted(&stream, Format::Spm, Format::Ply).unwrap());
+    let ply = independent::ply(&converted(&stream, Format::Stream, Format::Ply).unwrap());
     assert_eq!(ply, obj);
     // Six sides of nine squares of two facets each; of 64 vertices eight are inside.
     assert_eq!((obj.vertices.len(), obj.triangles.len()), (56, 108));
@@ -145,20 +145,20 @@ fn obj_and_ply_get_the_hull_seen_from_outside() {
 fn formats_of_triangles_refuse_tetrahedra_and_written_ones_are_not_read() {
     let stream = samples::tetrahedra(Coordinates::F64, true);
     for format in [Format::Sma, Format::Smb, Format::Spa, Format::Spb] {
-        let error = converted(&stream, Format::Spm, format).unwrap_err();
+        let error = converted(&stream, Format::Stream, format).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Usage);
         assert!(
             error.to_string().contains("a stream of kind tetrahedral mesh cannot be written as"),
             "{error}"
         );
     }
-    for format in [Format::Vtu, Format::Medit] {
+    for format in [Format::VtkXml, Format::Medit] {
         for partial in [samples::partial(), samples::partial_space()] {
-            let error = converted(&partial, Format::Spm, format).unwrap_err();
+            let error = converted(&partial, Format::Stream, format).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::Usage, "{error}");
         }
-        let written = converted(&stream, Format::Spm, format).unwrap();
-        let error = converted(&written, format, Format::Spm).unwrap_err();
+        let written = converted(&stream, Format::Stream, format).unwrap();
+        let error = converted(&written, format, Format::Stream).unwrap_err();
         assert!(error.kind() == ErrorKind::Usage && error.to_string().contains("not read"), "{error}");
     }
 }

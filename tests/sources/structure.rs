@@ -5,8 +5,9 @@ use std::io::{Cursor, Write};
 use std::path::Path;
 
 use spmesh_base::error::{ErrorKind, Result};
+use spmesh_formats::drivers::Format;
 use spmesh_formats::molecules::{
-    Altlocs, Atom, Format, Models, Selection, Structure, read_structure, read_structure_from,
+    Altlocs, Atom, Models, Selection, Structure, read_structure, read_structure_from,
 };
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 
@@ -283,7 +284,7 @@ fn what_is_not_read_is_named() {
 
 #[test]
 fn the_format_can_be_given() {
-    let as_points = read_structure_from(Cursor::new(b"1 2 3\n"), "input", Some(Format::Points)).unwrap();
+    let as_points = read_structure_from(Cursor::new(b"1 2 3\n"), "input", Some(Format::Text)).unwrap();
     assert_eq!(points(&as_points), [[1.0, 2.0, 3.0]]);
     let as_pdb = read_structure_from(Cursor::new(b"1 2 3\n"), "input", Some(Format::Pdb));
     assert_fails(as_pdb, ErrorKind::Malformed, &["no atom"]);

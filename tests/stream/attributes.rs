@@ -1,7 +1,7 @@
 //! Attributes of points: written and read as they are, and every fault is found.
 
 use spmesh_base::error::ErrorKind;
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 use spmesh_stream::model::attributes::{Attribute, Attributes, NumberType};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamReader, StreamWriter};
@@ -70,7 +70,7 @@ fn streams() -> impl Iterator<Item = (Header, Vec<u8>)> {
 fn twins_keep_every_bit() {
     for (header, bytes) in streams() {
         let text = text_of(&bytes);
-        let again = converted(text.as_bytes(), Format::Text, Format::Spm).unwrap();
+        let again = converted(text.as_bytes(), Format::Twin, Format::Stream).unwrap();
         let ((read, _, rows), (read_again, _, rows_again)) =
             (verify_rows(&bytes).unwrap(), verify_rows(&again).unwrap());
         assert_eq!((&read, &read_again), (&header, &header));

@@ -3,7 +3,7 @@
 use spmesh_base::error::ErrorKind;
 use spmesh_configurations::special::{Function, FunctionKind};
 use spmesh_configurations::{self as configurations, Claim, Configurations, FARAWAY, Knots, Rule, Start};
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 use spmesh_stream::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamReader, StreamWriter};
 use spmesh_stream::{ConfigurationSet, Content, configurations_header, write_configurations, write_content};
 
@@ -74,7 +74,7 @@ fn configurations_go_through_their_twins() {
         let knots = random_knots(&mut random, 5 + seed as usize / 3);
         let bytes = written(&knots, &random_configurations(&mut random, &knots, seed as usize % 4));
         let text = text_of(&bytes);
-        let back = converted(text.as_bytes(), Format::Text, Format::Spm).unwrap();
+        let back = converted(text.as_bytes(), Format::Twin, Format::Stream).unwrap();
         assert!(back == bytes, "seed {seed}");
         if seed < 8 {
             let Some(python) = run_python("scripts/spmesh_reader.py", &["-"], &bytes) else { return };
@@ -102,7 +102,7 @@ fn degrees_longer_than_a_block_come_back_and_go_through_their_twins() {
     assert_eq!(text.lines().filter(|line| line.starts_with("degree ")).count(), 3);
     let groups: usize = degrees.iter().map(Configurations::group_count).sum();
     assert_eq!(text.lines().filter(|line| line.starts_with("in")).count(), groups);
-    assert!(converted(text.as_bytes(), Format::Text, Format::Spm).unwrap() == bytes);
+    assert!(converted(text.as_bytes(), Format::Twin, Format::Stream).unwrap() == bytes);
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn splines_come_back_as_they_were_written() {
         assert_eq!((&set.functions, &set.coefficients), (&functions, &coefficients), "seed {seed}");
         assert_eq!(set.degrees, degrees);
         let text = text_of(&bytes);
-        assert!(converted(text.as_bytes(), Format::Text, Format::Spm).unwrap() == bytes, "seed {seed}");
+        assert!(converted(text.as_bytes(), Format::Twin, Format::Stream).unwrap() == bytes, "seed {seed}");
         if seed < 20 {
             let twin = run_python("scripts/spmesh_reader.py", &["-"], &bytes);
             assert!(twin.is_none_or(|twin| twin.stdout == text.as_bytes()), "seed {seed}");
@@ -336,10 +336,10 @@ fn every_changed_byte_and_every_cut_is_malformed() {
 #[test]
 fn formats_that_hold_none_refuse_them() {
     let vector = load("pass", "txt").into_iter().find(|vector| vector.name == "configurations").unwrap();
-    for name in Format::names_written().filter(|name| !matches!(*name, "spm" | "text")) {
-        let error = converted(&vector.bytes, Format::Spm, Format::from_name(name).unwrap()).expect_err(name);
-        assert_eq!(error.kind(), ErrorKind::Usage, "{name}: {error}");
+    for to in Format::written().filter(|format| !matches!(format, Format::Stream | Format::Twin)) {
+        let error = converted(&vector.bytes, Format::Stream, to).expect_err(to.value());
+        assert_eq!(error.kind(), ErrorKind::Usage, "{to:?}: {error}");
         let expected = "a stream of kind configurations cannot be written as";
-        assert!(error.to_string().contains(expected), "{name}: {error}");
+        assert!(error.to_string().contains(expected), "{to:?}: {error}");
     }
 }

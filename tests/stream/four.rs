@@ -2,7 +2,7 @@
 
 use spmesh_base::error::{ErrorKind, Result};
 use spmesh_base::limits::TEXT_NUMBERS_MAX;
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 use spmesh_stream::model::cells4::{Cell4, Cells4, Point4};
 use spmesh_stream::{
     Coordinates, Event, Header, Kind, Points4, StreamReader, StreamWriter, Totals, read_diagram4,
@@ -95,7 +95,7 @@ fn random_stream(seed: u64) -> (Header, Vec<Event>, Vec<u8>) {
 }
 
 fn text_of(stream: &[u8]) -> String {
-    String::from_utf8(converted(stream, Format::Spm, Format::Text).unwrap()).unwrap()
+    String::from_utf8(converted(stream, Format::Stream, Format::Twin).unwrap()).unwrap()
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn random_streams_go_through_their_twins() {
     for seed in 0..200 {
         let (_, _, bytes) = random_stream(seed);
         let text = text_of(&bytes);
-        let back = converted(text.as_bytes(), Format::Text, Format::Spm).unwrap();
+        let back = converted(text.as_bytes(), Format::Twin, Format::Stream).unwrap();
         assert!(back == bytes, "seed {seed}");
         if seed < 12 {
             let Some(python) = run_python("scripts/spmesh_reader.py", &["-"], &bytes) else { return };
@@ -149,7 +149,7 @@ fn cells_longer_than_a_block_or_a_line_come_back() {
     // The second cell needs one line more, the third one none.
     let further = text.lines().filter(|line| line.starts_with("+4 ")).count();
     assert_eq!(further, 299_999 / TEXT_NUMBERS_MAX + 1);
-    assert!(converted(text.as_bytes(), Format::Text, Format::Spm).unwrap() == bytes);
+    assert!(converted(text.as_bytes(), Format::Twin, Format::Stream).unwrap() == bytes);
     if let Some(python) = run_python("scripts/spmesh_reader.py", &["-"], &bytes) {
         assert!(String::from_utf8(python.stdout).unwrap() == text);
     }
@@ -194,7 +194,7 @@ fn endless_lists_in_twins_are_refused_at_their_line() {
         ("i4 1 2 3 4\nn4 1 2 3\n+4 4 5\n+4 6\n", "line 16: cell of 4 vertices and 6 neighbours"),
     ];
     for (lines, expected) in cases {
-        let error = converted([&start, lines].concat().as_bytes(), Format::Text, Format::Spm).unwrap_err();
+        let error = converted([&start, lines].concat().as_bytes(), Format::Twin, Format::Stream).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
     }
 }
@@ -289,7 +289,7 @@ fn errors_in_twins_name_the_line() {
         let text = text(name);
         if expected == "\0" {
             assert!(text.contains(found), "{found} in {text}");
-            let read = converted(text.replacen(found, replaced, 1).as_bytes(), Format::Text, Format::Spm);
+            let read = converted(text.replacen(found, replaced, 1).as_bytes(), Format::Twin, Format::Stream);
             assert!(read.is_ok(), "{replaced}: free spacing is accepted");
             continue;
         }
@@ -305,12 +305,11 @@ fn every_truncation_of_a_twin_is_refused() {
 #[test]
 fn formats_of_fewer_dimensions_refuse_them() {
     for kind in [Kind::Points4, Kind::Cells4, Kind::Simplices4] {
-        for name in Format::names_written().filter(|name| !matches!(*name, "spm" | "text")) {
-            let to = Format::from_name(name).unwrap();
-            let error = converted(&empty(kind), Format::Spm, to).expect_err(name);
-            assert_eq!(error.kind(), ErrorKind::Usage, "{name}: {error}");
+        for to in Format::written().filter(|format| !matches!(format, Format::Stream | Format::Twin)) {
+            let error = converted(&empty(kind), Format::Stream, to).expect_err(to.value());
+            assert_eq!(error.kind(), ErrorKind::Usage, "{to:?}: {error}");
             let expected = format!("a stream of kind {} cannot be written as", kind.name());
-            assert!(error.to_string().contains(&expected), "{name}: {error}");
+            assert!(error.to_string().contains(&expected), "{to:?}: {error}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Streams and text twins of other versions: every program says what it lacks.
 
 use spmesh_base::error::ErrorKind;
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 
 use crate::convert::{converted, text_of};
 use crate::programs::{Folder, assert_outcome};
@@ -53,7 +53,7 @@ fn twins_of_other_versions_are_refused_as_such() {
         ("70000", "version 70000; this program reads version 2: a newer spmesh made it"),
     ] {
         let twin = vector.expected.replacen("version 2", &format!("version {version}"), 1);
-        let error = converted(twin.as_bytes(), Format::Text, Format::Spm).unwrap_err();
+        let error = converted(twin.as_bytes(), Format::Twin, Format::Stream).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Unsupported, "{error}");
         assert!(error.to_string().starts_with(&format!("test: line 1: {words}")), "{error}");
     }
@@ -64,7 +64,7 @@ fn twins_of_other_versions_are_refused_as_such() {
 fn conversions_leave_out_what_they_skip() {
     for vector in load("pass", "txt").into_iter().filter(|vector| vector.name.contains("skipped")) {
         assert_eq!(text_of(&vector.bytes), vector.expected, "{}", vector.name);
-        let stream = converted(&vector.bytes, Format::Spm, Format::Spm).unwrap();
+        let stream = converted(&vector.bytes, Format::Stream, Format::Stream).unwrap();
         assert_eq!(text_of(&stream), vector.expected, "{}", vector.name);
         assert!(!stream.windows(4).any(|bytes| bytes == b"note"), "{}", vector.name);
     }

@@ -6,11 +6,13 @@ use anyhow::Result;
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use crate::{Format, Options, convert};
+use crate::{Options, convert};
 use spmesh_base::error::{Error, ErrorKind};
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
 use spmesh_base::system;
+use spmesh_formats::drivers::Format;
+use spmesh_formats::sink::SinkOptions;
 use spmesh_formats::source::AttributeChoice;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::crs::CrsFlag;
@@ -64,11 +66,11 @@ pub struct Flags {
     output: PathBuf,
 
     /// Format of the output [default: by the name of the output]
-    #[arg(long, value_name = "FORMAT", value_parser = formats(Format::names_written()))]
+    #[arg(long, value_name = "FORMAT", value_parser = formats(Format::written()))]
     to: Option<Format>,
 
     /// Format of the input [default: by its content, or its name]
-    #[arg(long, value_name = "FORMAT", value_parser = formats(Format::names_read()))]
+    #[arg(long, value_name = "FORMAT", value_parser = formats(Format::read()))]
     from: Option<Format>,
 
     /// Take attributes of points of LAS, LAZ, COPC or text along: their names, or all. Points of other formats keep
@@ -104,9 +106,9 @@ pub struct Flags {
     common: Common,
 }
 
-fn formats(names: impl Iterator<Item = &'static str>) -> impl TypedValueParser<Value = Format> {
-    PossibleValuesParser::new(names)
-        .map(|name| Format::from_name(&name).expect("the name is one of the names"))
+fn formats(formats: impl Iterator<Item = Format>) -> impl TypedValueParser<Value = Format> {
+    PossibleValuesParser::new(formats.map(Format::value))
+        .map(|value| Format::from_value(&value).expect("the value is one of the values"))
 }
 
 /// Runs the tool.
@@ -118,7 +120,7 @@ pub fn run(flags: Flags) -> Result<()> {
     let to = flags.to.or_else(|| Format::from_path(&flags.output)).ok_or_else(|| {
         Error::usage("the format of the output is not known: give it with --to, or a name like mesh.obj")
     })?;
-    let compress = flags.compression.of_output(to == Format::Spm)?;
+    let compress = flags.compression.of_output(to == Format::Stream)?;
     check_apart([flags.input.as_path()], &[("--output", &flags.output)])?;
     let is_binary = to.is_binary() && !(to == Format::Ply && flags.ascii);
     // Fail before the work if the output cannot be created.
@@ -128,12 +130,14 @@ pub fn run(flags: Flags) -> Result<()> {
         from: flags.from,
         dims: flags.dims,
         attributes: AttributeChoice::of_names(&flags.attributes),
-        ascii: flags.ascii,
-        local_origin: flags.local_origin,
-        compress,
         crs: flags.crs.system()?,
         path: flags.input.is_file().then(|| flags.input.clone()),
-        temp_dir: flags.temp_dir,
+        sink: SinkOptions {
+            ascii: flags.ascii,
+            local_origin: flags.local_origin,
+            compress,
+            temp_dir: flags.temp_dir,
+        },
     };
     let mut progress = Progress::new(&flags.common, "converting", None);
     let notices = convert(input, &name, to, &mut output, &options, |points| progress.set(points))?;

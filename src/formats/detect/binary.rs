@@ -1,10 +1,7 @@
 //! Tests of the first bytes, for formats without fixed magic bytes.
 
-/// First bytes of the legacy format of VTK.
-pub(super) const VTK_LEGACY_START: &[u8] = b"# vtk DataFile";
-
 /// Whether the root element is that of VTK.
-pub(super) fn is_vtk_xml(head: &[u8]) -> bool {
+pub(crate) fn is_vtk_xml(head: &[u8]) -> bool {
     const ROOT: &[u8] = b"<VTKFile";
     let text = head.trim_ascii_start();
     text.starts_with(ROOT)
@@ -13,7 +10,7 @@ pub(super) fn is_vtk_xml(head: &[u8]) -> bool {
 }
 
 /// Whether `head` is a NIfTI-1 or NIfTI-2 header, which starts with its own length in either byte order.
-pub(super) fn is_nifti(head: &[u8]) -> bool {
+pub(crate) fn is_nifti(head: &[u8]) -> bool {
     const MAGIC_AT: usize = 344;
     let states = |len: u32| head.starts_with(&len.to_le_bytes()) || head.starts_with(&len.to_be_bytes());
     let has_magic = head.get(MAGIC_AT..MAGIC_AT + 2).is_some_and(|magic| magic == b"n+" || magic == b"ni");
@@ -21,7 +18,7 @@ pub(super) fn is_nifti(head: &[u8]) -> bool {
 }
 
 /// Whether `head` is BinaryCIF: a map of MessagePack that starts with one of the keys of such files.
-pub(super) fn is_binary_cif(head: &[u8]) -> bool {
+pub(crate) fn is_binary_cif(head: &[u8]) -> bool {
     // A map of up to 15 entries, and a text of 7 or 10 bytes.
     let is_map = matches!(head.first(), Some(0x80..=0x8f));
     let keys: [&[u8]; 3] = [b"\xa7encoder", b"\xa7version", b"\xaadataBlocks"];
@@ -30,12 +27,12 @@ pub(super) fn is_binary_cif(head: &[u8]) -> bool {
 
 /// Whether `head` is an SPB header: version 7, byte order 0 or 1, then data type (two bits) and finalization
 /// method.
-pub(super) fn is_spb(head: &[u8]) -> bool {
+pub(crate) fn is_spb(head: &[u8]) -> bool {
     matches!(*head, [7, 0 | 1, flags, ..] if flags & 3 < 3 && flags >> 2 <= 4)
 }
 
 /// Whether `head` is an SMB header: version 0, byte order 0 or 1, no compression. All-zero bytes do not
 /// count.
-pub(super) fn is_smb(head: &[u8]) -> bool {
+pub(crate) fn is_smb(head: &[u8]) -> bool {
     matches!(head, [0, 0 | 1, 0, 0, ..]) && head.iter().any(|&byte| byte != 0)
 }

@@ -2,100 +2,74 @@
 
 use spmesh_base::error::{Error, Result};
 
-use crate::detect::{Format, HEAD_LEN, detect};
+use crate::detect::{HEAD_LEN, detect};
+use crate::drivers::{Format, formats_with};
 
 /// A tool that reads inputs of several formats.
 #[derive(Debug)]
 pub struct Reader {
     /// Name of the tool.
     pub tool: &'static str,
-    /// The formats that it reads, in the order of its messages: lists, one after the other.
-    pub formats: &'static [&'static [Format]],
+    /// The formats that it reads, in the order of its messages.
+    formats: fn() -> Vec<Format>,
     /// Whether `--raw` makes it read numbers without a header.
-    pub has_raw: bool,
+    has_raw: bool,
     /// Axes of its points.
-    pub axes: usize,
+    axes: usize,
 }
 
 /// Formats of points in space. Every tool that takes points reads them.
-const POINTS: &[Format] = &[
-    Format::Las,
-    Format::Text,
-    Format::OtherText,
-    Format::Stream,
-    Format::Twin,
-    Format::Spa,
-    Format::Spb,
-    Format::Ply,
-    Format::Obj,
-    Format::Sma,
-    Format::VertexLines,
-    Format::VtkLegacy,
-    Format::VtkXml,
-    Format::Npy,
-];
+fn points() -> Vec<Format> {
+    formats_with(|row| row.points.is_some() && row.atoms.is_none())
+}
 
 /// Molecular structures, whose atoms are points in space.
-const STRUCTURES: &[Format] = &[Format::Pdb, Format::Mmcif, Format::Xyz];
+fn structures() -> Vec<Format> {
+    formats_with(|row| row.atoms.is_some())
+}
+
+const fn reader(tool: &'static str, formats: fn() -> Vec<Format>) -> Reader {
+    Reader { tool, formats, has_raw: false, axes: 3 }
+}
 
 /// `spfinalize`.
 pub const SPFINALIZE: Reader =
-    Reader { tool: "spfinalize", formats: &[POINTS, STRUCTURES], has_raw: true, axes: 3 };
+    Reader { has_raw: true, ..reader("spfinalize", || [points(), structures()].concat()) };
 
 /// `configgen`.
-pub const CONFIGGEN: Reader = Reader { tool: "configgen", formats: &[POINTS], has_raw: false, axes: 3 };
+pub const CONFIGGEN: Reader = reader("configgen", points);
 
 /// `splinefit`.
-pub const SPLINEFIT: Reader = Reader { tool: "splinefit", formats: &[POINTS], has_raw: false, axes: 3 };
+pub const SPLINEFIT: Reader = reader("splinefit", points);
 
 /// `spinfo`, for the points that an audit compares with.
-pub const SPINFO: Reader = Reader { tool: "spinfo", formats: &[POINTS, STRUCTURES], has_raw: false, axes: 3 };
+pub const SPINFO: Reader = reader("spinfo", || [points(), structures()].concat());
 
-/// `spconvert`.
-pub const SPCONVERT: Reader = Reader {
-    tool: "spconvert",
-    formats: &[&[
-        Format::Stream,
-        Format::Twin,
-        Format::Obj,
-        Format::Ply,
-        Format::Spa,
-        Format::Spb,
-        Format::Sma,
-        Format::Smb,
-        Format::Las,
-        Format::VtkLegacy,
-        Format::VtkXml,
-        Format::Text,
-    ]],
-    has_raw: false,
-    axes: 3,
-};
+/// `spconvert`. It takes points of these formats as `spfinalize` does.
+pub const SPCONVERT: Reader = reader("spconvert", || {
+    let points = [Format::Las, Format::VtkLegacy, Format::VtkXml, Format::Text];
+    Format::read().filter(|format| format.events().is_some()).chain(points).collect()
+});
 
 /// `tess3`.
-pub const TESS3: Reader =
-    Reader { tool: "tess3", formats: &[STRUCTURES, &[Format::Off], POINTS], has_raw: false, axes: 3 };
+pub const TESS3: Reader = reader("tess3", || [structures(), vec![Format::Off], points()].concat());
 
 /// `spcanopy`.
-pub const SPCANOPY: Reader = Reader { tool: "spcanopy", formats: &[&[Format::Las]], has_raw: false, axes: 3 };
+pub const SPCANOPY: Reader = reader("spcanopy", || vec![Format::Las]);
 
 /// `spheight`, for the files whose points get heights.
-pub const SPHEIGHT: Reader = Reader { tool: "spheight", formats: &[&[Format::Las]], has_raw: false, axes: 3 };
+pub const SPHEIGHT: Reader = reader("spheight", || vec![Format::Las]);
 
 /// `dd4`.
-pub const DD4: Reader = Reader {
-    tool: "dd4",
-    formats: &[&[Format::Text, Format::OtherText, Format::Nrrd, Format::Nifti, Format::Stream, Format::Twin]],
-    has_raw: true,
-    axes: 4,
-};
+pub const DD4: Reader =
+    Reader { has_raw: true, axes: 4, ..reader("dd4", || formats_with(|row| row.sites.is_some())) };
 
 /// All of them.
 pub const READERS: [&Reader; 9] =
     [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &SPCANOPY, &SPHEIGHT, &TESS3, &DD4];
 
 /// The reader of a caller that does not name its tool.
-static ANY: Reader = Reader { tool: "this program", formats: &[POINTS], has_raw: true, axes: 3 };
+static ANY: Reader = Reader { has_raw: true, ..reader("this program", points) };
 
 impl Default for &'static Reader {
     fn default() -> Self {
@@ -124,13 +98,13 @@ impl Reader {
 
     /// Whether the tool reads this format.
     pub fn reads(&self, format: Format) -> bool {
-        self.formats.iter().any(|list| list.contains(&format))
+        (self.formats)().contains(&format)
     }
 
     /// The formats that the tool reads, for messages.
     fn list(&self) -> String {
         let mut listed: Vec<&str> = Vec::new();
-        for format in self.formats.iter().copied().flatten() {
+        for format in (self.formats)() {
             let name = format.row().listed;
             if !listed.contains(&name) {
                 listed.push(name);

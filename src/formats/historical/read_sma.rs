@@ -1,8 +1,6 @@
 //! Reads SMA, Isenburg's streaming mesh as text (`formats/historical_meshes.md`).
 
-use std::io::Read;
-
-use crate::source::events::EventSource;
+use crate::drivers::{AnyInput, Events};
 use crate::source::mesh_events::{Element, Elements, MeshEvents, resolve};
 use crate::source::patches::Order;
 use crate::text::lines::Lines;
@@ -18,7 +16,7 @@ use spmesh_base::error::{Error, Result};
 /// # Errors
 /// If the lines before the first element are not a header of SMA. This and every later error is
 /// [`spmesh_base::error::ErrorKind::Malformed`] (or I/O) and names input and line.
-pub fn open_sma<R: Read + 'static>(input: R, name: impl Into<String>) -> Result<Box<dyn EventSource>> {
+pub fn open_sma(input: AnyInput, name: &str) -> Result<Events> {
     let lines = Lines::new(input, name);
     let mut elements =
         SmaElements { lines, order: Order::Stated, held: false, vertices: None, triangles: None };
@@ -26,8 +24,8 @@ pub fn open_sma<R: Read + 'static>(input: R, name: impl Into<String>) -> Result<
     Ok(Box::new(MeshEvents::new(elements)))
 }
 
-struct SmaElements<R> {
-    lines: Lines<R>,
+struct SmaElements {
+    lines: Lines<AnyInput>,
     order: Order,
     /// The current line ended the header and is still to be parsed.
     held: bool,
@@ -35,7 +33,7 @@ struct SmaElements<R> {
     triangles: Option<u64>,
 }
 
-impl<R: Read> SmaElements<R> {
+impl SmaElements {
     /// Reads comments up to the first element, whose type decides the order of the mesh.
     fn read_header(&mut self) -> Result<()> {
         while let Some(line) = self.lines.next_line()? {
@@ -56,7 +54,7 @@ impl<R: Read> SmaElements<R> {
     }
 }
 
-impl<R: Read> Elements for SmaElements<R> {
+impl Elements for SmaElements {
     fn order(&self) -> Order {
         self.order
     }

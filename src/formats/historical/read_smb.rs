@@ -1,11 +1,11 @@
 //! Reads SMB, Isenburg's streaming mesh in binary (`formats/historical_meshes.md`).
 
-use std::io::{Chain, Cursor, Read};
+use std::io::{BufReader, Chain, Cursor, Read};
 
+use crate::drivers::{AnyInput, Events};
 use crate::historical::read_sma::check_count;
 use crate::historical::smb_header::{ELEMENT_LEN, ELEMENTS_PER_BLOCK, SmbHeader, point, read_header};
 use crate::raw::byte_order::ByteOrder;
-use crate::source::events::EventSource;
 use crate::source::mesh_events::{Element, Elements, MeshEvents, resolve};
 use crate::source::patches::Order;
 use spmesh_base::error::{Error, Result};
@@ -21,17 +21,17 @@ use spmesh_base::limits::HEADER_BODY_MAX;
 /// # Errors
 /// If the header makes sense in neither byte order. This and every later error is
 /// [`spmesh_base::error::ErrorKind::Malformed`] (or I/O) and names input and byte.
-pub fn open_smb<R: Read + 'static>(mut input: R, name: impl Into<String>) -> Result<Box<dyn EventSource>> {
-    let name = name.into();
+pub fn open_smb(input: AnyInput, name: &str) -> Result<Events> {
+    let mut input = BufReader::new(input);
     let mut head = Vec::new();
     let read = (&mut input).take(HEADER_BODY_MAX as u64).read_to_end(&mut head);
-    read.map_err(|e| Error::io("reading", e).of_input(&name))?;
-    let header = read_header(&head).map_err(|e| e.at("header at byte 0").of_input(&name))?;
+    read.map_err(|e| Error::io("reading", e).of_input(name))?;
+    let header = read_header(&head).map_err(|e| e.at("header at byte 0").of_input(name))?;
     let mut rest = Cursor::new(head);
     rest.set_position(header.len as u64);
     let mut elements = SmbElements {
         input: rest.chain(input),
-        name,
+        name: name.to_string(),
         offset: header.len as u64,
         header,
         order: Order::Stated,
@@ -47,8 +47,8 @@ pub fn open_smb<R: Read + 'static>(mut input: R, name: impl Into<String>) -> Res
     Ok(Box::new(MeshEvents::new(elements)))
 }
 
-struct SmbElements<R> {
-    input: Chain<Cursor<Vec<u8>>, R>,
+struct SmbElements {
+    input: Chain<Cursor<Vec<u8>>, BufReader<AnyInput>>,
     name: String,
     header: SmbHeader,
     order: Order,
@@ -62,7 +62,7 @@ struct SmbElements<R> {
     ended: bool,
 }
 
-impl<R: Read> SmbElements<R> {
+impl SmbElements {
     fn read_block(&mut self) -> Result<()> {
         let mut descriptor = Vec::with_capacity(4);
         self.read(4, &mut descriptor)?;
@@ -89,7 +89,7 @@ impl<R: Read> SmbElements<R> {
     }
 }
 
-impl<R: Read> Elements for SmbElements<R> {
+impl Elements for SmbElements {
     fn order(&self) -> Order {
         self.order
     }

@@ -3,8 +3,7 @@
 use std::io::Read;
 
 use crate::historical::sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpPass, SpReader};
-use crate::source::origin::Bytes;
-use crate::source::pass::Stated;
+use crate::source::pass::{Content, Opening};
 use crate::text::lines::{Lines, number, quote};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::SPA_COMMENTS_MAX;
@@ -168,12 +167,10 @@ impl HeaderFields {
     }
 }
 
-/// Reads the header of a file. Its bounding box is left out, because SPA rounds it.
-pub(crate) fn state(file: Bytes) -> Result<Stated> {
-    Ok(SpaReader::new(file)?.header().state(None))
-}
-
-/// Starts a pass over the points.
-pub(crate) fn pass(file: Bytes) -> Result<SpPass<SpaReader<Bytes>>> {
-    SpaReader::new(file).map(SpPass::new)
+/// Opens a file of points. Its bounding box is left out, because SPA rounds it.
+pub(crate) fn open(file: &Opening) -> Result<Content> {
+    let stated = SpaReader::new(file.origin.plain()?)?.header().state(None);
+    let content =
+        Content::new(stated, |file, _| Ok(Box::new(SpPass::new(SpaReader::new(file.origin.plain()?)?))));
+    Ok(Content { is_costly: true, ..content })
 }

@@ -4,8 +4,7 @@ use std::io::{BufReader, Cursor, Read};
 
 use crate::historical::sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpPass, SpReader};
 use crate::raw::byte_order::{ByteOrder, parse_in_either};
-use crate::source::origin::Bytes;
-use crate::source::pass::Stated;
+use crate::source::pass::{Content, Opening};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::HEADER_BODY_MAX;
 use spmesh_stream::model::bounds::{Bounds, Point};
@@ -221,13 +220,11 @@ fn plausibility(order: ByteOrder, header: &SpHeader, body: &[u8]) -> u32 {
     score
 }
 
-/// Reads the header of a file.
-pub(crate) fn state(file: Bytes) -> Result<Stated> {
-    let reader = SpbReader::new(file)?;
-    Ok(reader.header().state(reader.header().bounds))
-}
-
-/// Starts a pass over the points.
-pub(crate) fn pass(file: Bytes) -> Result<SpPass<SpbReader<BufReader<Bytes>>>> {
-    SpbReader::new(BufReader::with_capacity(1 << 18, file)).map(SpPass::new)
+/// Opens a file of points.
+pub(crate) fn open(file: &Opening) -> Result<Content> {
+    let header = SpbReader::new(file.origin.plain()?)?.header;
+    Ok(Content::new(header.state(header.bounds), |file, _| {
+        let input = BufReader::with_capacity(1 << 18, file.origin.plain()?);
+        Ok(Box::new(SpPass::new(SpbReader::new(input)?)))
+    }))
 }

@@ -1,5 +1,6 @@
 //! Converts files of the historical point formats SPA and SPB to the events of a stream.
 
+use crate::drivers::Events;
 use crate::historical::sp::{SpEvent, SpFinalization, SpReader};
 use crate::historical::sp_cells::{cell_of, check_end, tree_of};
 use crate::source::events::EventSource;
@@ -15,7 +16,7 @@ const BATCH_MAX: usize = 4096;
 /// Finalization tags are kept if the bounding box of the file, which is halved into cells, is the cube of an
 /// exact finalization tree; otherwise they are dropped, with a notice. Tags of cells that are already final
 /// are redundant and dropped too.
-pub struct SpEvents<S> {
+pub(crate) struct SpEvents<S> {
     reader: S,
     name: String,
     header: Header,
@@ -28,10 +29,11 @@ pub struct SpEvents<S> {
     ended: bool,
 }
 
-impl<S: SpReader> SpEvents<S> {
+impl<S: SpReader + Send + 'static> SpEvents<S> {
     /// Events of `reader`, which messages call `name`. The finalization method decides the dimensions of the
     /// points; without a tree they have `dims` dimensions. With 2, z is an elevation.
-    pub fn new(reader: S, name: impl Into<String>, dims: u8) -> Self {
+    pub(crate) fn open(reader: Result<S>, name: &str, dims: u8) -> Result<Events> {
+        let reader = reader.map_err(|e| e.of_input(name))?;
         let dims = match reader.header().finalization {
             SpFinalization::QuadTree => 2,
             SpFinalization::OctTree => 3,
@@ -40,7 +42,7 @@ impl<S: SpReader> SpEvents<S> {
         let mut header = Header::new(Kind::Points, Coordinates::F64, dims, dims == 2);
         header.tree = tree_of(reader.header());
         header.points = reader.header().points;
-        SpEvents {
+        Ok(Box::new(SpEvents {
             reader,
             name: name.into(),
             cells: header.tree.map(FinalizedCells::new),
@@ -50,7 +52,7 @@ impl<S: SpReader> SpEvents<S> {
             totals: spmesh_stream::Totals::default(),
             dropped: 0,
             ended: false,
-        }
+        }))
     }
 
     /// The next event that is not dropped.
@@ -117,7 +119,7 @@ impl<S: SpReader> SpEvents<S> {
     }
 }
 
-impl<S: SpReader> EventSource for SpEvents<S> {
+impl<S: SpReader + Send + 'static> EventSource for SpEvents<S> {
     fn header(&self) -> &Header {
         &self.header
     }

@@ -1,11 +1,9 @@
 //! Atoms of molecular structures as points: PDB, mmCIF, XYZ.
 
-use std::io::Read;
 use std::sync::Arc;
 
-use crate::detect::Format;
 use crate::molecules::{Radii, Selected, Selection, read_structure_from};
-use crate::source::pass::{BATCH_POINTS, Pass, Stated};
+use crate::source::pass::{BATCH_POINTS, Content, Opening, Pass, Sort, Stated};
 use crate::source::placement::Placement;
 use crate::source::row_plan::{RowPlan, offers_of};
 use spmesh_base::error::{Error, Result};
@@ -18,30 +16,19 @@ const RADIUS_LEN: usize = size_of::<u32>();
 
 /// The positions of atoms, and their radii if they are wanted.
 #[derive(Debug, Clone)]
-pub(crate) struct Atoms {
+struct Atoms {
     points: Arc<[Point]>,
     /// In steps of 0.001 Å, little-endian; empty if they are not wanted.
     radii: Arc<[u8]>,
 }
 
-/// Reads the atoms that `tess3` takes by default: of the first model, and of alternate locations those of one
+/// Opens the atoms that `tess3` takes by default: of the first model, and of alternate locations those of one
 /// conformer. Notices say what is left out. With `radii`, atoms have an attribute.
 ///
 /// Memory: 24 bytes per atom, 4 for a radius, and 56 more while the file is read.
-pub(crate) fn read(
-    file: impl Read + 'static,
-    name: &str,
-    format: Format,
-    radii: Option<&Radii>,
-    notices: &mut Vec<String>,
-) -> Result<(Atoms, Stated)> {
-    let format = match format {
-        Format::Pdb => crate::molecules::Format::Pdb,
-        Format::Mmcif => crate::molecules::Format::Mmcif,
-        Format::Xyz => crate::molecules::Format::Xyz,
-        other => return Err(Error::usage(format!("{} holds no points of space", other.name()))),
-    };
-    let structure = read_structure_from(file, name, Some(format))?;
+pub(crate) fn open(file: &Opening, notices: &mut Vec<String>) -> Result<Content> {
+    let radii = file.options.radii.as_deref();
+    let structure = read_structure_from(file.origin.plain()?, file.name, Some(file.format))?;
     notices.extend(structure.warnings.iter().cloned());
     let selected = structure.select(&Selection::default())?;
     let points: Arc<[Point]> = selected.points().into();
@@ -62,7 +49,10 @@ pub(crate) fn read(
         points: Some(points.len() as u64),
         offers: offers_of(radii.map(|_| radius()).as_slice()).into(),
     };
-    Ok((Atoms { points, radii: found.into() }, stated))
+    let atoms = Atoms { points, radii: found.into() };
+    let content =
+        Content::new(stated, move |_, plan| Ok(Box::new(AtomPass { atoms: atoms.clone(), plan, next: 0 })));
+    Ok(Content { sort: Sort::Atoms, ..content })
 }
 
 /// The attribute of atoms with radii.
@@ -84,16 +74,10 @@ fn radii_of(selected: &Selected<'_>, radii: &Radii) -> Result<Vec<u8>> {
 }
 
 /// One pass over atoms.
-pub(crate) struct AtomPass {
+struct AtomPass {
     atoms: Atoms,
     plan: RowPlan,
     next: usize,
-}
-
-impl AtomPass {
-    pub(crate) fn new(atoms: &Atoms, plan: RowPlan) -> Self {
-        AtomPass { atoms: atoms.clone(), plan, next: 0 }
-    }
 }
 
 impl Pass for AtomPass {

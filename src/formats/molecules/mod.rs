@@ -14,7 +14,6 @@ pub(crate) mod classes;
 pub(crate) mod conformers;
 pub(crate) mod decimal;
 pub(crate) mod locations;
-pub(crate) mod meshes;
 pub(crate) mod mmcif;
 pub(crate) mod mmcif_tables;
 pub(crate) mod model;
@@ -48,37 +47,18 @@ use crate::source::origin::{open_file, open_stdin};
 use crate::text::lines::Lines;
 
 use crate::detect::{self, HEAD_LEN, TESS3, read_head};
+use crate::drivers::{AnyInput, Format};
 use crate::obj::read::open_obj;
 use crate::ply::read::open_ply;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::STRUCTURE_LINE_MAX;
 use spmesh_stream::Coordinates;
 
-/// Format of a structure or a file of points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// PDB: records of fixed columns.
-    Pdb,
-    /// PDBx/mmCIF: the `_atom_site` category of the first data block that has one.
-    Mmcif,
-    /// XYZ of chemistry: frames of a count, a comment, and lines `element x y z`.
-    Xyz,
-    /// Vertices of a PLY file.
-    Ply,
-    /// Vertices of an OBJ file.
-    Obj,
-    /// Vertices of an OFF file.
-    Off,
-    /// Points as `spfinalize` reads them: lines `x y z` and similar text, streams of this project, their text
-    /// twins, LAS, VTK; and the vertices of tetrahedral meshes of this project.
-    Points,
-}
-
 /// Reads the structure or the points in the file `path`; "-" is standard input. Without `format`, the content
-/// tells the format.
+/// tells the format; with [`Format::Text`], it tells which format of points without names it is.
 ///
-/// Cost: one pass. Memory: 56 bytes per atom, and 24 per point without names. Input of [`Format::Points`]
-/// that is not a regular file, and compressed LAS and VTK files, are copied to an unlinked temporary file
+/// Cost: one pass. Memory: 56 bytes per atom, and 24 per point without names. Points of such a
+/// format in an input that is not a regular file, and compressed LAS and VTK files, are copied to an unlinked temporary file
 /// first.
 ///
 /// # Errors
@@ -98,7 +78,7 @@ pub fn read_structure(path: &Path, format: Option<Format>) -> Result<Structure> 
 /// # Errors
 /// As [`read_structure`].
 pub fn read_structure_from(
-    input: impl Read + 'static,
+    input: impl Read + Send + 'static,
     name: &str,
     format: Option<Format>,
 ) -> Result<Structure> {
@@ -107,7 +87,7 @@ pub fn read_structure_from(
 
 /// Reads `input`. `path` is a regular file with the same content, if there is one.
 fn read(
-    input: impl Read + 'static,
+    input: impl Read + Send + 'static,
     name: &str,
     format: Option<Format>,
     path: Option<&Path>,
@@ -117,38 +97,30 @@ fn read(
     let head = read_head(&mut input).map_err(reading)?;
     let format = format.map_or_else(|| recognized(&head), |format| check(format, &head));
     let format = format.map_err(|e| e.of_input(name))?;
-    let is_mesh = format == Format::Points && meshes::is_mesh(&head);
-    let input = Cursor::new(head.clone()).chain(input);
-    if is_mesh {
-        return meshes::read(&head, input, name);
-    }
-    let mut builder = StructureBuilder::default();
+    let input: AnyInput = Box::new(Cursor::new(head.clone()).chain(input));
     let lines = |input| Lines::with_longest(input, name, STRUCTURE_LINE_MAX);
-    match format {
-        Format::Pdb => pdb::read(&mut lines(input), &mut builder),
-        Format::Mmcif => mmcif::read(lines(input), &mut builder),
-        Format::Xyz => xyz::read(&mut lines(input), &mut builder),
-        Format::Ply => return points::read_events(open_ply(input, name, 3)?, name),
-        Format::Obj => return points::read_events(open_obj(input, name), name),
-        Format::Off => {
-            return points::structure(off::read(&mut lines(input))?, Coordinates::F64, name, Vec::new());
-        }
-        Format::Points => {
-            return match path {
-                Some(path) => points::read_file(path),
-                None => points::read_copy(input, name),
-            };
-        }
+    if let Some(read) = format.row().atoms {
+        let mut builder = StructureBuilder::default();
+        read(lines(input), &mut builder).map_err(|e| e.of_input(name))?;
+        return builder.finish(name);
     }
-    .map_err(|e| e.of_input(name))?;
-    builder.finish(name)
+    match format {
+        Format::Ply => points::read_events(open_ply(input, name, 3)?, name),
+        Format::Obj | Format::Sma | Format::VertexLines => points::read_events(open_obj(input, name), name),
+        Format::Off => points::structure(off::read(&mut lines(input))?, Coordinates::F64, name, Vec::new()),
+        _ => match (points::mesh(&head), path) {
+            (Some(open), _) => points::read_events(open(input, name, 3)?, name),
+            (None, Some(path)) => points::read_file(path),
+            (None, None) => points::read_copy(input, name),
+        },
+    }
 }
 
 /// The format that the caller names, unless it is PDB and an input that may be endless starts without a record
 /// of it: lines that are no records would be skipped to the end.
 fn check(format: Format, head: &[u8]) -> Result<Format> {
     let is_seen = head.len() as u64 == HEAD_LEN;
-    if format == Format::Pdb && is_seen && !matches!(detect::detect(head), Ok(detect::Format::Pdb)) {
+    if format == Format::Pdb && is_seen && !matches!(detect::detect(head), Ok(Format::Pdb)) {
         return Err(Error::malformed(format!("no record of PDB in the first {HEAD_LEN} bytes")));
     }
     Ok(format)
@@ -159,13 +131,5 @@ fn recognized(head: &[u8]) -> Result<Format> {
     if head.trim_ascii().is_empty() {
         return Err(Error::malformed("empty: found no atom and no point"));
     }
-    Ok(match TESS3.detect(head)? {
-        detect::Format::Pdb => Format::Pdb,
-        detect::Format::Mmcif => Format::Mmcif,
-        detect::Format::Xyz => Format::Xyz,
-        detect::Format::Ply => Format::Ply,
-        detect::Format::Obj | detect::Format::Sma | detect::Format::VertexLines => Format::Obj,
-        detect::Format::Off => Format::Off,
-        _ => Format::Points,
-    })
+    TESS3.detect(head)
 }

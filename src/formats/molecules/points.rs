@@ -1,18 +1,18 @@
 //! Points without names: every input of `spfinalize`, and the vertices of meshes.
 
-use std::io::Read;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
-use crate::detect::TESS3;
+use crate::detect::{TESS3, detect};
+use crate::drivers::{Events, Format, OpenEvents};
 use crate::molecules::assemblies::Assemblies;
 use crate::molecules::model::{Model, Structure};
 use crate::molecules::names::Names;
-use crate::source::events::EventSource;
 use crate::source::input::Input;
 use crate::source::options::SourceOptions;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
-use spmesh_stream::{Coordinates, Event};
+use spmesh_stream::{Coordinates, Event, Kind, Totals};
 
 /// Reads the points of a file that can be read several times.
 pub(crate) fn read_file(path: &Path) -> Result<Structure> {
@@ -67,19 +67,33 @@ fn numbered(points: &[Point]) -> Option<usize> {
     points.iter().all(is_next).then(|| first as usize + points.len() - 1)
 }
 
-/// Reads the points or vertices of an input of events.
-pub(crate) fn read_events(mut source: Box<dyn EventSource>, name: &str) -> Result<Structure> {
+/// What opens an input that starts with `head` as events, if it is a tetrahedral mesh of this project.
+pub(crate) fn mesh(head: &[u8]) -> Option<OpenEvents> {
+    let format = detect(head).ok().filter(|format| matches!(format, Format::Stream | Format::Twin))?;
+    let open = format.events()?;
+    let events = open(Box::new(Cursor::new(head.to_vec())), "", 3).ok()?;
+    (events.header().kind == Kind::TetrahedralMesh).then_some(open)
+}
+
+/// Reads the points or vertices of an input of events, with labels if it has any.
+pub(crate) fn read_events(mut source: Events, name: &str) -> Result<Structure> {
     let coordinates = source.header().coordinates;
-    let mut all = Vec::new();
+    let (mut all, mut labels, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     while let Some(event) = source.next_event()? {
         match event {
             Event::Points(points) => all.extend(points),
             Event::Patch(patch) => all.extend(patch.new),
+            Event::Labels(next) => labels.extend(next),
+            Event::End(Totals { merged: merged @ 1.., .. }) => {
+                warnings.push(format!("{merged} coinciding points are one with others in the mesh"));
+            }
             _ => {}
         }
     }
     // Notices of events concern the finalization of vertices, which does not matter here.
-    structure(all, coordinates, name, Vec::new())
+    let mut structure = structure(all, coordinates, name, warnings)?;
+    structure.models[0].labels = labels;
+    Ok(structure)
 }
 
 /// A structure of points without names. Messages call it `name`.

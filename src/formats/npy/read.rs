@@ -8,7 +8,7 @@ use crate::npy::header::NpyHeader;
 use crate::raw::byte_order::ByteOrder;
 use crate::raw::sample::SampleType;
 use crate::source::origin::FileView;
-use crate::source::pass::{BATCH_POINTS, Pass, Stated};
+use crate::source::pass::{BATCH_POINTS, Content, Opening, Pass, Stated};
 use crate::source::placement::Placement;
 use crate::text::numbers::{NumberReader, Writing};
 use spmesh_base::error::{Error, Result};
@@ -18,9 +18,18 @@ use spmesh_stream::{Coordinates, Crs};
 /// Bytes that are read at once.
 const BUFFER_LEN: usize = 1 << 18;
 
+/// Opens an array of points.
+pub(crate) fn open(file: &Opening) -> Result<Content> {
+    let array = NpyArray::read(&file.origin.view()?)?;
+    let pass = array.clone();
+    Ok(Content::new(array.state(), move |file, _| {
+        Ok(Box::new(NpyPass::new(&file.origin.view()?, pass.clone())))
+    }))
+}
+
 /// An array of points: a row has the coordinates of one.
 #[derive(Debug, Clone)]
-pub(crate) struct NpyArray {
+struct NpyArray {
     sample: SampleType,
     order: ByteOrder,
     /// Whether all x come first, then all y.
@@ -33,7 +42,7 @@ pub(crate) struct NpyArray {
 
 impl NpyArray {
     /// Reads the header of a file, and checks that the file holds the whole array and nothing else.
-    pub(crate) fn read(view: &FileView) -> Result<NpyArray> {
+    fn read(view: &FileView) -> Result<NpyArray> {
         let NpyHeader { dtype, is_by_columns, shape, start } = NpyHeader::read(view)?;
         let (sample, order) = sample_of(&dtype)?;
         let [rows, columns] = match shape[..] {
@@ -61,7 +70,7 @@ impl NpyArray {
     }
 
     /// What the file states about itself.
-    pub(crate) fn state(&self) -> Stated {
+    fn state(&self) -> Stated {
         Stated {
             coordinates: Coordinates::F64,
             has_z: Some(self.columns == 3),
@@ -141,7 +150,7 @@ fn bad_shape(shape: &[u64]) -> Error {
 }
 
 /// One pass over an array. Memory: one batch.
-pub(crate) struct NpyPass {
+struct NpyPass {
     array: NpyArray,
     readers: Vec<NumberReader<BufReader<FileView>>>,
     /// Numbers of a row that each reader has.
@@ -153,7 +162,7 @@ pub(crate) struct NpyPass {
 }
 
 impl NpyPass {
-    pub(crate) fn new(view: &FileView, array: NpyArray) -> NpyPass {
+    fn new(view: &FileView, array: NpyArray) -> NpyPass {
         let (readers, share) = array.readers(view);
         NpyPass { array, numbers: vec![Vec::new(); readers.len()], readers, share, done: 0 }
     }

@@ -1,11 +1,10 @@
 //! Reads OBJ: `v` and `f` lines; other statements are skipped.
 
 use std::collections::VecDeque;
-use std::io::Read;
 
+use crate::drivers::{AnyInput, Events};
 use crate::historical::read_sma::{check_count, parse_count};
 use crate::lines::polygon::fan;
-use crate::source::events::EventSource;
 use crate::source::mesh_events::{Element, Elements, MeshEvents, resolve};
 use crate::source::patches::Order;
 use crate::source::vertices::{VertexPoints, Vertices};
@@ -42,15 +41,16 @@ const PASSED_OVER: [&[u8]; 17] = [
 /// Errors come with the events: [`spmesh_base::error::ErrorKind::Malformed`] (or I/O), with input and line.
 ///
 /// Memory: one patch, and the triangles that precede their vertices.
-pub fn open_obj<R: Read + 'static>(input: R, name: impl Into<String>) -> Box<dyn EventSource> {
+pub fn open_obj(input: AnyInput, name: &str) -> Events {
     let lines = Lines::new(input, name);
     Box::new(MeshEvents::new(ObjElements { lines, triangles: VecDeque::new() }))
 }
 
-/// Reads the vertices of OBJ as points with z. Messages call the input `name`.
-pub(crate) fn open_vertices<R: Read>(input: R, name: &str) -> VertexPoints<ObjVertices<R>> {
-    let header = Header::new(Kind::Points, Coordinates::F64, 3, false);
-    VertexPoints::new(ObjVertices { lines: Lines::new(input, name), vertices: 0, stated: None }, header)
+/// Reads the vertices of OBJ as points of `dims` dimensions. Messages call the input `name`.
+pub(crate) fn open_vertices(input: AnyInput, name: &str, dims: u8) -> Result<Events> {
+    let header = Header::new(Kind::Points, Coordinates::F64, dims, dims == 2);
+    let vertices = ObjVertices { lines: Lines::new(input, name), vertices: 0, stated: None };
+    Ok(Box::new(VertexPoints::new(vertices, header)))
 }
 
 /// The position of a vertex; colours and weights after it are ignored.
@@ -63,14 +63,14 @@ fn parse_vertex(line: &[u8]) -> Result<Point> {
 }
 
 /// The vertices of an OBJ or an SMA.
-pub(crate) struct ObjVertices<R> {
-    lines: Lines<R>,
+struct ObjVertices {
+    lines: Lines<AnyInput>,
     vertices: u64,
     /// The number of vertices that the comments of an SMA state.
     stated: Option<u64>,
 }
 
-impl<R: Read> Vertices for ObjVertices<R> {
+impl Vertices for ObjVertices {
     fn next_vertex(&mut self) -> Result<Option<Point>> {
         while let Some(line) = self.lines.next_line()? {
             let mut fields = fields(line);
@@ -99,13 +99,13 @@ impl<R: Read> Vertices for ObjVertices<R> {
     }
 }
 
-struct ObjElements<R> {
-    lines: Lines<R>,
+struct ObjElements {
+    lines: Lines<AnyInput>,
     /// Remaining triangles of the last polygon read.
     triangles: VecDeque<[u64; 3]>,
 }
 
-impl<R: Read> Elements for ObjElements<R> {
+impl Elements for ObjElements {
     fn order(&self) -> Order {
         Order::AtEnd
     }

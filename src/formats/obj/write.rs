@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::sink::rows::Rows;
 use crate::sink::world::{world_bounds, world_of, write_numbers};
-use crate::sink::{EventSink, expect_kind, lost_of_header, write_error};
+use crate::sink::{EventSink, SinkOptions, expect_kind, lost_of_header, write_error};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::attributes::{Attribute, Attributes, NumberType};
 use spmesh_stream::model::bounds::{Bounds, Point};
@@ -55,24 +55,20 @@ impl Colour {
 }
 
 impl<W: Write> ObjSink<W> {
-    /// Starts the output.
+    /// Starts the output. With a local origin, coordinates are differences from an origin near the middle of the
+    /// box of the stream, so that programs that compute in f32 lose nothing. A comment `# origin X Y Z` states it.
     ///
     /// # Errors
-    /// Usage, if OBJ does not hold the kind of stream; or if writing fails.
-    pub fn new(mut output: W, header: &Header) -> Result<Self> {
+    /// Usage, if OBJ does not hold the kind of stream, or the header does not state the box that a local origin
+    /// needs; or if writing fails.
+    pub fn new(mut output: W, header: &Header, options: &SinkOptions) -> Result<Self> {
         expect_kind(header, "OBJ", &[Kind::Points, Kind::TriangleMesh])?;
         output.write_all(b"# OBJ written by spmesh\n").map_err(write_error)?;
         let colour = Colour::of_points(&header.attributes);
-        Ok(ObjSink { output, header: header.clone(), colour, origin: [0.0; 3] })
-    }
-
-    /// Starts an output whose coordinates are differences from an origin near the middle of the box of the stream,
-    /// so that programs that compute in f32 lose nothing. A comment `# origin X Y Z` states it.
-    ///
-    /// # Errors
-    /// As [`ObjSink::new`]; usage, if the header does not state the box.
-    pub fn with_local_origin(output: W, header: &Header) -> Result<Self> {
-        let mut sink = ObjSink::new(output, header)?;
+        let mut sink = ObjSink { output, header: header.clone(), colour, origin: [0.0; 3] };
+        if !options.local_origin {
+            return Ok(sink);
+        }
         let bounds = header.bounds.ok_or_else(|| {
             Error::usage("--local-origin needs the bounds of the stream, and its header does not state them")
         })?;

@@ -3,11 +3,11 @@
 use std::collections::VecDeque;
 use std::io::Read;
 
+use crate::drivers::{AnyInput, Events};
 use crate::lines::polygon::fan;
 use crate::ply::header::{Encoding, PlyHeader, Property, Role, Sort};
 use crate::raw::byte_order::ByteOrder;
 use crate::raw::sample::SampleType;
-use crate::source::events::EventSource;
 use crate::source::mesh_events::{Element, Elements, MeshEvents};
 use crate::source::patches::Order;
 use crate::source::vertices::{VertexPoints, Vertices};
@@ -26,39 +26,36 @@ use spmesh_stream::{Coordinates, Header, Kind};
 /// # Errors
 /// If the header is damaged or states no vertices with x, y and z; usage, if it states triangle strips. Every
 /// later error is [`spmesh_base::error::ErrorKind::Malformed`] (or I/O) and names input and place.
-pub fn open_ply<R: Read + 'static>(
-    input: R,
-    name: impl Into<String>,
-    dims: u8,
-) -> Result<Box<dyn EventSource>> {
+pub fn open_ply(input: AnyInput, name: &str, dims: u8) -> Result<Events> {
     let rows = Rows::open(input, name)?;
     if rows.header.rows(Sort::Face) > 0 {
         return Ok(Box::new(MeshEvents::new(PlyElements { rows, triangles: VecDeque::new() })));
     }
-    Ok(Box::new(points(rows, dims)))
+    Ok(points(rows, dims))
 }
 
-/// Reads the vertices of PLY as points with z, and ignores everything else. Messages call the input `name`.
-pub(crate) fn open_vertices<R: Read>(input: R, name: &str) -> Result<VertexPoints<PlyVertices<R>>> {
-    Ok(points(Rows::open(input, name)?, 3))
+/// Reads the vertices of PLY as points of `dims` dimensions, and ignores everything else. Messages call the
+/// input `name`.
+pub(crate) fn open_vertices(input: AnyInput, name: &str, dims: u8) -> Result<Events> {
+    Ok(points(Rows::open(input, name)?, dims))
 }
 
-fn points<R: Read>(rows: Rows<R>, dims: u8) -> VertexPoints<PlyVertices<R>> {
+fn points(rows: Rows<AnyInput>, dims: u8) -> Events {
     let mut header = Header::new(Kind::Points, Coordinates::F64, dims, dims == 2);
     header.points = Some(rows.header.rows(Sort::Vertex));
     // Properties that cannot be attributes are skipped.
     header.attributes = rows.header.attributes().unwrap_or_default();
     let kept = if header.attributes.is_empty() { Kept::None } else { Kept::OfVertices };
     let rows = Rows { kept, ..rows };
-    VertexPoints::new(PlyVertices { rows }, header)
+    Box::new(VertexPoints::new(PlyVertices { rows }, header))
 }
 
 /// The vertices of a PLY.
-pub(crate) struct PlyVertices<R: Read> {
-    rows: Rows<R>,
+struct PlyVertices {
+    rows: Rows<AnyInput>,
 }
 
-impl<R: Read> Vertices for PlyVertices<R> {
+impl Vertices for PlyVertices {
     fn next_vertex(&mut self) -> Result<Option<Point>> {
         loop {
             match self.rows.next()? {
@@ -78,13 +75,13 @@ impl<R: Read> Vertices for PlyVertices<R> {
     }
 }
 
-struct PlyElements<R: Read> {
-    rows: Rows<R>,
+struct PlyElements {
+    rows: Rows<AnyInput>,
     /// Remaining triangles of the last polygon read.
     triangles: VecDeque<[u64; 3]>,
 }
 
-impl<R: Read> Elements for PlyElements<R> {
+impl Elements for PlyElements {
     fn order(&self) -> Order {
         Order::AtEnd
     }

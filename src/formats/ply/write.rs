@@ -1,25 +1,15 @@
 //! Writes PLY: doubles for the vertices, lists of three indices for the faces.
 
 use std::io::Write;
-use std::path::Path;
 
 use crate::ply::properties::{self as properties, Properties};
 use crate::sink::rows::Rows;
 use crate::sink::spool::Spool;
 use crate::sink::world::world_of;
-use crate::sink::{EventSink, expect_kind, lost_of_attributes, lost_of_header, write_error};
+use crate::sink::{EventSink, SinkOptions, expect_kind, lost_of_attributes, lost_of_header, write_error};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind, Patch, Totals};
-
-/// How the elements are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PlyEncoding {
-    /// `binary_little_endian`
-    Binary,
-    /// `ascii`
-    Ascii,
-}
 
 /// Writes a triangle mesh or points as PLY.
 ///
@@ -28,22 +18,24 @@ pub enum PlyEncoding {
 pub struct PlySink<W> {
     output: W,
     header: Header,
-    encoding: PlyEncoding,
+    is_text: bool,
     properties: Properties,
     vertices: Spool,
     faces: Spool,
 }
 
 impl<W: Write> PlySink<W> {
-    /// Opens the temporary files, in `temp_dir` or the system's folder for them.
+    /// Opens the temporary files.
     ///
     /// # Errors
     /// Usage, if PLY does not hold the kind of stream; I/O, if there is no room for temporary files.
-    pub fn new(output: W, header: &Header, encoding: PlyEncoding, temp_dir: Option<&Path>) -> Result<Self> {
+    pub fn new(output: W, header: &Header, options: &SinkOptions) -> Result<Self> {
+        let temp_dir = options.temp_dir.as_deref();
         expect_kind(header, "PLY", &[Kind::Points, Kind::TriangleMesh])?;
         let (vertices, faces) = (Spool::new(temp_dir)?, Spool::new(temp_dir)?);
         let properties = Properties::of(&header.attributes);
-        Ok(PlySink { output, header: header.clone(), encoding, properties, vertices, faces })
+        let (header, is_text) = (header.clone(), options.ascii);
+        Ok(PlySink { output, header, is_text, properties, vertices, faces })
     }
 
     fn points(&mut self, points: &[Point], rows: &[u8]) -> Result<()> {
@@ -54,13 +46,13 @@ impl<W: Write> PlySink<W> {
     fn vertex(&mut self, point: Point, row: &[u8]) -> Result<()> {
         let [x, y, z] = world_of(&self.header, point);
         let (attributes, vertices) = (&self.header.attributes, &mut self.vertices);
-        match self.encoding {
-            PlyEncoding::Ascii => {
+        match self.is_text {
+            true => {
                 vertices.text(format_args!("{x} {y} {z}"))?;
                 properties::text(attributes, row, |number| vertices.text(format_args!(" {number}")))?;
                 vertices.text(format_args!("\n"))
             }
-            PlyEncoding::Binary => {
+            false => {
                 [x, y, z].iter().try_for_each(|x| vertices.bytes(&x.to_le_bytes()))?;
                 properties::bytes(attributes, row, |bytes| vertices.bytes(bytes))
             }
@@ -74,11 +66,9 @@ impl<W: Write> PlySink<W> {
         }
         for triangle in patch.triangles() {
             let ids = triangle.map(|local| patch.id(local) as i32);
-            match self.encoding {
-                PlyEncoding::Ascii => {
-                    self.faces.text(format_args!("3 {} {} {}\n", ids[0], ids[1], ids[2]))?
-                }
-                PlyEncoding::Binary => {
+            match self.is_text {
+                true => self.faces.text(format_args!("3 {} {} {}\n", ids[0], ids[1], ids[2]))?,
+                false => {
                     let mut face = [3; 13];
                     for (bytes, id) in face[1..].chunks_exact_mut(4).zip(ids) {
                         bytes.copy_from_slice(&id.to_le_bytes());
@@ -91,10 +81,7 @@ impl<W: Write> PlySink<W> {
     }
 
     fn end(&mut self, totals: &Totals) -> Result<()> {
-        let format = match self.encoding {
-            PlyEncoding::Ascii => "ascii",
-            PlyEncoding::Binary => "binary_little_endian",
-        };
+        let format = if self.is_text { "ascii" } else { "binary_little_endian" };
         let is_mesh = self.header.kind == Kind::TriangleMesh;
         let vertices = if is_mesh { totals.vertices } else { totals.points };
         let mut header = format!("ply\nformat {format} 1.0\ncomment spmesh\nelement vertex {vertices}\n");

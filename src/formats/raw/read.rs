@@ -5,7 +5,8 @@ use std::path::Path;
 use crate::raw::number::RawType;
 use crate::source::cut::Cut;
 use crate::source::origin::FileView;
-use crate::source::point_arrays::{Place, PointArray};
+use crate::source::pass::Content;
+use crate::source::point_arrays::{self, Place, PointArray};
 use crate::text::numbers::Writing;
 use spmesh_base::error::{Error, Result};
 
@@ -14,8 +15,8 @@ pub(crate) fn is_compressed(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"))
 }
 
-/// The whole file as an array; without the last bytes if it ends within a point and is to be salvaged.
-pub(crate) fn open(view: &FileView, kind: RawType, is_salvaged: bool) -> Result<(PointArray, Option<Cut>)> {
+/// The whole file as an array of points; without the last bytes if it ends within a point and is to be salvaged.
+pub(crate) fn open(view: &FileView, kind: RawType, is_salvaged: bool) -> Result<Content> {
     let point_len = 3 * kind.sample.len() as u64;
     let (len, points) = (view.len(), view.len() / point_len);
     if len == 0 {
@@ -40,5 +41,6 @@ pub(crate) fn open(view: &FileView, kind: RawType, is_salvaged: bool) -> Result<
         is_exact: true,
         data: Vec::new(),
     };
-    Ok((array, is_cut.then_some(Cut { read: points, lost: None })))
+    let cut = is_cut.then_some(Cut { read: points, lost: None });
+    Ok(Content { cut, ..point_arrays::content(vec![array]) })
 }

@@ -21,8 +21,8 @@ type Facet = [(u64, Point); 3];
 /// of these facets, renumbered in the order of their ids in the stream.
 ///
 /// Memory: the live vertices and the facets met once so far, which at the end are those of the hull.
-pub struct HullSink<S> {
-    surface: S,
+pub(crate) struct HullSink<'o> {
+    surface: Box<dyn EventSink + 'o>,
     /// Name of the surface's format in notices.
     format: &'static str,
     live: LiveVertices<Point>,
@@ -33,10 +33,10 @@ pub struct HullSink<S> {
     lost: Option<String>,
 }
 
-impl<S: EventSink> HullSink<S> {
+impl<'o> HullSink<'o> {
     /// A sink of the tetrahedral mesh that `header` describes in front of `surface`, which was opened with
     /// [`surface_header`].
-    pub fn new(surface: S, format: &'static str, header: &Header) -> Self {
+    pub(crate) fn new(surface: Box<dyn EventSink + 'o>, format: &'static str, header: &Header) -> Self {
         let lost = lost_attributes(header, &format!("{format} of a hull"));
         HullSink { surface, format, live: LiveVertices::new(), open: HashMap::new(), facets: 0, lost }
     }
@@ -81,7 +81,7 @@ pub fn surface_header(header: &Header) -> Header {
     Header { crs: header.crs.clone(), ..Header::new(Kind::TriangleMesh, header.coordinates, 2, true) }
 }
 
-impl<S: EventSink> EventSink for HullSink<S> {
+impl EventSink for HullSink<'_> {
     fn event(&mut self, event: &Event, _rows: &[u8]) -> Result<()> {
         match event {
             Event::Patch(patch) => self.patch(patch),

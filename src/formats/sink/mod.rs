@@ -11,29 +11,34 @@ pub(crate) mod spool;
 pub(crate) mod triangles;
 pub(crate) mod world;
 
-pub use crate::cad::dxf::DxfSink;
-pub use crate::cad::landxml::LandXmlSink;
-pub use crate::cad::medit::MeditSink;
-pub use crate::historical::write_sma::SmaSink;
-pub use crate::historical::write_smb::SmbSink;
-pub use crate::historical::write_spa::SpaSink;
-pub use crate::historical::write_spb::SpbSink;
-pub use crate::lines::write_geojson::GeoJsonSink;
 pub use crate::npy::sparse_matrix::{MatrixFormat, SparseRows};
 pub use crate::npy::write::{NPY_F64, NpyRows, npy_header};
-pub use crate::obj::write::ObjSink;
-pub use crate::ply::write::{PlyEncoding, PlySink};
 pub use crate::tables::{Column, ColumnKind, TableFormat, TableSink};
 pub use crate::twin::write::TwinSink;
 pub use crate::volumes::write::write_volume;
-pub use crate::vtk::vtu::VtuSink;
-pub use hull::{HullSink, surface_header};
+pub(crate) use hull::HullSink;
+pub use hull::surface_header;
 pub use mesh::{Mesh, Shape, Table};
 pub use spm::SpmSink;
+
+use std::path::PathBuf;
 
 use crate::historical::write_cells::HistoricalCells;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::{Coordinates, Crs, Event, Header, Kind};
+
+/// How a format is written.
+#[derive(Debug, Clone, Default)]
+pub struct SinkOptions {
+    /// Write PLY as text.
+    pub ascii: bool,
+    /// Write coordinates of OBJ as differences from an origin in the middle.
+    pub local_origin: bool,
+    /// Compress the blocks of a stream.
+    pub compress: bool,
+    /// Where spools go; the system's folder for temporary files if `None`.
+    pub temp_dir: Option<PathBuf>,
+}
 
 /// An output that takes the events of a stream, whatever its format.
 pub trait EventSink {

@@ -87,7 +87,7 @@ impl InputReader {
         if let Some(source) = self.sources.get(self.next) {
             let plan = self.plans[self.next].clone();
             let pass = source.pass(&self.options, plan).map_err(|e| e.of_input(&source.name))?;
-            let Stated { coordinates, bounds, .. } = source.stated;
+            let Stated { coordinates, bounds, .. } = source.content.stated;
             let placement = Placement::new(&coordinates, &self.coordinates, &self.options);
             self.current = Some((pass, placement.within(bounds)));
             self.counts.push(0);

@@ -37,7 +37,6 @@ pub use crate::historical::read_smb::open_smb;
 pub use crate::historical::read_spa::SpaReader;
 pub use crate::historical::read_spb::SpbReader;
 pub use crate::historical::sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpReader};
-pub use crate::historical::sp_events::SpEvents;
 pub use crate::lines::mask::Mask;
 pub use crate::lines::polylines::{Polyline, PolylineKind, read_polylines};
 pub use crate::lines::rings::{Polygon, read_polygons};

@@ -1,24 +1,21 @@
 //! Opens an input as points of any source, or as a stream of a kind that the program prefers.
 
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use crate::detect::{Format, read_head};
-use crate::source::checked::Checked;
-use crate::source::events::EventSource;
+use crate::drivers::Events;
 use crate::source::input::Input;
 use crate::source::options::SourceOptions;
 use crate::source::origin::{Origin, name_of};
-use crate::twin::read::TwinSource;
 use spmesh_base::error::{Error, Result};
-use spmesh_stream::{Kind, StreamReader};
+use spmesh_stream::Kind;
 
 /// An opened input.
 pub enum Opened {
     /// Points of any source.
     Points(Box<Input>),
     /// A stream of a preferred kind, or its text twin.
-    Events(Box<dyn EventSource>),
+    Events(Events),
 }
 
 /// Opens `paths` ("-" is standard input) as points in the plane, or one path as a triangle mesh if it is one.
@@ -58,12 +55,9 @@ fn open(path: &Path, options: &SourceOptions, is_wanted: impl Fn(Kind) -> bool) 
 }
 
 /// The events of the input; `None` if it is neither a stream nor the text twin of one.
-fn open_events(origin: &Origin, name: &str, options: &SourceOptions) -> Result<Option<Box<dyn EventSource>>> {
+fn open_events(origin: &Origin, name: &str, options: &SourceOptions) -> Result<Option<Events>> {
     let head = read_head(&mut origin.plain()?).map_err(|e| Error::io("reading", e))?;
-    let events = || origin.plain().map(|plain| BufReader::with_capacity(1 << 18, plain));
-    Ok(match options.reader.detect(&head)? {
-        Format::Stream => Some(Box::new(Checked::new(StreamReader::new(events()?, name)?))),
-        Format::Twin => Some(Box::new(Checked::new(TwinSource::new(origin.plain()?, name)?))),
-        _ => None,
-    })
+    let format = options.reader.detect(&head)?;
+    let open = format.events().filter(|_| matches!(format, Format::Stream | Format::Twin));
+    open.map(|open| open(Box::new(origin.plain()?), name, options.dims)).transpose()
 }

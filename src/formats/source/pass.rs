@@ -1,10 +1,14 @@
 //! The interface of all formats of an input: what a file states, and a pass over its points.
 
+use std::fmt;
 use std::sync::Arc;
 
+use crate::drivers::Format;
 use crate::source::cut::Cut;
+use crate::source::options::SourceOptions;
+use crate::source::origin::Origin;
 use crate::source::placement::Placement;
-use crate::source::row_plan::Offer;
+use crate::source::row_plan::{Offer, RowPlan};
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Crs};
@@ -46,4 +50,52 @@ pub(crate) struct Stated {
     pub(crate) points: Option<u64>,
     /// What points can carry beside their coordinates.
     pub(crate) offers: Arc<Vec<Offer>>,
+}
+
+/// A file that is read, and how.
+pub(crate) struct Opening<'f> {
+    pub(crate) origin: &'f Origin,
+    /// Its name in messages.
+    pub(crate) name: &'f str,
+    pub(crate) format: Format,
+    pub(crate) options: &'f SourceOptions,
+}
+
+/// What the points of a file are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sort {
+    Plain,
+    /// Records of LAS of this format.
+    Records(u8),
+    Atoms,
+}
+
+/// Starts a pass over the points of a file, with these rows.
+type StartPass = dyn Fn(&Opening, RowPlan) -> Result<Box<dyn Pass>> + Send + Sync;
+
+/// A file whose header has been read.
+pub(crate) struct Content {
+    pub(crate) stated: Stated,
+    pub(crate) sort: Sort,
+    /// Whether a pass takes more than copying bytes.
+    pub(crate) is_costly: bool,
+    /// What is left of the file, if that is known to be cut off.
+    pub(crate) cut: Option<Cut>,
+    pub(crate) pass: Box<StartPass>,
+}
+
+impl Content {
+    /// Points of which passes are cheap.
+    pub(crate) fn new(
+        stated: Stated,
+        pass: impl Fn(&Opening, RowPlan) -> Result<Box<dyn Pass>> + Send + Sync + 'static,
+    ) -> Content {
+        Content { stated, sort: Sort::Plain, is_costly: false, cut: None, pass: Box::new(pass) }
+    }
+}
+
+impl fmt::Debug for Content {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Content").field("stated", &self.stated).finish_non_exhaustive()
+    }
 }

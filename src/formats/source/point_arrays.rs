@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::raw::sample::SampleType;
 use crate::source::origin::FileView;
-use crate::source::pass::{BATCH_POINTS, Pass, Stated};
+use crate::source::pass::{BATCH_POINTS, Content, Pass, Stated};
 use crate::source::placement::Placement;
 use crate::source::row_plan::{RowPlan, offers_of};
 use crate::text::numbers::{NumberReader, Writing};
@@ -87,21 +87,22 @@ impl PointArray {
     }
 }
 
-/// Whether reading `arrays` takes more than copying bytes.
-pub(crate) fn are_costly(arrays: &[PointArray]) -> bool {
-    arrays.iter().any(PointArray::is_costly)
-}
-
-/// What a file with `arrays` states about itself.
-pub(crate) fn state(arrays: &[PointArray]) -> Stated {
-    Stated {
+/// The points of a file with these arrays.
+pub(crate) fn content(arrays: Vec<PointArray>) -> Content {
+    let is_costly = arrays.iter().any(PointArray::is_costly);
+    let stated = Stated {
         coordinates: Coordinates::F64,
         has_z: Some(true),
         crs: Crs::Unknown.into(),
         bounds: None,
         points: arrays.iter().try_fold(0u64, |sum, array| sum.checked_add(array.points)),
-        offers: offers_of(&attributes_of(arrays)).into(),
-    }
+        offers: offers_of(&attributes_of(&arrays)).into(),
+    };
+    let arrays: Arc<[PointArray]> = arrays.into();
+    let content = Content::new(stated, move |file, plan| {
+        Ok(Box::new(ArrayPass::new(file.origin.view()?, Arc::clone(&arrays), plan)))
+    });
+    Content { is_costly, ..content }
 }
 
 /// The attributes that all arrays with points have, in the order of the first.
@@ -145,7 +146,7 @@ pub(crate) struct ArrayPass {
 }
 
 impl ArrayPass {
-    pub(crate) fn new(view: FileView, arrays: Arc<[PointArray]>, plan: RowPlan) -> Self {
+    fn new(view: FileView, arrays: Arc<[PointArray]>, plan: RowPlan) -> Self {
         let attributes = if plan.is_empty() { Vec::new() } else { attributes_of(&arrays) };
         let mut record_len = 0;
         let field = |attribute: &Attribute| {

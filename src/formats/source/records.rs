@@ -1,21 +1,45 @@
 //! Points from the records of LAS files, compressed or not.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use laz::DecompressionSelection;
 
 use crate::las::header::LasHeader;
 use crate::las::index;
 use crate::las::laz::LazRecords;
+use crate::source::cut::Cut;
 use crate::source::options::SourceOptions;
 use crate::source::origin::FileView;
-use crate::source::pass::{BATCH_POINTS, Pass};
+use crate::source::pass::{BATCH_POINTS, Content, Opening, Pass, Sort, Stated};
 use crate::source::placement::Placement;
 use crate::source::record_filter::RecordFilter;
 use crate::source::record_reader::RecordReader;
 use crate::source::row_plan::RowPlan;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
+
+/// Opens a LAS, LAZ or COPC file.
+pub(crate) fn open(file: &Opening, notices: &mut Vec<String>) -> Result<Content> {
+    let mut header = LasHeader::read(&file.origin.view()?, file.options.salvage, notices)?;
+    if let Some(reach) = &file.options.reach {
+        header.parts = index::find_parts(file.origin, &header, reach, notices)?;
+    }
+    let stated = Stated {
+        coordinates: header.coordinates,
+        has_z: Some(true),
+        crs: Arc::new(header.crs.clone()),
+        bounds: header.bounds,
+        points: Some(header.points),
+        offers: Arc::new(header.offers.clone()),
+    };
+    let (sort, is_costly) = (Sort::Records(header.format), header.laz.is_some());
+    let cut = (header.lost > 0).then_some(Cut { read: header.points, lost: Some(header.lost) });
+    let content = Content::new(stated, move |file, plan| {
+        Ok(Box::new(RecordPass::new(file.origin.view()?, &header, file.options, plan)?))
+    });
+    Ok(Content { sort, is_costly, cut, ..content })
+}
 
 /// Bytes of records read at once from an uncompressed file.
 const READ_LEN: usize = 1 << 18;

@@ -1,45 +1,25 @@
 //! Points from streams of this project and their text twins, whose cell tags are checked, but not used; and
 //! the vertices of PLY and OBJ.
 
-use std::io::BufReader;
-
-use crate::obj::read::{self as obj, ObjVertices};
-use crate::ply::read::{self as ply, PlyVertices};
-use crate::source::checked::Checked;
-use crate::source::events::EventSource;
-use crate::source::origin::Bytes;
-use crate::source::pass::{Pass, Stated};
+use crate::drivers::{Events, OpenEvents};
+use crate::source::pass::{Content, Opening, Pass, Stated};
 use crate::source::placement::Placement;
 use crate::source::row_plan::{RowPlan, offers_of};
-use crate::source::vertices::VertexPoints;
-use crate::twin::read::TwinSource;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::attributes::Attribute;
 use spmesh_stream::model::bounds::Point;
-use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader, Weighted};
+use spmesh_stream::{Coordinates, Event, Header, Kind, Weighted};
 
-/// Reads the header of a stream.
-pub(crate) fn state(file: Bytes, name: &str) -> Result<Stated> {
-    state_of(&StreamReader::new(BufReader::new(file), name)?)
+/// Opens a file of points whose events `open` reads.
+pub(crate) fn open(file: &Opening, open: OpenEvents, is_costly: bool) -> Result<Content> {
+    let events = move |file: &Opening| open(Box::new(file.origin.plain()?), file.name, 3);
+    let stated = state_of(events(file)?.header())?;
+    let content =
+        Content::new(stated, move |file, plan| Ok(Box::new(EventPass { source: events(file)?, plan })));
+    Ok(Content { is_costly, ..content })
 }
 
-/// Reads the header of a text twin.
-pub(crate) fn state_of_twin(file: Bytes, name: &str) -> Result<Stated> {
-    state_of(&TwinSource::new(file, name)?)
-}
-
-/// Reads the header of a PLY, whose vertices are the points.
-pub(crate) fn state_of_ply(file: Bytes, name: &str) -> Result<Stated> {
-    state_of(&ply::open_vertices(file, name)?)
-}
-
-/// What is known of an OBJ, whose vertices are the points, before it is read.
-pub(crate) fn state_of_obj(file: Bytes, name: &str) -> Result<Stated> {
-    state_of(&obj::open_vertices(file, name))
-}
-
-fn state_of(source: &impl EventSource) -> Result<Stated> {
-    let header = source.header();
+fn state_of(header: &Header) -> Result<Stated> {
     if header.kind != Kind::Points {
         return Err(Error::usage(format!("is a stream of kind {}, expected points", header.kind.name())));
     }
@@ -65,54 +45,12 @@ fn attributes_of(header: &Header) -> Vec<Attribute> {
 }
 
 /// One pass over the points of a stream, of a text twin, or of a mesh.
-pub(crate) struct EventPass<S> {
-    source: S,
+struct EventPass {
+    source: Events,
     plan: RowPlan,
-    row_len: usize,
 }
 
-impl<S: EventSource> EventPass<S> {
-    /// A pass over `source` with the rows of `plan`.
-    fn new(source: S, plan: RowPlan) -> Self {
-        let row_len = source.header().attributes.row_len();
-        EventPass { source, plan, row_len }
-    }
-}
-
-/// Starts a pass over a stream.
-pub(crate) fn pass(
-    file: Bytes,
-    name: &str,
-    plan: RowPlan,
-) -> Result<EventPass<Checked<StreamReader<BufReader<Bytes>>>>> {
-    let reader = StreamReader::new(BufReader::with_capacity(1 << 18, file), name)?;
-    Ok(EventPass::new(Checked::new(reader), plan))
-}
-
-/// Starts a pass over a text twin.
-pub(crate) fn pass_of_twin(
-    file: Bytes,
-    name: &str,
-    plan: RowPlan,
-) -> Result<EventPass<Checked<TwinSource<Bytes>>>> {
-    Ok(EventPass::new(Checked::new(TwinSource::new(file, name)?), plan))
-}
-
-/// Starts a pass over the vertices of a PLY.
-pub(crate) fn pass_of_ply(
-    file: Bytes,
-    name: &str,
-    plan: RowPlan,
-) -> Result<EventPass<VertexPoints<PlyVertices<Bytes>>>> {
-    Ok(EventPass::new(ply::open_vertices(file, name)?, plan))
-}
-
-/// Starts a pass over the vertices of an OBJ.
-pub(crate) fn pass_of_obj(file: Bytes, name: &str) -> EventPass<VertexPoints<ObjVertices<Bytes>>> {
-    EventPass::new(obj::open_vertices(file, name), RowPlan::default())
-}
-
-impl<S: EventSource + Send> Pass for EventPass<S> {
+impl Pass for EventPass {
     fn next_batch(
         &mut self,
         placement: &mut Placement,
@@ -121,10 +59,11 @@ impl<S: EventSource + Send> Pass for EventPass<S> {
     ) -> Result<bool> {
         while let Some(event) = self.source.next_event()? {
             if let Event::Points(points) = event {
+                let row_len = self.source.header().attributes.row_len();
                 for (number, point) in points.into_iter().enumerate() {
                     let is_put = placement.put(point, batch).map_err(|error| self.source.locate(error))?;
                     if is_put && !self.plan.is_empty() {
-                        let row = &self.source.rows()[number * self.row_len..][..self.row_len];
+                        let row = &self.source.rows()[number * row_len..][..row_len];
                         self.plan.append(row, rows);
                     }
                 }

@@ -2,10 +2,10 @@
 
 use crate::source::cut::Cut;
 use crate::source::origin::Bytes;
-use crate::source::pass::{BATCH_POINTS, Pass};
+use crate::source::pass::{BATCH_POINTS, Content, Opening, Pass};
 use crate::source::placement::Placement;
 use crate::source::row_plan::RowPlan;
-use crate::text::columns::Columns;
+use crate::text::columns::{self, Columns};
 use crate::text::lines::{Lines, number, quote};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
@@ -56,8 +56,18 @@ pub(crate) fn fields(line: &[u8], delimiter: Delimiter) -> impl Iterator<Item = 
     })
 }
 
+/// Opens a text of points.
+pub(crate) fn open(file: &Opening, notices: &mut Vec<String>) -> Result<Content> {
+    let (columns, stated) = columns::state(file.origin.plain()?, &file.options.text, notices)?;
+    let content = Content::new(stated, move |file, plan| {
+        let (bytes, columns) = (file.origin.plain()?, columns.clone());
+        Ok(Box::new(TextPass::new(bytes, columns, plan, file.options.salvage)))
+    });
+    Ok(Content { is_costly: true, ..content })
+}
+
 /// One pass over the lines of a file.
-pub(crate) struct TextPass {
+struct TextPass {
     lines: Lines<Bytes>,
     columns: Columns,
     plan: RowPlan,

@@ -10,7 +10,6 @@ pub(crate) mod data;
 pub(crate) mod lattice;
 pub(crate) mod nifti;
 pub(crate) mod nrrd;
-pub(crate) mod opening;
 pub(crate) mod orientation;
 pub(crate) mod raw;
 pub(crate) mod sample;
@@ -22,7 +21,7 @@ pub(crate) mod volume;
 pub(crate) mod world;
 pub(crate) mod write;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 pub use condition::Condition;
 pub use orientation::Orientation;
@@ -32,7 +31,7 @@ pub use sample::Share;
 use self::budget::Budget;
 use self::lattice::Lattice;
 use self::scan::Supply;
-use crate::detect::DD4;
+use crate::detect::{DD4, read_head};
 use crate::source::origin::{Admitted, Origin, name_of};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::cells4::Point4;
@@ -138,15 +137,23 @@ pub fn read_points4(request: &Request) -> Result<Selected4> {
             let name = name_of(path);
             let path = (!is_stdin).then_some(path.as_path());
             let supply = match &request.from {
-                From4::Raw(_, layout) => {
-                    raw::open(origin, path, layout).map(|volume| Supply::Volume(Box::new(volume)))
-                }
-                _ => opening::open(origin, path, &mut warnings),
+                From4::Raw(_, layout) => raw::open(origin, path, layout).map(Supply::of_volume),
+                _ => open(origin, path, &mut warnings),
             };
             (supply.map_err(|e| e.of_input(&name))?, name)
         }
     };
     read(supply, request, name, warnings)
+}
+
+/// Recognizes the format of `origin` and reads its header; `path` is the file's path, if it has one.
+fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<String>) -> Result<Supply> {
+    let head = read_head(&mut origin.plain()?).map_err(|e| Error::io("reading", e))?;
+    if head.is_empty() {
+        return Err(Error::malformed("found no point"));
+    }
+    let open = DD4.detect(&head)?.row().sites.expect("the tool reads only what has sites");
+    open(origin, path, &head, warnings)
 }
 
 fn read(mut supply: Supply, request: &Request, name: String, warnings: Vec<String>) -> Result<Selected4> {

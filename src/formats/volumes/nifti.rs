@@ -23,7 +23,8 @@ const HEADER2_LEN: u32 = 540;
 const MAGIC_AT: usize = 344;
 
 /// Reads the header of a volume.
-pub(crate) fn open(origin: Origin, head: &[u8], is_gzip: bool, warnings: &mut Vec<String>) -> Result<Volume> {
+pub(crate) fn open(origin: Origin, head: &[u8], warnings: &mut Vec<String>) -> Result<Volume> {
+    let is_gzip = origin.plain()?.is_compressed();
     let order = if head[0] == 0 { ByteOrder::Big } else { ByteOrder::Little };
     let header = Header { bytes: head, order };
     if order.u32(head) == HEADER2_LEN {

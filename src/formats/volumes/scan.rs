@@ -18,6 +18,10 @@ pub(crate) enum Supply {
 }
 
 impl Supply {
+    pub(crate) fn of_volume(volume: Volume) -> Supply {
+        Supply::Volume(Box::new(volume))
+    }
+
     /// Passes every point, with its value if there are values, to `visit`. Returns a warning if the input
     /// holds more than the points.
     pub(crate) fn scan(

@@ -9,9 +9,6 @@ use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::cells4::Point4;
 use spmesh_stream::{Event, StreamReader};
 
-/// First bytes of a text twin.
-const TWIN_MAGIC: &[u8] = b"#spmesh ";
-
 const BUFFER_LEN: usize = 1 << 18;
 
 /// A stream whose header has been read.
@@ -23,10 +20,9 @@ pub(crate) struct Stream {
     pub has_values: bool,
 }
 
-/// The points of the stream in `origin`, which starts with `head`. They can be scanned any number of times.
-pub(crate) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<Stream> {
+/// The points of the stream in `origin`. They can be scanned any number of times.
+pub(crate) fn open(origin: Origin, path: Option<&Path>, is_twin: bool) -> Result<Stream> {
     let name = path.map_or("stdin".to_string(), |path| path.display().to_string());
-    let is_twin = head.starts_with(TWIN_MAGIC);
     let mut stream = Stream { origin, name, is_twin, has_values: false };
     let source = stream.read()?;
     let header = source.header();

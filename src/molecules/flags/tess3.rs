@@ -13,7 +13,8 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::tess3::sweep::{News, Outcome, Sweep, sweep};
 use crate::tess3::{Arithmetic, Options, Product, Radius, Stats};
@@ -26,7 +27,8 @@ use spmesh_base::output::Output;
 use spmesh_base::parallel::available_threads;
 use spmesh_base::places::check_apart;
 use spmesh_base::system;
-use spmesh_formats::molecules::{Format, Structure, read_structure};
+use spmesh_formats::drivers::Format;
+use spmesh_formats::molecules::{Structure, read_structure};
 use spmesh_formats::sink::TableFormat;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
@@ -115,8 +117,8 @@ pub struct Flags {
     alpha: Option<Radius>,
 
     /// Format of the input, if its content does not tell
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    from: Option<FormatFlag>,
+    #[arg(long, value_name = "FORMAT", value_parser = formats())]
+    from: Option<Format>,
 
     /// Sweep: write an output for each file to this folder, and a summary
     #[arg(long, value_name = "FOLDER")]
@@ -169,37 +171,23 @@ pub struct Flags {
     method: MethodFlags,
 }
 
-/// Values of `--from`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum FormatFlag {
-    /// PDB
-    Pdb,
-    /// PDBx/mmCIF
-    Mmcif,
-    /// XYZ of chemistry: number of atoms, comment, and lines of element x y z
-    Xyz,
-    /// Points as spfinalize reads them: lines of x y z, streams, LAS, VTK
-    Points,
-    /// Vertices of a PLY file
-    Ply,
-    /// Vertices of an OBJ file
-    Obj,
-    /// Vertices of an OFF file
-    Off,
-}
+/// Formats of the input, with the values of `--from` and their help.
+const FROM: [(Format, &str, &str); 7] = [
+    (Format::Pdb, "pdb", "PDB"),
+    (Format::Mmcif, "mmcif", "PDBx/mmCIF"),
+    (Format::Xyz, "xyz", "XYZ of chemistry: number of atoms, comment, and lines of element x y z"),
+    (Format::Text, "points", "Points as spfinalize reads them: lines of x y z, streams, LAS, VTK"),
+    (Format::Ply, "ply", "Vertices of a PLY file"),
+    (Format::Obj, "obj", "Vertices of an OBJ file"),
+    (Format::Off, "off", "Vertices of an OFF file"),
+];
 
-impl From<FormatFlag> for Format {
-    fn from(flag: FormatFlag) -> Self {
-        match flag {
-            FormatFlag::Pdb => Format::Pdb,
-            FormatFlag::Mmcif => Format::Mmcif,
-            FormatFlag::Xyz => Format::Xyz,
-            FormatFlag::Points => Format::Points,
-            FormatFlag::Ply => Format::Ply,
-            FormatFlag::Obj => Format::Obj,
-            FormatFlag::Off => Format::Off,
-        }
-    }
+fn formats() -> impl TypedValueParser<Value = Format> {
+    let values = FROM.map(|(_, value, help)| PossibleValue::new(value).help(help));
+    PossibleValuesParser::new(values).map(|name| {
+        let found = FROM.into_iter().find(|(_, value, _)| *value == name);
+        found.expect("the value is one of the values").0
+    })
 }
 
 /// Runs the tool.
@@ -254,7 +242,7 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     // Fail before the work if the output cannot be created.
     let mut output = Some(Output::create(&flags.output, is_binary)?);
     let started = Instant::now();
-    let structure = read_structure(input, flags.from.map(Into::into))?;
+    let structure = read_structure(input, flags.from)?;
     let missing = structure.missing_location(&options.selection);
     let warnings = structure.warnings.iter().chain(&missing);
     warnings.for_each(|warning| flags.notice(&format!("{}: {warning}", structure.name)));
@@ -300,7 +288,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
     let wanted = Sweep {
         files: flags.files()?,
         list: flags.lof.clone(),
-        format: flags.from.map(Into::into),
+        format: flags.from,
         options_text: flags.options_text(&options),
         version: env!("CARGO_PKG_VERSION").to_string(),
         options,
@@ -384,8 +372,8 @@ impl Flags {
     /// The options that determine the content of the outputs, as text.
     fn options_text(&self, options: &Options) -> String {
         let mut text = self.selection.to_string();
-        if let Some(format) = self.from.and_then(|format| format.to_possible_value()) {
-            text += &format!(" --from {}", format.get_name());
+        if let Some((_, value, _)) = FROM.iter().find(|(format, ..)| self.from == Some(*format)) {
+            text += &format!(" --from {value}");
         }
         if let Some(radius) = &self.alpha {
             text += &format!(" --alpha {radius}");

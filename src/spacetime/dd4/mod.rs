@@ -11,7 +11,7 @@ mod words;
 mod write;
 
 pub use counts::Counts;
-pub use files::{Form, write_slice, write_surface, write_values};
+pub use files::{write_slice, write_surface, write_values};
 pub use placement::{Placement, TimeScale};
 pub use product::Product;
 pub use quantum::Quantum;

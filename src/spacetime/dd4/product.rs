@@ -2,9 +2,10 @@
 
 use std::io::Write;
 
-use super::{Form, Placement, write_diagram, write_simplices, write_slice, write_surface, write_values};
+use super::{Placement, write_diagram, write_simplices, write_slice, write_surface, write_values};
 use crate::slices::{Interpolator, NO_VALUES, Rule, Slice, first_time, isosurface, slice, subdivide};
 use spmesh_base::error::{Error, Result};
+use spmesh_formats::drivers::Format;
 use spmesh_stream::model::cells4::Point4;
 use spmesh_stream::model::diagram4::Diagram4;
 
@@ -22,7 +23,7 @@ pub enum Product {
         /// The time.
         time: f64,
         /// VTU or Medit.
-        form: Form,
+        format: Format,
     },
     /// A surface of equal value at a time.
     Isosurface {
@@ -31,7 +32,7 @@ pub enum Product {
         /// The value.
         level: f64,
         /// Any format.
-        form: Form,
+        format: Format,
     },
 }
 
@@ -58,9 +59,7 @@ impl Product {
         match self {
             Product::Cells | Product::Simplices(_) => true,
             Product::Values(_) => false,
-            Product::Slice { form, .. } | Product::Isosurface { form, .. } => {
-                matches!(form, Form::Vtu | Form::Ply)
-            }
+            Product::Slice { format, .. } | Product::Isosurface { format, .. } => format.is_binary(),
         }
     }
 
@@ -95,14 +94,14 @@ impl Product {
                 write_values(sites, &values, output)?;
                 Ok(outside_notice(&values).into_iter().collect())
             }
-            Product::Slice { time, form } => {
+            Product::Slice { time, format } => {
                 let mut slice = slice(diagram, placement.time(*time))?;
                 placement.place_slice(&mut slice, *time);
                 let mut notices = slice_notices(&slice);
-                notices.extend(write_slice(&slice, *form, output)?);
+                notices.extend(write_slice(&slice, *format, output)?);
                 Ok(notices)
             }
-            Product::Isosurface { time, level, form } => {
+            Product::Isosurface { time, level, format } => {
                 let mut slice = slice(diagram, placement.time(*time))?;
                 let mut surface = isosurface(&slice, *level)?;
                 placement.place_slice(&mut slice, *time);
@@ -111,7 +110,7 @@ impl Product {
                 if surface.triangles.is_empty() && !slice.tetrahedra.is_empty() {
                     notices.push(empty_notice(&slice, *level));
                 }
-                write_surface(&surface, *form, output)?;
+                write_surface(&surface, *format, output)?;
                 Ok(notices)
             }
         }

@@ -5,8 +5,9 @@ use std::io::{Cursor, Read};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
+use spmesh_formats::drivers::Format;
 use spmesh_formats::las::{Changes, LasCopy, LasFile};
-use spmesh_formats::molecules::{Format, Radii, read_structure_from};
+use spmesh_formats::molecules::{Radii, read_structure_from};
 use spmesh_formats::source::{
     AttributeChoice, Column, EventSource, Input, Interval, Plain, RawType, Separator, SourceOptions,
     open_obj, open_ply, open_sma, open_smb, read_ply_surface, read_polylines, read_values,
@@ -111,7 +112,7 @@ pub fn gzip(bytes: &[u8]) {
 /// Points and meshes of Isenburg's binary formats, which convert in whole.
 pub fn binary(bytes: &[u8]) {
     points(bytes);
-    if let Ok(mut events) = open_smb(Cursor::new(bytes.to_vec()), "fuzz") {
+    if let Ok(mut events) = open_smb(Box::new(Cursor::new(bytes.to_vec())), "fuzz") {
         drain(&mut *events);
     }
 }
@@ -158,7 +159,7 @@ pub fn flags(bytes: &[u8]) {
 /// PLY as a mesh and as points.
 pub fn ply(bytes: &[u8]) {
     for dims in [2, 3] {
-        if let Ok(mut events) = open_ply(Cursor::new(bytes.to_vec()), "fuzz", dims) {
+        if let Ok(mut events) = open_ply(Box::new(Cursor::new(bytes.to_vec())), "fuzz", dims) {
             drain(&mut *events);
         }
     }
@@ -168,16 +169,16 @@ pub fn ply(bytes: &[u8]) {
 
 /// OBJ as a mesh and as points.
 pub fn obj(bytes: &[u8]) {
-    drain(&mut *open_obj(Cursor::new(bytes.to_vec()), "fuzz"));
+    drain(&mut *open_obj(Box::new(Cursor::new(bytes.to_vec())), "fuzz"));
     points(bytes);
 }
 
 /// Streaming meshes by Isenburg, as text and as bytes.
 pub fn sma(bytes: &[u8]) {
-    if let Ok(mut events) = open_sma(Cursor::new(bytes.to_vec()), "fuzz") {
+    if let Ok(mut events) = open_sma(Box::new(Cursor::new(bytes.to_vec())), "fuzz") {
         drain(&mut *events);
     }
-    if let Ok(mut events) = open_smb(Cursor::new(bytes.to_vec()), "fuzz") {
+    if let Ok(mut events) = open_smb(Box::new(Cursor::new(bytes.to_vec())), "fuzz") {
         drain(&mut *events);
     }
 }

@@ -3,7 +3,8 @@
 use std::fs;
 use std::io::Cursor;
 
-use spmesh_convert::{Format, Options, convert};
+use spmesh_convert::{Options, convert};
+use spmesh_formats::drivers::Format;
 use spmesh_formats::sink::{NPY_F64, npy_header};
 use spmesh_formats::source::{Input, SourceOptions};
 

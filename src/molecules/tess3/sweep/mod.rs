@@ -21,7 +21,7 @@ use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::parallel;
 use spmesh_base::places::{Inputs, check_apart};
-use spmesh_formats::molecules::Format;
+use spmesh_formats::drivers::Format;
 use summary::Summary;
 
 /// Options of a sweep.

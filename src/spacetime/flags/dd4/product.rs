@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use crate::dd4::{Form, Product};
+use crate::dd4::Product;
 use crate::slices::Rule;
 use spmesh_base::error::{Error, Result};
-use spmesh_convert::Format;
+use spmesh_formats::drivers::Format;
 use spmesh_formats::volumes::{From4, Request, Selection, Spacing, read_points4};
 use spmesh_stream::model::cells4::Point4;
 
@@ -94,8 +94,10 @@ impl ProductFlags {
         Ok(match (self.triangulate, self.slice, self.isosurface) {
             (Some(TriangulateFlag::Canonical), ..) => Product::Simplices(Rule::Pulled),
             (Some(TriangulateFlag::Barycentric), ..) => Product::Simplices(Rule::Barycentric),
-            (None, Some(time), Some(level)) => Product::Isosurface { time, level, form: form(output, true)? },
-            (None, Some(time), None) => Product::Slice { time, form: form(output, false)? },
+            (None, Some(time), Some(level)) => {
+                Product::Isosurface { time, level, format: format_of(output, true)? }
+            }
+            (None, Some(time), None) => Product::Slice { time, format: format_of(output, false)? },
             (None, None, _) => Product::Cells,
         })
     }
@@ -120,28 +122,26 @@ impl fmt::Display for ProductFlags {
 /// Refuses output names of formats that cannot hold cells of four dimensions.
 fn check_stream(path: &Path) -> Result<()> {
     match Format::from_path(path) {
-        None | Some(Format::Spm) => Ok(()),
+        None | Some(Format::Stream) => Ok(()),
         Some(other) => Err(Error::usage(format!(
             "{}: what is in four dimensions is written as a stream (.spm), not as {}: for a mesh at a time use --slice",
             path.display(),
-            other.name()
+            other.value()
         ))),
     }
 }
 
-/// The form of a mesh in space at a path: given by its name, or the default.
-fn form(path: &Path, is_surface: bool) -> Result<Form> {
+/// The format of a mesh in space at a path: given by its name, or the default.
+fn format_of(path: &Path, is_surface: bool) -> Result<Format> {
     match Format::from_path(path) {
-        None => Ok(if is_surface { Form::Ply } else { Form::Vtu }),
-        Some(Format::Vtu) => Ok(Form::Vtu),
-        Some(Format::Medit) => Ok(Form::Medit),
-        Some(Format::Ply) if is_surface => Ok(Form::Ply),
-        Some(Format::Obj) if is_surface => Ok(Form::Obj),
+        None => Ok(if is_surface { Format::Ply } else { Format::VtkXml }),
+        Some(format @ (Format::VtkXml | Format::Medit)) => Ok(format),
+        Some(format @ (Format::Ply | Format::Obj)) if is_surface => Ok(format),
         Some(other) => Err(Error::usage(format!(
             "{}: {} cannot be written as {}: the output must be .vtu, .mesh, or for surfaces .ply or .obj",
             path.display(),
             if is_surface { "a surface" } else { "a slice" },
-            other.name()
+            other.value()
         ))),
     }
 }
@@ -188,8 +188,11 @@ mod tests {
             ("--triangulate canonical", Product::Simplices(Rule::Pulled)),
             ("--triangulate barycentric", Product::Simplices(Rule::Barycentric)),
             ("--at -1,2.5,0,1 --at 0,0,0,0", Product::Values(vec![[-1.0, 2.5, 0.0, 1.0], [0.0; 4]])),
-            ("--slice -0.5", Product::Slice { time: -0.5, form: Form::Vtu }),
-            ("--slice 3 --isosurface -2", Product::Isosurface { time: 3.0, level: -2.0, form: Form::Ply }),
+            ("--slice -0.5", Product::Slice { time: -0.5, format: Format::VtkXml }),
+            (
+                "--slice 3 --isosurface -2",
+                Product::Isosurface { time: 3.0, level: -2.0, format: Format::Ply },
+            ),
         ];
         for (text, product) in cases {
             let flags = flags(&text.split_whitespace().collect::<Vec<_>>()).unwrap();
@@ -202,21 +205,21 @@ mod tests {
 
     #[test]
     fn names_choose_forms() {
-        let form = |text: &str, name: &str| -> Result<Form> {
+        let form = |text: &str, name: &str| -> Result<Format> {
             let flags = flags(&text.split_whitespace().collect::<Vec<_>>()).unwrap();
             match flags.product(Path::new(name))? {
-                Product::Slice { form, .. } | Product::Isosurface { form, .. } => Ok(form),
+                Product::Slice { format, .. } | Product::Isosurface { format, .. } => Ok(format),
                 other => panic!("{other:?}"),
             }
         };
         let (slice, surface) = ("--slice 1", "--slice 1 --isosurface 2");
         for (name, of_slice, of_surface) in [
-            ("-", Some(Form::Vtu), Some(Form::Ply)),
-            ("a", Some(Form::Vtu), Some(Form::Ply)),
-            ("a.vtu", Some(Form::Vtu), Some(Form::Vtu)),
-            ("a.mesh", Some(Form::Medit), Some(Form::Medit)),
-            ("a.ply", None, Some(Form::Ply)),
-            ("a.obj", None, Some(Form::Obj)),
+            ("-", Some(Format::VtkXml), Some(Format::Ply)),
+            ("a", Some(Format::VtkXml), Some(Format::Ply)),
+            ("a.vtu", Some(Format::VtkXml), Some(Format::VtkXml)),
+            ("a.mesh", Some(Format::Medit), Some(Format::Medit)),
+            ("a.ply", None, Some(Format::Ply)),
+            ("a.obj", None, Some(Format::Obj)),
             ("a.spm", None, None),
         ] {
             assert_eq!(form(slice, name).ok(), of_slice, "{name}");

@@ -1,0 +1,386 @@
+//! The table of formats: their names, how they are recognized, and what opens and writes them. Detection,
+//! what each tool reads, the formats of `spconvert` and messages follow from it.
+//!
+//! A new format is a folder with its reader and writer, and a row here.
+
+use std::io::{BufReader, Read, Write};
+use std::path::Path;
+
+use crate::cad::{dxf::DxfSink, landxml::LandXmlSink, medit::MeditSink};
+use crate::detect::{Test, binary};
+use crate::historical::{read_sma::open_sma, read_smb::open_smb, sp_events::SpEvents};
+use crate::historical::{read_spa, read_spa::SpaReader, read_spb, read_spb::SpbReader};
+use crate::historical::{write_sma::SmaSink, write_smb::SmbSink, write_spa::SpaSink, write_spb::SpbSink};
+use crate::lines::write_geojson::GeoJsonSink;
+use crate::molecules::builder::StructureBuilder;
+use crate::molecules::{atoms, mmcif, pdb, xyz};
+use crate::npy;
+use crate::obj::{read as obj, write::ObjSink};
+use crate::ply::{read as ply, write::PlySink};
+use crate::sink::{EventSink, HullSink, SinkOptions, SpmSink, surface_header};
+use crate::source::checked::Checked;
+use crate::source::events::EventSource;
+use crate::source::gzip::Use;
+use crate::source::origin::Origin;
+use crate::source::pass::{Content, Opening};
+use crate::source::{point_arrays, records, stream};
+use crate::text::lines::Lines;
+use crate::text::read as text;
+use crate::twin::{read::TwinSource, write::TwinSink};
+use crate::volumes::scan::Supply;
+use crate::volumes::{self, nifti, nrrd};
+use crate::vtk::{self, vtu::VtuSink};
+use spmesh_base::error::{Error, Result};
+use spmesh_stream::{Header, Kind, StreamReader};
+
+/// An input of any kind.
+pub type AnyInput = Box<dyn Read + Send>;
+
+/// The events of an input.
+pub type Events = Box<dyn EventSource + Send>;
+
+/// Opens an input, whose name is the second argument, as events. Points of formats that do not say have the
+/// given number of dimensions.
+pub type OpenEvents = fn(AnyInput, &str, u8) -> Result<Events>;
+
+/// Opens the points in space of a file.
+type OpenPoints = fn(&Opening, &mut Vec<String>) -> Result<Content>;
+
+/// Reads the atoms of a structure.
+type ReadAtoms = fn(Lines<AnyInput>, &mut StructureBuilder) -> Result<()>;
+
+/// Opens the points in four dimensions of a file that may have a path, and starts with these bytes.
+type OpenSites = fn(Origin, Option<&Path>, &[u8], &mut Vec<String>) -> Result<Supply>;
+
+/// Starts an output.
+type OpenSink = for<'a> fn(&'a mut dyn Write, &Header, &SinkOptions) -> Result<Box<dyn EventSink + 'a>>;
+
+/// What the table says of a format.
+pub(crate) struct Row {
+    format: Format,
+    /// With its article, for "this is ...".
+    pub(crate) name: &'static str,
+    /// For "TOOL reads ...".
+    pub(crate) listed: &'static str,
+    pub(crate) test: Test,
+    /// What the user can do if the tool does not read the format.
+    pub(crate) hint: &'static str,
+    /// Value of `--from` and `--to`; empty if it has none.
+    value: &'static str,
+    /// Ending of names of files; empty if several or none stand for it.
+    ending: &'static str,
+    /// Whether a terminal cannot show what is written.
+    is_binary: bool,
+    /// Whether its parts are read in any order, so that a compressed file is unpacked first.
+    pub(crate) is_in_parts: bool,
+    pub(crate) points: Option<OpenPoints>,
+    pub(crate) atoms: Option<ReadAtoms>,
+    pub(crate) sites: Option<OpenSites>,
+    events: Option<OpenEvents>,
+    sink: Option<OpenSink>,
+}
+
+macro_rules! formats {
+    ($($format:ident($name:literal, $listed:expr, $test:expr, $hint:expr) {
+        $($field:ident: $value:expr),*
+    })*) => {
+        /// The format of an input or an output.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Format {
+            $(#[doc = concat!("This is ", $name, ".")] $format,)*
+        }
+
+        /// All formats, in the order of messages. The first one whose test passes is the format of an input.
+        pub(crate) const ROWS: &[Row] = &[$(Row {
+            $($field: $value,)*
+            ..row(Format::$format, $name, $listed, $test, $hint)
+        },)*];
+    };
+}
+
+const fn row(
+    format: Format,
+    name: &'static str,
+    listed: &'static str,
+    test: Test,
+    hint: &'static str,
+) -> Row {
+    Row {
+        format,
+        name,
+        listed,
+        test,
+        hint,
+        value: "",
+        ending: "",
+        is_binary: false,
+        is_in_parts: false,
+        points: None,
+        atoms: None,
+        sites: None,
+        events: None,
+        sink: None,
+    }
+}
+
+const NO_LIST: &str = "";
+const VALUES: &str = "write its values as NRRD or raw numbers first";
+const TO_POINTS: &str = "make a point stream of its atoms with spfinalize --octree, or use tess3";
+const TO_STREAM: &str = "convert it first with spconvert";
+const TO_PLY: &str = "convert it first with spconvert --to ply";
+
+formats! {
+    Las("a LAS, LAZ or COPC file", "LAS, LAZ, COPC", Test::Magic(&[b"LASF"]), "") {
+        is_in_parts: true, points: Some(records::open)
+    }
+    Text("lines of numbers", "lines of coordinates", Test::Lines, "") {
+        value: "points", points: Some(text::open), sites: Some(text_of_sites)
+    }
+    OtherText("text of no known format", "lines of coordinates", Test::Lines, "") {
+        points: Some(text::open), sites: Some(text_of_sites)
+    }
+    Nrrd("an NRRD volume", "NRRD", Test::Magic(&[b"NRRD"]), "dd4 reads it") {
+        sites: Some(|origin, path, _, warnings| nrrd::open(origin, path, warnings).map(Supply::of_volume))
+    }
+    Nifti("a NIfTI volume", "NIfTI", Test::Look(binary::is_nifti), "dd4 reads it") {
+        sites: Some(|origin, _, head, warnings| nifti::open(origin, head, warnings).map(Supply::of_volume))
+    }
+    Stream("a spmesh stream", "spmesh streams", Test::Magic(&[b"\x89S"]), "") {
+        value: "spm", ending: "spm", is_binary: true,
+        points: Some(|file, _| stream::open(file, open_stream, false)),
+        sites: Some(|origin, path, _, _| volumes::stream::open(origin, path, false).map(Supply::Stream)),
+        events: Some(open_stream),
+        sink: Some(|to, header, how| {
+            let header = Header { compressed: how.compress, ..header.clone() };
+            Ok(Box::new(SpmSink::new(to, &header)?))
+        })
+    }
+    Twin("the text twin of a spmesh stream", "their text twins", Test::Magic(&[b"#spmesh "]), "") {
+        value: "text", ending: "txt",
+        points: Some(|file, _| stream::open(file, open_twin, true)),
+        sites: Some(|origin, path, _, _| volumes::stream::open(origin, path, true).map(Supply::Stream)),
+        events: Some(open_twin),
+        sink: Some(|to, header, _| Ok(Box::new(TwinSink::new(to, header)?)))
+    }
+    Spa("an SPA file", "SPA", Test::Lines, TO_STREAM) {
+        value: "spa", ending: "spa",
+        points: Some(|file, _| read_spa::open(file)),
+        events: Some(|input, name, dims| SpEvents::open(SpaReader::new(input), name, dims)),
+        sink: Some(|to, header, _| Ok(Box::new(SpaSink::new(to, header)?)))
+    }
+    Spb("an SPB file", "SPB", Test::Look(binary::is_spb), TO_STREAM) {
+        value: "spb", ending: "spb", is_binary: true,
+        points: Some(|file, _| read_spb::open(file)),
+        events: Some(|input, name, dims| {
+            SpEvents::open(SpbReader::new(BufReader::with_capacity(1 << 18, input)), name, dims)
+        }),
+        sink: Some(|to, header, _| Ok(Box::new(SpbSink::new(to, header)?)))
+    }
+    Ply("a PLY file", "PLY", Test::Magic(&[b"ply\n", b"ply\r"]), "") {
+        value: "ply", ending: "ply", is_binary: true,
+        points: Some(|file, _| stream::open(file, ply::open_vertices, true)), events: Some(ply::open_ply),
+        sink: Some(|to, header, how| Ok(Box::new(PlySink::new(to, header, how)?)))
+    }
+    Obj("an OBJ file", "OBJ", Test::Lines, "") {
+        value: "obj", ending: "obj",
+        points: Some(vertices_of_obj), events: Some(|input, name, _| Ok(obj::open_obj(input, name))),
+        sink: Some(|to, header, how| Ok(Box::new(ObjSink::new(to, header, how)?)))
+    }
+    // Vertex lines of SMA are those of OBJ; its other lines are skipped.
+    Sma("an SMA mesh", "SMA", Test::Lines, TO_STREAM) {
+        value: "sma", ending: "sma",
+        points: Some(vertices_of_obj), events: Some(|input, name, _| open_sma(input, name)),
+        sink: Some(|to, header, _| Ok(Box::new(SmaSink::new(to, header)?)))
+    }
+    Smb("an SMB mesh", "SMB", Test::Look(binary::is_smb), TO_PLY) {
+        value: "smb", ending: "smb", is_binary: true,
+        events: Some(|input, name, _| open_smb(input, name)),
+        sink: Some(|to, header, how| Ok(Box::new(SmbSink::new(to, header, how.temp_dir.as_deref())?)))
+    }
+    // Possibly followed by lines of `f`: SMA or SPA without a header look like OBJ.
+    VertexLines("lines of v: an OBJ, SMA or SPA file", "OBJ", Test::Lines, "") {
+        points: Some(vertices_of_obj)
+    }
+    VtkLegacy("a VTK file of the legacy format", "VTK", Test::Magic(&[b"# vtk DataFile"]), VALUES) {
+        is_in_parts: true,
+        points: Some(|file, _| {
+            Ok(point_arrays::content(vec![vtk::read_legacy(&file.origin.view()?, file.name)?]))
+        })
+    }
+    VtkXml("a VTK file in XML", "VTK", Test::Look(binary::is_vtk_xml), VALUES) {
+        value: "vtu", ending: "vtu", is_binary: true, is_in_parts: true,
+        points: Some(|file, _| Ok(point_arrays::content(vtk::read_xml(&file.origin.view()?)?))),
+        sink: Some(|to, header, how| Ok(Box::new(VtuSink::new(to, header, how.temp_dir.as_deref())?)))
+    }
+    Npy("an array of numpy", "NPY", Test::Magic(&[b"\x93NUMPY"]),
+        "make a point stream of it with spfinalize") {
+        is_in_parts: true, points: Some(|file, _| npy::read::open(file))
+    }
+    Pdb("a PDB file", "PDB", Test::Lines, TO_POINTS) {
+        points: Some(atoms::open), atoms: Some(|mut lines, builder| pdb::read(&mut lines, builder))
+    }
+    Mmcif("an mmCIF file", "mmCIF", Test::Lines, TO_POINTS) {
+        points: Some(atoms::open), atoms: Some(mmcif::read)
+    }
+    Xyz("an XYZ file of chemistry", "XYZ of chemistry", Test::Lines, TO_POINTS) {
+        points: Some(atoms::open), atoms: Some(|mut lines, builder| xyz::read(&mut lines, builder))
+    }
+    Off("an OFF file", "OFF", Test::Lines, "tess3 reads its vertices") {}
+    Medit("a Medit mesh", NO_LIST, Test::Magic(&[b"MeshVersionFormatted"]),
+        "convert it first, for example with meshio convert IN.mesh OUT.ply") {
+        value: "medit", ending: "mesh",
+        sink: Some(|to, header, how| Ok(Box::new(MeditSink::new(to, header, how.temp_dir.as_deref())?)))
+    }
+    Dxf("a DXF file", NO_LIST, Test::Never, "") {
+        value: "dxf", ending: "dxf",
+        sink: Some(|to, header, _| Ok(Box::new(DxfSink::new(to, header)?)))
+    }
+    LandXml("a LandXML file", NO_LIST, Test::Never, "") {
+        value: "landxml", ending: "xml",
+        sink: Some(|to, header, how| Ok(Box::new(LandXmlSink::new(to, header, how.temp_dir.as_deref())?)))
+    }
+    GeoJson("a GeoJSON file", NO_LIST, Test::Never, "") {
+        value: "geojson", ending: "geojson",
+        sink: Some(|to, header, _| Ok(Box::new(GeoJsonSink::new(to, header)?)))
+    }
+    Gzip("gzip data within gzip data", NO_LIST, Test::Magic(&[b"\x1f\x8b"]),
+        "decompress it first, for example with zcat") {}
+    Zstd("zstd data", NO_LIST, Test::Magic(&[b"\x28\xb5\x2f\xfd"]),
+        "decompress it first, for example with zstdcat") {}
+    Zip("a zip archive", NO_LIST, Test::Magic(&[b"PK\x03\x04"]),
+        "unpack it first, for example with unzip -p") {}
+    Bzip2("bzip2 data", NO_LIST, Test::Magic(&[b"BZh"]), "decompress it first, for example with bzcat") {}
+    Xz("xz data", NO_LIST, Test::Magic(&[b"\xfd7zXZ\x00"]), "decompress it first, for example with xzcat") {}
+    Compress("data of compress (.Z)", NO_LIST, Test::Magic(&[b"\x1f\x9d"]),
+        "decompress it first, for example with uncompress -c FILE.Z") {}
+    BinaryCif("a BinaryCIF file", NO_LIST, Test::Look(binary::is_binary_cif),
+        "download the entry as .cif or .cif.gz, or convert it first, for example with biotite") {}
+    Utf16("text in UTF-16", NO_LIST, Test::Magic(&[b"\xff\xfe", b"\xfe\xff"]),
+        "convert it first, for example with iconv -f utf-16 -t utf-8") {}
+    Pcd("a PCD file", NO_LIST, Test::Magic(&[b"# .PCD", b"VERSION .7", b"VERSION 0.7"]),
+        "convert it first, for example with pdal translate") {}
+    Hdf5("HDF5, netCDF-4 or MINC data", NO_LIST, Test::Magic(&[b"\x89HDF"]),
+        "write it as VTU, NRRD or raw numbers first, for example with ParaView or h5dump") {}
+    Netcdf("netCDF data", NO_LIST, Test::Magic(&[b"CDF\x01", b"CDF\x02", b"CDF\x05"]), VALUES) {}
+    Inrimage("an INRIMAGE, which holds voxels", NO_LIST, Test::Magic(&[b"#INRIMAGE"]),
+        "list the wanted ones as lines of x y z") {}
+    Tiff("a TIFF image", NO_LIST, Test::Magic(&[b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"]),
+        "list its cells as lines of x y z, for example with gdal2xyz") {}
+    Xml("XML or HTML", NO_LIST, Test::Magic(&[b"<?xml", b"<!DOCTYPE", b"<!doctype", b"<html", b"<HTML"]),
+        "it may be the error page of a failed download") {}
+    Binary("of no known format", NO_LIST, Test::Look(|head| head.contains(&0)), "") {}
+}
+
+/// The formats of `spconvert`, in the order of its help.
+const CONVERTED: [Format; 14] = {
+    use Format::*;
+    [Stream, Twin, Obj, Ply, Spa, Spb, Sma, Smb, VtkXml, Medit, Dxf, LandXml, GeoJson, Text]
+};
+
+/// The formats whose rows fulfil a condition, in the order of the table.
+pub(crate) fn formats_with(is_wanted: impl Fn(&Row) -> bool) -> Vec<Format> {
+    ROWS.iter().filter(|row| is_wanted(row)).map(|row| row.format).collect()
+}
+
+impl Format {
+    pub(crate) fn row(self) -> &'static Row {
+        &ROWS[self as usize]
+    }
+
+    /// All formats that are recognized by their content, in the order in which they are tried.
+    pub fn all() -> impl Iterator<Item = Format> {
+        formats_with(|row| !matches!(row.test, Test::Never)).into_iter()
+    }
+
+    /// Name of the format in messages, with an article.
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// Name of the format on the command line of `spconvert`; empty if it has none.
+    pub fn value(self) -> &'static str {
+        self.row().value
+    }
+
+    /// The formats that `spconvert` can be told to read; those that it only recognizes are not among them.
+    pub fn read() -> impl Iterator<Item = Format> {
+        CONVERTED.into_iter().filter(|format| format.is_read())
+    }
+
+    /// Whether `spconvert` can be told to read it.
+    pub fn is_read(self) -> bool {
+        // A name is that of something to write or, without a writer, that of something to read.
+        let Row { value, events, sink, .. } = self.row();
+        events.is_some() || !value.is_empty() && sink.is_none()
+    }
+
+    /// The formats that streams are converted to.
+    pub fn written() -> impl Iterator<Item = Format> {
+        CONVERTED.into_iter().filter(|format| format.row().sink.is_some())
+    }
+
+    /// The format with this name on the command line, if there is one.
+    pub fn from_value(value: &str) -> Option<Self> {
+        CONVERTED.into_iter().find(|format| format.value() == value)
+    }
+
+    /// The format that the extension of `path` names, if it names one that streams are converted to.
+    pub fn from_path(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?;
+        Format::written().find(|format| format.row().ending.eq_ignore_ascii_case(extension))
+    }
+
+    /// Whether the format is binary, so that a terminal cannot show it.
+    pub fn is_binary(self) -> bool {
+        self.row().is_binary
+    }
+
+    /// What opens an input as the events of a stream; `None` if its points are read as those of files.
+    pub fn events(self) -> Option<OpenEvents> {
+        self.row().events
+    }
+
+    /// Starts an output for the stream that `header` describes. Of tetrahedra, OBJ and PLY get the hull.
+    ///
+    /// # Errors
+    /// Usage, if the format is not written, does not hold the kind of stream, or has no use for the options;
+    /// or if writing fails.
+    pub fn open_sink<'a>(
+        self,
+        output: &'a mut dyn Write,
+        header: &Header,
+        options: &SinkOptions,
+    ) -> Result<Box<dyn EventSink + 'a>> {
+        let Row { value, listed, sink, .. } = self.row();
+        if options.local_origin && self != Format::Obj {
+            return Err(Error::usage("--local-origin is for OBJ: leave it out, or add --to obj"));
+        }
+        let Some(open) = sink else {
+            return Err(Error::usage(format!(
+                "{value} is a format that this program reads, but does not write"
+            )));
+        };
+        if header.kind == Kind::TetrahedralMesh && matches!(self, Format::Obj | Format::Ply) {
+            let surface = open(output, &surface_header(header), options)?;
+            return Ok(Box::new(HullSink::new(surface, listed, header)));
+        }
+        open(output, header, options)
+    }
+}
+
+fn open_stream(input: AnyInput, name: &str, _: u8) -> Result<Events> {
+    let input = BufReader::with_capacity(1 << 18, input);
+    Ok(Box::new(Checked::new(StreamReader::new(input, name)?)))
+}
+
+fn open_twin(input: AnyInput, name: &str, _: u8) -> Result<Events> {
+    Ok(Box::new(Checked::new(TwinSource::new(input, name)?)))
+}
+
+fn vertices_of_obj(file: &Opening, _: &mut Vec<String>) -> Result<Content> {
+    stream::open(file, obj::open_vertices, true)
+}
+
+fn text_of_sites(origin: Origin, _: Option<&Path>, _: &[u8], _: &mut Vec<String>) -> Result<Supply> {
+    volumes::text::open(origin.of_use(Use::Held)).map(Supply::Text)
+}
