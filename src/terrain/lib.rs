@@ -12,7 +12,6 @@
 mod accumulators;
 pub mod constrain;
 pub mod contours;
-mod counterclockwise;
 pub mod dem;
 pub mod files;
 #[cfg(feature = "flags")]

@@ -92,3 +92,41 @@ fn extreme_triangles_are_never_claimed_by_mistake() {
         assert!(!CircleBounds::FLOAT.disk_inside(a, b, c, finite.sides()), "{a:?} {b:?} {c:?}");
     }
 }
+
+/// The power of a place times the doubled area: below zero inside of the circle.
+fn power(b: [i128; 2], c: [i128; 2], [x, y]: [i128; 2]) -> i128 {
+    let (p, q) = (b[0] * b[0] + b[1] * b[1], c[0] * c[0] + c[1] * c[1]);
+    let d = b[0] * c[1] - b[1] * c[0];
+    d * (x * x + y * y) - x * (c[1] * p - b[1] * q) - y * (b[0] * q - c[0] * p)
+}
+
+#[test]
+fn no_box_is_left_out_that_the_disk_meets() {
+    let mut random = Random::new(12);
+    let (mut claimed, mut outside) = (0, 0);
+    for round in 0..40_000 {
+        let (side, flatness) = ([10, 1000, 1 << 18][round % 3], [1, 10, 1 << 10][round / 3 % 3]);
+        let mut corner = || [random.integer(-side, side), random.integer(-side, side) / flatness];
+        let [a, mut b, mut c] = [corner(), corner(), corner()].map(|[x, y]| [i128::from(x), i128::from(y)]);
+        // A place near the circle, as corners are on it.
+        let at = [0, 1].map(|axis| c[axis] + i128::from(random.integer(-3, 3)));
+        let relative = |p: [i128; 2]| [p[0] - a[0], p[1] - a[1]];
+        if relative(b)[0] * relative(c)[1] < relative(b)[1] * relative(c)[0] {
+            (b, c) = (c, b);
+        }
+        let (rb, rc, low) = (relative(b), relative(c), relative(at));
+        let high = [0, 1].map(|axis| low[axis] + i128::from(random.integer(0, 4)));
+        if rb[0] * rc[1] == rb[1] * rc[0] {
+            continue;
+        }
+        let float = |p: [i128; 2]| p.map(|x| x as f64);
+        let circle = CircleBounds::FLOAT.circle(float(a), float(b), float(c)).expect("no underflow");
+        let claim = circle.misses([float(low), float(high)]);
+        let places = (low[0]..=high[0]).flat_map(|x| (low[1]..=high[1]).map(move |y| [x, y]));
+        let is_outside = places.into_iter().all(|place| power(rb, rc, place) > 0);
+        assert!(!claim || is_outside, "{a:?} {b:?} {c:?}: box {low:?} to {high:?} relative to the first");
+        claimed += u32::from(claim);
+        outside += u32::from(is_outside);
+    }
+    assert!(f64::from(claimed) > 0.9 * f64::from(outside), "{claimed} of {outside}");
+}

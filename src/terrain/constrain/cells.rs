@@ -1,7 +1,6 @@
 //! Square cells over a network of lines, and what lies in them.
 
-use super::bits::Bits;
-use super::pyramid::Pyramid;
+use super::pyramid::{Bits, Pyramid};
 use spmesh_delaunay::cell_lists::CellLists;
 use spmesh_delaunay::cell_walk::{TOLERANCE, for_each_cell};
 use spmesh_delaunay::network::Network;
@@ -10,7 +9,8 @@ use spmesh_stream::model::points::Point2;
 
 /// Cells per segment and vertex, about, and their least and greatest number.
 const CELLS_PER_ITEM: f64 = 1.0;
-const CELLS: [f64; 2] = [4096.0, 4_194_304.0];
+const CELLS_MIN: f64 = 4096.0;
+pub(super) const CELLS_MAX: f64 = 4_194_304.0;
 
 /// Items of all cells, for each segment and vertex, and beside these, at most: with more, cells are larger.
 const ITEMS_MAX: [usize; 2] = [32, 1 << 20];
@@ -75,7 +75,7 @@ impl Cells {
         network.vertices.iter().for_each(|vertex| bounds.extend(vertex.place));
         let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
         let wanted = CELLS_PER_ITEM * (network.segments.len() + network.vertices.len()) as f64;
-        let wanted = wanted.clamp(CELLS[0], CELLS[1]);
+        let wanted = wanted.clamp(CELLS_MIN, CELLS_MAX);
         // A long thin box has few cells across, and at most as many along as it may have in all.
         let side = (width * height / wanted).sqrt().max(width.max(height) / wanted);
         let mut side = if side > 0.0 { side } else { 1.0 };

@@ -1,94 +1,73 @@
-//! The circle of a triangle, and boxes that are certainly outside of it.
+//! The circle of a triangle, and boxes of cells that are certainly outside of it.
+//!
+//! The error bounds: docs/theory/constrained.md, section 7.
 
-use super::cells::CellBox;
+use super::cells::{CELLS_MAX, CellBox};
+use spmesh_delaunay::predicates::circle::{self, CircleBounds};
 use spmesh_stream::model::points::Point2;
 
-/// A disk that is a little larger than that of a triangle. Unit: cells.
+/// More than all roundings between a corner of a triangle and a vertex of the network in units of cells, as a part of
+/// their coordinates.
+const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+
+/// More than the few roundings of a length.
+const SLACK: f64 = 1.0 + 16.0 * f64::EPSILON;
+
+/// A centre with a greater error, as a part of the radius, is left aside: the power of places tells more.
+const CENTRE_ERROR_MAX: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// The circle of a triangle among cells. Unit: cells.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Circle {
-    corners: [Point2; 3],
-    /// Twice the area of the triangle.
-    twice_area: f64,
-    centre: Point2,
-    radius: f64,
-    /// Whether rounding errors of centre and radius are smaller than what was added to the radius.
-    is_certain: bool,
+    /// In stored units; `None` where nothing is known of it.
+    exact: Option<circle::Circle>,
+    scale: f64,
+    /// The first corner of the triangle.
+    corner: Point2,
+    /// How far rounding moves a vertex of the network from the triangle, at most, along an axis.
+    margin: f64,
+    /// Centre and radius of a disk that has all vertices of the network that are inside of the circle, if its centre is
+    /// known well.
+    disk: Option<(Point2, f64)>,
 }
 
 impl Circle {
-    /// The circle through the corners of a triangle, in stored coordinates and in units of cells; `scale` is
-    /// the number of cells per unit.
-    pub(super) fn of(stored: [Point2; 3], corners: [Point2; 3], scale: f64) -> Circle {
-        let [a, b, c] = stored;
-        let [u, v] = [b, c].map(|p| [(p[0] - a[0]) * scale, (p[1] - a[1]) * scale]);
-        let twice_area = u[0] * v[1] - u[1] * v[0];
-        let [uu, vv] = [u, v].map(|p| p[0] * p[0] + p[1] * p[1]);
-        let x = 0.5 * (v[1] * uu - u[1] * vv) / twice_area;
-        let y = 0.5 * (u[0] * vv - v[0] * uu) / twice_area;
-        let square = x * x + y * y;
-        let radius = square.sqrt();
-        let ww = (u[0] - v[0]).powi(2) + (u[1] - v[1]).powi(2);
-        // Differences of integers are exact; those of other numbers are off by a part of the numbers.
-        let is_exact = u
-            .iter()
-            .chain(&v)
-            .all(|x| x.abs() > 1e-9 * (corners[0][0].abs() + corners[0][1].abs()) || *x == 0.0);
-        let is_certain = is_exact && square < 1e8 * uu.min(vv).min(ww);
-        Circle {
-            corners,
-            twice_area,
-            centre: [corners[0][0] + x, corners[0][1] + y],
-            radius: radius * 1.000_001 + 1e-6,
-            is_certain,
-        }
+    /// The circle through the corners of a triangle in stored coordinates, which are counterclockwise. `corner` is the
+    /// first one in units of cells, and `scale` the number of cells per unit.
+    pub(super) fn of([a, b, c]: [Point2; 3], corner: Point2, scale: f64) -> Circle {
+        let exact = CircleBounds::FLOAT.circle(a, b, c);
+        let margin = ROUNDINGS * (corner[0].abs() + corner[1].abs() + CELLS_MAX);
+        let disk = exact.and_then(|circle| circle.disk()).and_then(|disk| {
+            let error = disk.errors[0] + disk.errors[1];
+            let radius = (disk.radius + error) * scale * SLACK + 2.0 * margin;
+            let centre = [0, 1].map(|axis| corner[axis] + disk.centre[axis] * scale);
+            (error < CENTRE_ERROR_MAX * disk.radius).then_some((centre, radius))
+        });
+        Circle { exact, scale, corner, margin, disk }
     }
 
     /// A box around the disk, perhaps without sides.
     pub(super) fn bounds(&self) -> CellBox {
-        if !self.is_certain {
+        let Some((centre, radius)) = self.disk else {
             return CellBox { min: [0.0; 2], max: [f64::INFINITY; 2] };
-        }
-        CellBox { min: self.centre.map(|x| x - self.radius), max: self.centre.map(|x| x + self.radius) }
+        };
+        CellBox { min: centre.map(|x| x - radius), max: centre.map(|x| x + radius) }
     }
 
-    /// Whether a box may meet the disk.
+    /// Whether a box of cells may have a vertex inside of the circle.
     pub(super) fn may_meet(&self, bounds: &CellBox) -> bool {
-        if !self.is_certain {
-            return self.may_meet_flat(bounds);
-        }
+        let Some((centre, radius)) = self.disk else {
+            let seen = |place: Point2, margin: f64| {
+                [0, 1].map(|axis| (place[axis] - self.corner[axis] + margin) / self.scale)
+            };
+            let seen = [seen(bounds.min, -self.margin), seen(bounds.max, self.margin)];
+            return !self.exact.is_some_and(|circle| circle.misses(seen));
+        };
         let mut square = 0.0;
         for axis in 0..2 {
-            let nearest = self.centre[axis].clamp(bounds.min[axis], bounds.max[axis]);
-            square += (self.centre[axis] - nearest).powi(2);
+            let nearest = centre[axis].clamp(bounds.min[axis], bounds.max[axis]);
+            square += (centre[axis] - nearest).powi(2);
         }
-        square <= self.radius * self.radius
-    }
-
-    /// The same for circles whose centre is too far to be computed.
-    ///
-    /// The power of a point is the square of its distance from the centre less that of the radius. Along an
-    /// axis it is a square and a linear function, so inside of a box with the sides w and h it is less than
-    /// at the corners by at most (w² + h²) / 4. Times twice the area of the triangle, it is the determinant
-    /// of the in-circle test.
-    fn may_meet_flat(&self, bounds: &CellBox) -> bool {
-        let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
-        let dip = self.twice_area.abs() * (width * width + height * height) / 4.0;
-        let [low, high] = [bounds.min, bounds.max];
-        let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
-        !corners.iter().all(|&corner| {
-            let [power, error] = self.power(corner);
-            power - error > dip
-        })
-    }
-
-    /// The power of a place times twice the area, and a bound of its error.
-    fn power(&self, place: Point2) -> [f64; 2] {
-        let [a, b, c] = self.corners.map(|corner| [corner[0] - place[0], corner[1] - place[1]]);
-        let lift = |p: Point2| p[0] * p[0] + p[1] * p[1];
-        let minors = [[b, c], [c, a], [a, b]].map(|[p, q]| [p[0] * q[1], p[1] * q[0]]);
-        let lifts = [a, b, c].map(lift);
-        let value: f64 = (0..3).map(|i| lifts[i] * (minors[i][0] - minors[i][1])).sum();
-        let size: f64 = (0..3).map(|i| lifts[i] * (minors[i][0].abs() + minors[i][1].abs())).sum();
-        [-value, 1e-11 * (size + 1.0)]
+        square <= radius * radius
     }
 }

@@ -7,7 +7,6 @@
 //!
 //! `near` says what of the lines a triangle meets, with the help of `cells`; `writing` makes patches.
 
-mod bits;
 mod cells;
 mod circle;
 mod cut;
@@ -21,7 +20,7 @@ mod writing;
 
 use std::io::{Read, Write};
 
-use crate::counterclockwise::is_counterclockwise;
+use crate::surface::is_counterclockwise;
 use cut::Cut;
 pub use cut::CutOptions;
 use held::{Held, Holding};

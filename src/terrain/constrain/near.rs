@@ -168,7 +168,7 @@ impl<'n> Lines<'n> {
         if is_small {
             return;
         }
-        let circle = Circle::of(corners, local, self.cells.scale());
+        let circle = Circle::of(corners, local[0], self.cells.scale());
         if !self.cells.is_found(&circle.bounds()) {
             self.cells.for_each_in(
                 &circle.bounds(),

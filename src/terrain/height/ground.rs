@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::block_writer::BlockWriter;
 use super::blocks::Blocks;
-use crate::counterclockwise::is_counterclockwise;
+use crate::surface::is_counterclockwise;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::FiniteFloatPredicates;
 use spmesh_formats::crs::{System, differences};
