@@ -4,12 +4,14 @@
 //! | module | program |
 //! |---|---|
 //! | [`dem`], [`contours`], [`points`], [`files`] | `spdem` |
-//! | [`height`] | `spheight`, `spcanopy` |
+//! | [`height`] | `spheight` |
+//! | [`canopy`], with [`height`] and [`dem`] | `spcanopy` |
 //! | [`constrain`] | `spconstrain` |
 //!
 //! `flags`, with the feature of this name, has their command lines.
 
 mod accumulators;
+pub mod canopy;
 pub mod constrain;
 pub mod contours;
 pub mod dem;

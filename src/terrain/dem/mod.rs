@@ -1,7 +1,7 @@
 //! `spdem`: triangles in, a raster out.
 //!
 //! A cell has the value of the triangle that contains its centre. Triangles are drawn as they arrive, in any
-//! order, by the `rasterizer`. `axis` and `centers` place the centres. `span` finds exactly the centres in a
+//! order, by the `rasterizer`. `axis` places the centres. `span` finds exactly the centres in a
 //! triangle, with the help of `search` where rounding leaves doubts. `facet` is the plane of a triangle. A
 //! `tile` holds cells; `tile_cache` holds all tiles, some of them in a temporary file. After the last
 //! triangle, `flush` passes on the remaining tiles, whose holes `fill` fills; `derived` has the slopes there.
@@ -11,7 +11,6 @@
 
 mod axis;
 mod cell_mask;
-mod centers;
 mod coverage;
 mod covering;
 mod cut;

@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::axis::Centers;
 use super::cell_mask::CellMask;
-use super::centers::Centers;
 use super::covering::Covering;
 use super::facet::{Facet, place};
 use super::options::{Interpolation, Options, Quantity};

@@ -1,8 +1,5 @@
 //! `spcanopy`: flags, and the counts of `--stats`.
 
-mod layers;
-
-use std::cell::Cell;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -10,9 +7,9 @@ use std::time::Instant;
 use clap::Parser;
 
 use super::sheets::SheetFlags;
+use crate::canopy::{Settings, draw, thresholds};
 use crate::dem::{Method, Options, Quantity, Sample};
 use crate::height::{Ground, HeightPoints, about_below};
-use layers::{Layers, Settings};
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::places::check_apart;
 use spmesh_base::system;
@@ -33,12 +30,6 @@ const TOOL: &str = "spcanopy";
 
 /// Classes of noise: low points, and high noise.
 const NOISE: [u8; 2] = [7, 18];
-
-/// Thresholds of layers below the regular ones, and the distance of these.
-const LOW_LAYERS: [f64; 3] = [0.0, 2.0, 5.0];
-const LAYER_STEP: f64 = 5.0;
-/// The most layers: those of trees of half a kilometre.
-const LAYERS_MAX: usize = 102;
 
 /// The longest edge of upper layers, in cells.
 const EDGE_CELLS: f64 = 4.0;
@@ -182,11 +173,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let points =
         HeightPoints::read(&ground, &input, temp_dir, flags.threads(), |points| progress.set(points))?;
     drop(ground);
-    let layers =
-        Layers { points: &points, grid, bottom: &bottom, settings: &settings, triangles: Cell::default() };
-    let thresholds = flags.thresholds(points.greatest())?;
+    let thresholds = thresholds(&flags.layers, points.greatest())?;
     let mut progress = Progress::counting("layers", &flags.common, "drawing", Some(thresholds.len() as u64));
-    let highest = layers.draw(&thresholds, |done| progress.set(done))?;
+    let (highest, triangles) =
+        draw(&points, &grid, &bottom, &settings, &thresholds, |done| progress.set(done))?;
     drop(progress);
     let (known, notices) = highest.write(output.destination(), &bottom, &input.description().crs)?;
     let committed = output.commit()?;
@@ -203,7 +193,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             ("points", "points", points.points()),
             ("points outside of the ground", "outside", points.outside()),
             ("layers", "layers", thresholds.len() as u64),
-            ("triangles of all layers", "triangles", layers.triangles.get()),
+            ("triangles of all layers", "triangles", triangles),
             ("cells", "cells", grid.cells()),
             ("cells with data", "known", known),
             ("output (bytes)", "output_bytes", committed.bytes),
@@ -287,23 +277,6 @@ impl Flags {
             threads,
             temp_dir: self.raster.temp_dir().map(Into::into),
         })
-    }
-
-    /// The thresholds of the layers, ascending from 0.
-    fn thresholds(&self, greatest: f64) -> Result<Vec<f64>> {
-        if let Some(wrong) = self.layers.iter().find(|height| !(height.is_finite() && **height >= 0.0)) {
-            return Err(Error::usage(format!("--layers takes heights from 0 on, not {wrong}")));
-        }
-        let mut thresholds = self.layers.clone();
-        if thresholds.is_empty() {
-            let regular = (2..).map(|number| f64::from(number) * LAYER_STEP);
-            thresholds = LOW_LAYERS.into_iter().chain(regular).take(LAYERS_MAX).collect();
-        }
-        thresholds.push(0.0);
-        thresholds.sort_by(f64::total_cmp);
-        thresholds.dedup();
-        thresholds.retain(|&height| height == 0.0 || height <= greatest);
-        Ok(thresholds)
     }
 
     /// Refuses points in another coordinate reference system than the ground's.

@@ -1,9 +1,8 @@
-//! The surfaces through the points above each threshold, and the highest of them.
+//! `spcanopy`: the surfaces through the points above each threshold, and the highest of them.
 //!
 //! Each layer goes through the same steps as a pipe of programs, with temporary files for pipes:
 //! finalization, triangulation, drawing.
 
-use std::cell::Cell;
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Seek, Write};
 use std::path::PathBuf;
@@ -21,47 +20,75 @@ use spmesh_stream::StreamReader;
 /// Bytes of the buffers of temporary files.
 const BUFFER_LEN: usize = 1 << 18;
 
+/// Thresholds of layers below the regular ones, and the distance of these.
+const LOW_LAYERS: [f64; 3] = [0.0, 2.0, 5.0];
+const LAYER_STEP: f64 = 5.0;
+/// The most layers: those of trees of half a kilometre.
+const LAYERS_MAX: usize = 102;
+
 /// How layers are made.
-pub(super) struct Settings {
-    /// Longest edge of triangles in layers above 0.
-    pub(super) edge_max: f64,
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Longest edge of triangles in layers above 0, in world units.
+    pub edge_max: f64,
     /// Memory for points. Units: bytes.
-    pub(super) memory: u64,
-    pub(super) threads: usize,
-    pub(super) temp_dir: Option<PathBuf>,
+    pub memory: u64,
+    /// Threads that finalize and triangulate.
+    pub threads: usize,
+    /// Folder for temporary files; that of the system if `None`.
+    pub temp_dir: Option<PathBuf>,
 }
 
-/// The layers of points with heights.
-pub(super) struct Layers<'l> {
-    pub(super) points: &'l HeightPoints,
-    pub(super) grid: Grid,
-    /// How the lowest layer is drawn.
-    pub(super) bottom: &'l Options,
-    pub(super) settings: &'l Settings,
-    /// Triangles of all layers that were drawn.
-    pub(super) triangles: Cell<u64>,
-}
-
-impl Layers<'_> {
-    /// Draws all layers; calls `progress` with the number of layers done.
-    pub(super) fn draw(&self, thresholds: &[f64], mut progress: impl FnMut(u64)) -> Result<Highest> {
-        let mut highest = Highest::new(&self.grid, self.bottom)?;
-        for (&threshold, done) in thresholds.iter().zip(1..) {
-            let mut options = self.bottom.clone();
-            if threshold > 0.0 {
-                (options.kill, options.concave) = (Some(self.settings.edge_max), None);
-            }
-            let mut mesh = self.triangulate(&Layer { points: self.points, threshold })?;
-            let stats = highest.add(&mut mesh, &options)?;
-            self.triangles.set(self.triangles.get() + stats.triangles);
-            progress(done);
-        }
-        Ok(highest)
+/// The thresholds of layers that have points up to `greatest`, ascending from 0; without `layers`, regular ones.
+///
+/// # Errors
+/// Usage, if one of `layers` is negative or not finite.
+pub fn thresholds(layers: &[f64], greatest: f64) -> Result<Vec<f64>> {
+    if let Some(wrong) = layers.iter().find(|height| !(height.is_finite() && **height >= 0.0)) {
+        return Err(Error::usage(format!("--layers takes heights from 0 on, not {wrong}")));
     }
+    let mut thresholds = layers.to_vec();
+    if thresholds.is_empty() {
+        let regular = (2..).map(|number| f64::from(number) * LAYER_STEP);
+        thresholds = LOW_LAYERS.into_iter().chain(regular).take(LAYERS_MAX).collect();
+    }
+    thresholds.push(0.0);
+    thresholds.sort_by(f64::total_cmp);
+    thresholds.dedup();
+    thresholds.retain(|&height| height == 0.0 || height <= greatest);
+    Ok(thresholds)
+}
 
+/// Draws the layers of all thresholds, the lowest of them as `bottom` says; calls `progress` with the number of layers
+/// done. Returns the highest surface, and the number of triangles of all layers.
+///
+/// # Errors
+/// Those of finalizing, triangulating and drawing.
+pub fn draw(
+    points: &HeightPoints,
+    grid: &Grid,
+    bottom: &Options,
+    settings: &Settings,
+    thresholds: &[f64],
+    mut progress: impl FnMut(u64),
+) -> Result<(Highest, u64)> {
+    let (mut highest, mut triangles) = (Highest::new(grid, bottom)?, 0);
+    for (&threshold, done) in thresholds.iter().zip(1..) {
+        let mut options = bottom.clone();
+        if threshold > 0.0 {
+            (options.kill, options.concave) = (Some(settings.edge_max), None);
+        }
+        let mut mesh = settings.triangulate(&Layer { points, threshold })?;
+        triangles += highest.add(&mut mesh, &options)?.triangles;
+        progress(done);
+    }
+    Ok((highest, triangles))
+}
+
+impl Settings {
     /// The mesh of a layer, as a stream.
     fn triangulate(&self, layer: &Layer) -> Result<StreamReader<BufReader<File>>> {
-        let Settings { memory, threads, temp_dir, .. } = self.settings;
+        let Settings { memory, threads, temp_dir, .. } = self;
         let leaves = Leaves::Collapsed { cell_points: CELL_POINTS, level_max: None };
         let options = spmesh_pipeline::finalize::Options {
             leaves,
@@ -91,7 +118,7 @@ impl Layers<'_> {
         write: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
     ) -> Result<StreamReader<BufReader<File>>> {
         let failed = |e| Error::io("writing a temporary file", e);
-        let file = TemporaryFile::create(self.settings.temp_dir.as_deref())?.into_file();
+        let file = TemporaryFile::create(self.temp_dir.as_deref())?.into_file();
         let mut output = BufWriter::with_capacity(BUFFER_LEN, file);
         write(&mut output)?;
         output.flush().map_err(failed)?;
