@@ -129,8 +129,11 @@ impl Structure {
         Selected { structure: self, points, members: Members::Model(model) }
     }
 
-    /// Indices of the selected models.
-    fn models_of(&self, selection: &Selection) -> Result<Vec<usize>> {
+    /// Indices of the selected models, of which there is one at least.
+    ///
+    /// # Errors
+    /// Usage, if the structure has no such model.
+    pub fn models_of(&self, selection: &Selection) -> Result<Vec<usize>> {
         match selection.models {
             Models::First => Ok(vec![0]),
             Models::All => Ok((0..self.models.len()).collect()),

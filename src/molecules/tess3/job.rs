@@ -79,7 +79,7 @@ impl Job<'_> {
     /// Triangulates the selected atoms of one model.
     fn model(&mut self, structure: &mut Structure, place: usize) -> Result<Report> {
         let started = Instant::now();
-        let at = selection::model_index(structure, &self.options.selection)?;
+        let at = structure.models_of(&self.options.selection)?[0];
         let name = ModelName { place, number: structure.models[at].number };
         // Points without atoms and labels move into the kernel, which then needs no copy.
         let model = &structure.models[at];

@@ -1,15 +1,7 @@
 //! Selects atoms; if none is left, the error tells what other flags would select.
 
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::molecules::{Altlocs, Atoms, Models, Selected, Selection, Structure};
-
-/// Index of the model to triangulate: the first one by default.
-pub(super) fn model_index(structure: &Structure, selection: &Selection) -> Result<usize> {
-    let by_model = Selection { models: selection.models, altlocs: Altlocs::All, ..Selection::default() };
-    structure.select(&by_model)?;
-    let is_wanted = |number| selection.models == Models::One(number);
-    Ok(structure.models.iter().position(|model| is_wanted(model.number)).unwrap_or(0))
-}
+use spmesh_formats::molecules::{Altlocs, Atoms, Selected, Selection, Structure};
 
 /// The atoms of a selection.
 pub(super) fn select<'s>(structure: &'s Structure, selection: &Selection) -> Result<Selected<'s>> {
