@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use spmesh_base::error::ErrorKind;
+use spmesh_base::error::{ErrorKind, Result};
 use spmesh_delaunay::network::Network;
-use spmesh_pipeline::lines::{ChangeKind, Changes, Options, Target, read};
+use spmesh_pipeline::lines::{ChangeKind, Changes, Lines, Options, Sources, Target};
 use spmesh_stream::{Coordinates, Crs};
 
 use crate::programs::{Folder, assert_outcome, outcome, run};
@@ -18,6 +18,12 @@ fn sample(name: &str) -> PathBuf {
 fn grid(scale: f64) -> Target {
     let coordinates = Coordinates::I32 { scale: [scale; 3], offset: [0.0; 3] };
     Target { coordinates, crs: Crs::Unknown, has_elevation: true }
+}
+
+fn read(lines: &[PathBuf], target: &Target, options: &Options) -> Result<(Network, Changes)> {
+    let sources = Sources { lines, ..Sources::default() };
+    let Lines { network, changes, .. } = spmesh_pipeline::lines::read(&sources, target, options)?;
+    Ok((network, changes))
 }
 
 fn network(name: &str, target: &Target) -> (Network, Changes) {

@@ -26,6 +26,7 @@ use spmesh_base::error::{Error, ErrorKind};
 use spmesh_base::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
 use spmesh_base::parallel::{THREADS_DEFAULT_MAX, available_threads};
 use spmesh_base::system;
+pub use spmesh_base::system::peak_memory;
 use spmesh_base::temporary::remove_names_at_signals;
 use spmesh_formats::detect::BYTE_ORDER_MARK;
 use spmesh_formats::source::{Plain, is_manifest, name_of, open_file, open_manifest, open_stdin};
@@ -141,13 +142,6 @@ pub fn parse_box(text: &str) -> Result<Bounds, String> {
 pub fn threads(asked: Option<u16>) -> NonZeroUsize {
     let cores = || available_threads().get().min(THREADS_DEFAULT_MAX);
     NonZeroUsize::new(asked.map_or_else(cores, usize::from)).unwrap_or(NonZeroUsize::MIN)
-}
-
-/// Peak resident memory of this process in bytes; 0 where the system does not tell.
-pub fn peak_memory() -> u64 {
-    let Ok(status) = std::fs::read_to_string("/proc/self/status") else { return 0 };
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()).unwrap_or(0) * 1024
 }
 
 /// Opens an input that is read in order: stdin for `-`, a file otherwise; with the name that messages use.

@@ -8,7 +8,7 @@ use foldhash::fast::FixedState;
 use std::cmp::Ordering as Order;
 use std::hash::BuildHasher;
 
-use super::passes::{Passes, next_kept};
+use super::passes::{Keep, KeptPoints, Passes};
 use spmesh_base::error::Result;
 use spmesh_formats::source::{Description, PointReader};
 use spmesh_stream::model::bounds::{Bounds, Point};
@@ -18,7 +18,7 @@ const BATCH: usize = 1 << 14;
 
 /// Points that are added to an input.
 #[derive(Debug, Default)]
-pub struct AddedPoints {
+pub(super) struct AddedPoints {
     /// In lexicographic order of their places.
     points: Vec<Point>,
     /// A bit for each value that the hash of a place of them can have.
@@ -29,7 +29,7 @@ pub struct AddedPoints {
 
 impl AddedPoints {
     /// Adds points, in stored coordinates of the input, to an input of the plane. No two have one place.
-    pub fn new(mut points: Vec<Point>) -> AddedPoints {
+    pub(super) fn new(mut points: Vec<Point>) -> AddedPoints {
         points.sort_unstable_by(by_place);
         // Of other places, one in sixteen or fewer has the hash of one of these.
         let bits = (16 * points.len()).next_power_of_two().max(64);
@@ -58,17 +58,17 @@ impl AddedPoints {
     }
 
     /// Number of points that are added.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.points.len()
     }
 
     /// Whether no points are added.
-    pub fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
     /// After a run: how many points of the input were left out.
-    pub fn replaced(&self) -> u64 {
+    pub(super) fn replaced(&self) -> u64 {
         self.replaced.load(Ordering::Relaxed)
     }
 }
@@ -79,16 +79,16 @@ fn by_place(a: &Point, b: &Point) -> Order {
 }
 
 /// An input with added points.
-pub(super) struct WithAdded<'a, P: Passes + ?Sized> {
-    input: &'a P,
+pub(super) struct WithAdded<'a> {
+    input: &'a dyn Passes,
     added: &'a AddedPoints,
     description: Description,
     /// The row of an added point.
     row: Vec<u8>,
 }
 
-impl<'a, P: Passes + ?Sized> WithAdded<'a, P> {
-    pub(super) fn new(input: &'a P, added: &'a AddedPoints) -> Self {
+impl<'a> WithAdded<'a> {
+    pub(super) fn new(input: &'a dyn Passes, added: &'a AddedPoints) -> Self {
         let description = input.description().clone();
         let bounds = Bounds::of_points(&added.points);
         let description = Description {
@@ -102,73 +102,71 @@ impl<'a, P: Passes + ?Sized> WithAdded<'a, P> {
     }
 }
 
-impl<P: Passes + ?Sized> Passes for WithAdded<'_, P> {
+impl Passes for WithAdded<'_> {
     fn description(&self) -> &Description {
         &self.description
     }
 
     fn read(&self) -> Result<Box<dyn PointReader + '_>> {
-        Ok(Box::new(WithAddedReader {
-            reader: self.input.read()?,
-            added: self.added,
-            row: &self.row,
-            next: 0,
-            replaced: 0,
-            rows: Vec::new(),
-        }))
+        let rest = KeptPoints::new(self.input, FreePlaces { added: self.added, replaced: 0 })?;
+        Ok(Box::new(WithAddedReader { added: &self.added.points, row: &self.row, rest, rows: Vec::new() }))
     }
 
-    fn is_costly(&self) -> bool {
-        self.input.is_costly()
-    }
-
-    fn name(&self) -> Option<String> {
-        self.input.name()
+    fn source(&self) -> Option<&dyn Passes> {
+        Some(self.input)
     }
 }
 
 /// One pass over an input with added points.
 struct WithAddedReader<'a> {
-    reader: Box<dyn PointReader + 'a>,
-    added: &'a AddedPoints,
+    /// Added points that come next.
+    added: &'a [Point],
     row: &'a [u8],
-    /// Added points that were passed on.
-    next: usize,
-    /// Points of the input that were left out.
-    replaced: u64,
+    /// The points of the input.
+    rest: KeptPoints<'a, FreePlaces<'a>>,
+    /// The rows of added points in the batch.
     rows: Vec<u8>,
 }
 
 impl PointReader for WithAddedReader<'_> {
     fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
-        let rest = &self.added.points[self.next..];
-        if !rest.is_empty() {
-            let points = &rest[..rest.len().min(BATCH)];
-            batch.clear();
-            batch.extend_from_slice(points);
-            self.next += points.len();
-            self.rows.clear();
-            points.iter().for_each(|_| self.rows.extend_from_slice(self.row));
-            return Ok(());
+        self.rows.clear();
+        if self.added.is_empty() {
+            return self.rest.next_batch(batch);
         }
-        let WithAddedReader { reader, added, row, replaced, rows, .. } = self;
-        // Points of the input at places of added points are left out.
-        next_kept(&mut **reader, batch, row.len(), rows, |point| {
-            let is_free = !added.has_place_of(point);
-            *replaced += u64::from(!is_free);
-            is_free
-        })?;
-        if batch.is_empty() {
-            added.replaced.store(*replaced, Ordering::Relaxed);
-        }
+        let (points, others) = self.added.split_at(self.added.len().min(BATCH));
+        self.added = others;
+        batch.clear();
+        batch.extend_from_slice(points);
+        points.iter().for_each(|_| self.rows.extend_from_slice(self.row));
         Ok(())
     }
 
     fn rows(&self) -> &[u8] {
-        &self.rows
+        if self.rows.is_empty() { self.rest.rows() } else { &self.rows }
     }
 
     fn invalid(&self) -> u64 {
-        self.reader.invalid()
+        self.rest.invalid()
+    }
+}
+
+/// Leaves out points of the input at places of added points.
+struct FreePlaces<'a> {
+    added: &'a AddedPoints,
+    /// Points that were left out.
+    replaced: u64,
+}
+
+impl Keep for FreePlaces<'_> {
+    fn keeps(&mut self, point: &Point) -> bool {
+        let is_free = !self.added.has_place_of(point);
+        self.replaced += u64::from(!is_free);
+        is_free
+    }
+
+    fn end(&mut self) -> Result<()> {
+        self.added.replaced.store(self.replaced, Ordering::Relaxed);
+        Ok(())
     }
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use super::cold::ColdCells;
 use super::pages::{NO_PAGE, Pages};
+use super::run::Stats;
 use super::spill::{NO_EXTENT, Spill};
-use super::stats::Stats;
 use spmesh_base::error::Result;
 
 /// Bytes of the state of one cell.

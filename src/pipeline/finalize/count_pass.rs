@@ -1,12 +1,11 @@
 //! Passes 1 and 2: the bounding box, and the number of points per cell.
 
 use super::batch::PointBatch;
-use super::cell_counts::CellCounts;
 use super::cell_grid::CellGrid;
-use super::changed::input_changed;
-use super::counters::{CellSums, Counters};
+use super::counters::{CellCounts, CellSums, Counters};
 use super::options::{Leaves, Options, depth_max};
-use super::passes::{Pass, Passes};
+use super::passes::Pass;
+use super::passes::input_changed;
 use super::work::Work;
 use spmesh_base::error::Result;
 use spmesh_stream::Coordinates;
@@ -73,7 +72,7 @@ struct Count {
     sums: CellSums,
 }
 
-impl<P: Passes + ?Sized> Work<'_, P> {
+impl Work<'_> {
     /// Finds the bounding box and the counts per cell.
     ///
     /// A box stated by the headers saves pass 1. Pass 2 verifies it, and starts again with the true box if

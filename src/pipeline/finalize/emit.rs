@@ -4,10 +4,10 @@ use std::io::Write;
 
 use super::batch::{PointBatch, encode_records};
 use super::buffer::CellBuffers;
-use super::changed::input_changed;
 use super::locate::Locator;
 use super::options::Options;
-use super::passes::{Pass, Passes};
+use super::passes::Pass;
+use super::passes::input_changed;
 use super::plan::Plan;
 use super::work::Work;
 use spmesh_base::error::Result;
@@ -46,7 +46,7 @@ impl Located {
     }
 }
 
-impl<P: Passes + ?Sized> Work<'_, P> {
+impl Work<'_> {
     /// Holds the points of a leaf until its counter is zero, then writes them and its tag.
     ///
     /// Leaves that are complete within the same [`WINDOW`] of points are written in the order of the tree. If

@@ -2,7 +2,7 @@
 //! its cells.
 
 use super::cell_grid::CellGrid;
-use super::changed::input_changed;
+use super::passes::input_changed;
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::model::cells::{CellCode, CellTree};

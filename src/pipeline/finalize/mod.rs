@@ -13,7 +13,8 @@
 //! Polygons may say which points count (`select`), and the points near shores tell the levels of water
 //! (`shores`).
 //!
-//! Points may be added to those of the input, such as the vertices of lines (`added`).
+//! Points may be added to those of the input, such as the vertices of lines (`added`). A [`Recipe`] is a whole
+//! run over files.
 //!
 //! The result does not depend on how many points wait in memory or on disk. Counters have 64 bits.
 
@@ -21,9 +22,7 @@ mod added;
 mod batch;
 mod budget;
 mod buffer;
-mod cell_counts;
 pub mod cell_grid;
-mod changed;
 mod cold;
 mod count_pass;
 mod counters;
@@ -33,27 +32,21 @@ mod options;
 mod pages;
 mod passes;
 mod plan;
-mod read_ahead;
+mod recipe;
 mod run;
 mod select;
 mod shores;
 mod spill;
 mod spool;
-mod stats;
 mod thin;
 mod weigh;
-mod windowed;
 mod work;
 
-pub use added::AddedPoints;
 pub use budget::Budget;
 pub use options::{CELL_POINTS, Leaves, Options, Order};
 pub use passes::{Observer, Pass, Passes};
-pub use run::{run, run_with};
-pub use select::{Areas, Selected};
-pub use shores::{Shores, shore_width};
+pub use recipe::{Drops, Flatten, LineStats, Outcome, Recipe};
+pub use run::{Stats, run};
 pub use spool::Spooling;
-pub use stats::Stats;
 pub use thin::{Thin, ThinBy};
-pub use weigh::{Weighed, WeightSource};
-pub use windowed::{PlannedBox, Windowed};
+pub use weigh::Weighing;

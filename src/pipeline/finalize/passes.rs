@@ -1,6 +1,6 @@
 //! The passes over an input.
 
-use spmesh_base::error::Result;
+use spmesh_base::error::{Error, Result};
 use spmesh_formats::source::{Description, Input, PointReader};
 use spmesh_stream::model::bounds::Point;
 
@@ -12,14 +12,19 @@ pub trait Passes {
     /// Starts a pass.
     fn read(&self) -> Result<Box<dyn PointReader + '_>>;
 
+    /// The input that this one changes, if it is made of one.
+    fn source(&self) -> Option<&dyn Passes> {
+        None
+    }
+
     /// Whether decoding costs more than writing decoded points to disk and reading them back.
     fn is_costly(&self) -> bool {
-        false
+        self.source().is_some_and(|source| source.is_costly())
     }
 
     /// Name of the input in messages, if it has one.
     fn name(&self) -> Option<String> {
-        None
+        self.source()?.name()
     }
 }
 
@@ -41,33 +46,61 @@ impl Passes for Input {
     }
 }
 
-/// Reads the next batch of which `keeps` accepts points, and leaves out all others; empty at the end. Sets
-/// `rows` to the rows of these points, of `row_len` bytes.
-pub(super) fn next_kept(
-    reader: &mut dyn PointReader,
-    batch: &mut Vec<Point>,
+/// Decides which points of a pass are kept.
+pub(super) trait Keep: Send {
+    /// Whether the next point is kept.
+    fn keeps(&mut self, point: &Point) -> bool;
+
+    /// The pass is at its end.
+    fn end(&mut self) -> Result<()>;
+}
+
+/// One pass over the points of an input that are kept.
+pub(super) struct KeptPoints<'a, K> {
+    reader: Box<dyn PointReader + 'a>,
+    keep: K,
     row_len: usize,
-    rows: &mut Vec<u8>,
-    mut keeps: impl FnMut(&Point) -> bool,
-) -> Result<()> {
-    rows.clear();
-    loop {
-        reader.next_batch(batch)?;
-        if batch.is_empty() {
-            return Ok(());
-        }
-        let mut kept = 0;
-        for index in 0..batch.len() {
-            if keeps(&batch[index]) {
-                batch[kept] = batch[index];
-                kept += 1;
-                rows.extend_from_slice(&reader.rows()[index * row_len..(index + 1) * row_len]);
+    rows: Vec<u8>,
+}
+
+impl<'a, K: Keep> KeptPoints<'a, K> {
+    /// Starts a pass over `input`.
+    pub(super) fn new(input: &'a dyn Passes, keep: K) -> Result<KeptPoints<'a, K>> {
+        let row_len = input.description().attributes.row_len();
+        Ok(KeptPoints { reader: input.read()?, keep, row_len, rows: Vec::new() })
+    }
+}
+
+impl<K: Keep> PointReader for KeptPoints<'_, K> {
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        let KeptPoints { reader, keep, row_len, rows } = self;
+        rows.clear();
+        loop {
+            reader.next_batch(batch)?;
+            if batch.is_empty() {
+                return keep.end();
+            }
+            let mut kept = 0;
+            for index in 0..batch.len() {
+                if keep.keeps(&batch[index]) {
+                    batch[kept] = batch[index];
+                    kept += 1;
+                    rows.extend_from_slice(&reader.rows()[index * *row_len..(index + 1) * *row_len]);
+                }
+            }
+            batch.truncate(kept);
+            if kept > 0 {
+                return Ok(());
             }
         }
-        batch.truncate(kept);
-        if kept > 0 {
-            return Ok(());
-        }
+    }
+
+    fn rows(&self) -> &[u8] {
+        &self.rows
+    }
+
+    fn invalid(&self) -> u64 {
+        self.reader.invalid()
     }
 }
 
@@ -126,3 +159,8 @@ pub trait Observer {
 }
 
 impl Observer for () {}
+
+/// The error of an input that is not the same in every pass.
+pub(super) fn input_changed() -> Error {
+    Error::malformed("the input changed between two passes over it")
+}

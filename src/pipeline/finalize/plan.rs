@@ -2,10 +2,10 @@
 
 use super::budget::Budget;
 use super::buffer::CELL_COST;
-use super::cell_counts::CellCounts;
-use super::changed::input_changed;
+use super::counters::CellCounts;
 use super::locate::Locator;
 use super::options::Leaves;
+use super::passes::input_changed;
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_stream::model::cells::{CellCode, CellTree};
 

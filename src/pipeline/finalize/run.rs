@@ -1,19 +1,60 @@
 //! A whole run: count the points, plan the leaves, write points and tags.
 
 use std::io::Write;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::added::{AddedPoints, WithAdded};
 use super::count_pass::PointCounts;
 use super::options::{Options, Order};
 use super::passes::{Observer, Pass, Passes};
 use super::plan::Plan;
-use super::stats::Stats;
 use super::thin::{Thin, Thinned};
 use super::work::Work;
 use spmesh_base::error::{ErrorKind, Result};
 use spmesh_formats::source::Description;
 use spmesh_stream::{Header, Kind, StreamWriter};
+
+/// Figures of a run: the columns of table 5.1 of the thesis, and more.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Points written.
+    pub points: u64,
+    /// Points dropped because a coordinate is not finite.
+    pub invalid: u64,
+    /// Points dropped because their cell keeps another.
+    pub thinned: u64,
+    /// Every pass over the input with its time, in order.
+    pub passes: Vec<(&'static str, Duration)>,
+    /// Level of the deepest leaf.
+    pub level: u8,
+    /// Leaves: occupied cells that are tagged.
+    pub occupied_cells: u64,
+    /// Maximal empty cells, tagged at the start.
+    pub empty_cells: u64,
+    /// Points in the fullest leaf.
+    pub cell_points_max: u64,
+    /// High-water mark of points that wait for their cell, in memory and on disk.
+    pub buffered_points_max: u64,
+    /// High-water mark of the memory of waiting points, in bytes.
+    pub buffered_bytes_max: u64,
+    /// Points that waited on disk.
+    pub spilled_points: u64,
+    /// Those of them that did although there was memory, because their cell had got no points for long.
+    pub cold_points: u64,
+    /// Bytes of the temporary file for waiting points.
+    pub spilled_bytes: u64,
+    /// Points kept for later passes.
+    pub spooled_points: u64,
+    /// Bytes of the temporary file for kept points.
+    pub spooled_bytes: u64,
+}
+
+impl Stats {
+    /// Average number of points in a leaf.
+    pub fn cell_points_avg(&self) -> f64 {
+        self.points as f64 / self.occupied_cells.max(1) as f64
+    }
+}
 
 /// Reads `input` two or more times and writes its finalized point stream, END included, to `output`.
 ///
@@ -30,27 +71,14 @@ pub fn run(
     input: &dyn Passes,
     options: &Options,
     observer: &mut dyn Observer,
-    output: impl Write,
-) -> Result<Stats> {
-    run_with(input, &AddedPoints::default(), options, observer, output)
-}
-
-/// As [`run`], with points that are added to those of the input, and not thinned.
-///
-/// # Errors
-/// As [`run`].
-pub fn run_with(
-    input: &dyn Passes,
-    added: &AddedPoints,
-    options: &Options,
-    observer: &mut dyn Observer,
     mut output: impl Write,
 ) -> Result<Stats> {
     // Of one type, so that all of this is compiled once, in this crate.
-    finalize(input, added, options, observer, &mut output)
+    run_with(input, &AddedPoints::default(), options, observer, &mut output)
 }
 
-fn finalize(
+/// As [`run`], with points that are added to those of the input, and not thinned.
+pub(super) fn run_with(
     input: &dyn Passes,
     added: &AddedPoints,
     options: &Options,
@@ -78,18 +106,8 @@ fn write(
     observer: &mut dyn Observer,
     output: &mut dyn Write,
 ) -> Result<Stats> {
-    if added.is_empty() {
-        return write_all(input, options, observer, output);
-    }
-    write_all(&WithAdded::new(input, added), options, observer, output)
-}
-
-fn write_all(
-    input: &dyn Passes,
-    options: &Options,
-    observer: &mut dyn Observer,
-    output: &mut dyn Write,
-) -> Result<Stats> {
+    let with_added = WithAdded::new(input, added);
+    let input = if added.is_empty() { input } else { &with_added };
     let mut work = Work::new(input, options, observer);
     work.write(options, output)?;
     Ok(work.stats)
@@ -115,7 +133,7 @@ fn write_thinned(
     Ok(stats)
 }
 
-impl<P: Passes + ?Sized> Work<'_, P> {
+impl Work<'_> {
     /// Makes all passes.
     fn write<W: Write>(&mut self, options: &Options, output: W) -> Result<()> {
         let counts = self.count_points(options)?;

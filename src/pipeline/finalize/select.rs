@@ -2,18 +2,20 @@
 //!
 //! Every pass tests every point anew, so all passes see the same points, whatever their order.
 
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::passes::{Passes, next_kept};
+use super::passes::{Keep, KeptPoints, Passes};
+use crate::lines::Target;
 use crate::polygons::{Polygons, Rings, Side};
 use spmesh_base::error::Result;
-use spmesh_formats::source::{Description, PointReader};
+use spmesh_formats::source::{Description, PointReader, read_polygons};
 use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::model::points::Point2;
 
 /// Polygons that select points. Coordinates are those that the input stores.
 #[derive(Debug, Default)]
-pub struct Areas {
+pub(super) struct Areas {
     clip: Option<(Polygons, Option<[Point2; 2]>)>,
     drop: Option<Polygons>,
     water: Option<Polygons>,
@@ -22,7 +24,7 @@ pub struct Areas {
 impl Areas {
     /// Keeps the points inside of `clip` or on its border, if it is given, and of these the ones that are not
     /// strictly inside of a polygon of `drop`.
-    pub fn new(clip: Option<&[Rings]>, drop: &[Rings]) -> Areas {
+    pub(super) fn new(clip: Option<&[Rings]>, drop: &[Rings]) -> Areas {
         Areas {
             clip: clip.map(|polygons| (Polygons::new(polygons), extent(polygons))),
             drop: (!drop.is_empty()).then(|| Polygons::new(drop)),
@@ -30,13 +32,26 @@ impl Areas {
         }
     }
 
+    /// Reads the polygons of files for points of `target`, and messages for the user. Without files to keep
+    /// points inside of, all are kept.
+    ///
+    /// # Errors
+    /// As [`read_polygons`].
+    pub(super) fn read(clip: &[PathBuf], drop: &[PathBuf], target: &Target) -> Result<(Areas, Vec<String>)> {
+        let Target { coordinates, crs, .. } = target;
+        let (kept, mut notices) = read_polygons(clip, coordinates, crs)?;
+        let (dropped, more) = read_polygons(drop, coordinates, crs)?;
+        notices.extend(more);
+        Ok((Areas::new((!clip.is_empty()).then_some(&kept[..]), &dropped), notices))
+    }
+
     /// Drops points in water, too, and those on its shores: the edges of its polygons with their numbers.
-    pub fn with_water(self, edges: impl Iterator<Item = (u32, [Point2; 2])>) -> Areas {
+    pub(super) fn with_water(self, edges: impl Iterator<Item = (u32, [Point2; 2])>) -> Areas {
         Areas { water: Some(Polygons::of_edges(edges)), ..self }
     }
 
     /// Whether all points are kept.
-    pub fn keep_all(&self) -> bool {
+    pub(super) fn keep_all(&self) -> bool {
         self.clip.is_none() && self.drop.is_none() && self.water.is_none()
     }
 
@@ -63,16 +78,16 @@ fn extent(polygons: &[Rings]) -> Option<[Point2; 2]> {
 }
 
 /// The points of an input that polygons select.
-pub struct Selected<'a, P: Passes + ?Sized> {
-    input: &'a P,
+pub(super) struct Selected<'a> {
+    input: &'a dyn Passes,
     areas: &'a Areas,
     description: Description,
     counts: [AtomicU64; 3],
 }
 
-impl<'a, P: Passes + ?Sized> Selected<'a, P> {
+impl<'a> Selected<'a> {
     /// The points of `input` that `areas` select.
-    pub fn new(input: &'a P, areas: &'a Areas) -> Self {
+    pub(super) fn new(input: &'a dyn Passes, areas: &'a Areas) -> Self {
         let mut description = input.description().clone();
         if let Some((_, extent)) = &areas.clip {
             description.stated_bounds = description.stated_bounds.and_then(|stated| within(stated, *extent));
@@ -81,7 +96,7 @@ impl<'a, P: Passes + ?Sized> Selected<'a, P> {
     }
 
     /// After a run: points outside of the polygons to keep, inside of those to drop, and in water.
-    pub fn dropped(&self) -> [u64; 3] {
+    pub(super) fn dropped(&self) -> [u64; 3] {
         self.counts.each_ref().map(|count| count.load(Ordering::Relaxed))
     }
 }
@@ -96,62 +111,42 @@ fn within(mut bounds: Bounds, extent: Option<[Point2; 2]>) -> Option<Bounds> {
     (0..2).all(|axis| bounds.min[axis] <= bounds.max[axis]).then_some(bounds)
 }
 
-impl<P: Passes + ?Sized> Passes for Selected<'_, P> {
+impl Passes for Selected<'_> {
     fn description(&self) -> &Description {
         &self.description
     }
 
     fn read(&self) -> Result<Box<dyn PointReader + '_>> {
-        Ok(Box::new(SelectedReader {
-            reader: self.input.read()?,
-            areas: self.areas,
-            counts: &self.counts,
-            dropped: [0; 3],
-            row_len: self.description.attributes.row_len(),
-            rows: Vec::new(),
-        }))
+        let pass = SelectedPass { areas: self.areas, counts: &self.counts, dropped: [0; 3] };
+        Ok(Box::new(KeptPoints::new(self.input, pass)?))
     }
 
-    fn is_costly(&self) -> bool {
-        self.input.is_costly()
-    }
-
-    fn name(&self) -> Option<String> {
-        self.input.name()
+    fn source(&self) -> Option<&dyn Passes> {
+        Some(self.input)
     }
 }
 
 /// One pass over the points that count.
-struct SelectedReader<'a> {
-    reader: Box<dyn PointReader + 'a>,
+struct SelectedPass<'a> {
     areas: &'a Areas,
     /// For the counts of a whole pass.
     counts: &'a [AtomicU64; 3],
     dropped: [u64; 3],
-    row_len: usize,
-    rows: Vec<u8>,
 }
 
-impl PointReader for SelectedReader<'_> {
-    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
-        let SelectedReader { reader, areas, counts, dropped, row_len, rows } = self;
-        next_kept(&mut **reader, batch, *row_len, rows, |&[x, y, _]| {
-            let tests = [Areas::clips, Areas::drops, Areas::floods];
-            let reason = tests.iter().position(|test| test(areas, [x, y]));
-            reason.into_iter().for_each(|reason| dropped[reason] += 1);
-            reason.is_none()
-        })?;
-        if batch.is_empty() {
-            counts.iter().zip(dropped).for_each(|(count, dropped)| count.store(*dropped, Ordering::Relaxed));
-        }
+impl Keep for SelectedPass<'_> {
+    fn keeps(&mut self, &[x, y, _]: &Point) -> bool {
+        let tests = [Areas::clips, Areas::drops, Areas::floods];
+        let reason = tests.iter().position(|test| test(self.areas, [x, y]));
+        reason.into_iter().for_each(|reason| self.dropped[reason] += 1);
+        reason.is_none()
+    }
+
+    fn end(&mut self) -> Result<()> {
+        self.counts
+            .iter()
+            .zip(self.dropped)
+            .for_each(|(count, dropped)| count.store(dropped, Ordering::Relaxed));
         Ok(())
-    }
-
-    fn rows(&self) -> &[u8] {
-        &self.rows
-    }
-
-    fn invalid(&self) -> u64 {
-        self.reader.invalid()
     }
 }

@@ -4,9 +4,8 @@
 
 use foldhash::{HashMap, HashMapExt};
 
-use super::batch::PointBatch;
+use super::batch::{PointBatch, read_ahead};
 use super::passes::{Observer, Pass, Passes};
-use super::read_ahead::read_ahead;
 use crate::polygons::{Polygons, Side};
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::{Bounds, Point};
@@ -28,7 +27,7 @@ const WIDTH_DISTANCES: f64 = 4.0;
 ///
 /// # Errors
 /// Those of the input.
-pub fn shore_width<P: Passes + ?Sized>(input: &P, observer: &mut dyn Observer) -> Result<Option<f64>> {
+pub(super) fn shore_width(input: &dyn Passes, observer: &mut dyn Observer) -> Result<Option<f64>> {
     observer.pass(Pass::Spacing, input.description().stated_points);
     let (mut bounds, mut points): (Option<Bounds>, u64) = (None, 0);
     let prepare = |_: &PointBatch, (): &mut ()| Ok(());
@@ -50,7 +49,7 @@ pub fn shore_width<P: Passes + ?Sized>(input: &P, observer: &mut dyn Observer) -
 /// Shores, and the points that count for them: those at most a width away, and neither in water nor on a
 /// shore.
 #[derive(Debug)]
-pub struct Shores {
+pub(super) struct Shores {
     edges: Vec<(u32, [Point2; 2])>,
     water: Polygons,
     width: f64,
@@ -64,7 +63,7 @@ pub struct Shores {
 impl Shores {
     /// The shores of polygons whose edges are given with their numbers; points are collected for those that
     /// `needed` says. `width` is in stored units.
-    pub fn new(edges: Vec<(u32, [Point2; 2])>, needed: &[bool], width: f64) -> Shores {
+    pub(super) fn new(edges: Vec<(u32, [Point2; 2])>, needed: &[bool], width: f64) -> Shores {
         let water = Polygons::of_edges(edges.iter().copied());
         let is_needed = |(number, _): &(u32, _)| needed[*number as usize];
         let edges: Vec<(u32, [Point2; 2])> = edges.into_iter().filter(is_needed).collect();
@@ -123,11 +122,7 @@ impl Shores {
     ///
     /// # Errors
     /// Those of the input.
-    pub fn collect<P: Passes + ?Sized>(
-        &self,
-        input: &P,
-        observer: &mut dyn Observer,
-    ) -> Result<Vec<Vec<Point>>> {
+    pub(super) fn collect(&self, input: &dyn Passes, observer: &mut dyn Observer) -> Result<Vec<Vec<Point>>> {
         observer.pass(Pass::Shores, input.description().stated_points);
         let (mut shores, mut done) = (vec![Vec::new(); self.polygons], 0);
         let prepare = |batch: &PointBatch, near: &mut Vec<(u32, Point)>| {

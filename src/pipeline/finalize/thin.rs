@@ -8,11 +8,9 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::str::FromStr;
 
-use super::batch::PointBatch;
+use super::batch::{PointBatch, read_ahead};
 use super::budget::Budget;
-use super::changed::input_changed;
-use super::passes::{Passes, next_kept};
-use super::read_ahead::read_ahead;
+use super::passes::{Keep, KeptPoints, Passes, input_changed};
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_formats::source::{Description, PointReader};
 use spmesh_stream::Coordinates;
@@ -102,9 +100,9 @@ impl Thin {
     /// # Errors
     /// Those of the input; usage, if points have no elevation but the rule needs it, or cells are too small;
     /// [`ErrorKind::Memory`] if the occupied cells do not fit the budget.
-    pub(super) fn winners<P: Passes + ?Sized>(
+    pub(super) fn winners(
         &self,
-        input: &P,
+        input: &dyn Passes,
         budget: &Budget,
         done: impl FnMut(u64),
     ) -> Result<Winners> {
@@ -114,14 +112,14 @@ impl Thin {
             return Err(Error::usage(format!("points have no elevation: {remedy}")));
         }
         match dims {
-            2 => self.find::<P, 2>(input, budget, done),
-            _ => self.find::<P, 3>(input, budget, done),
+            2 => self.find::<2>(input, budget, done),
+            _ => self.find::<3>(input, budget, done),
         }
     }
 
-    fn find<P: Passes + ?Sized, const D: usize>(
+    fn find<const D: usize>(
         &self,
-        input: &P,
+        input: &dyn Passes,
         budget: &Budget,
         mut done: impl FnMut(u64),
     ) -> Result<Winners> {
@@ -223,77 +221,52 @@ impl Winners {
 }
 
 /// An input of which only some points are kept.
-pub(super) struct Thinned<'a, P: Passes + ?Sized> {
-    input: &'a P,
+pub(super) struct Thinned<'a> {
+    input: &'a dyn Passes,
     description: Description,
     winners: Winners,
 }
 
-impl<'a, P: Passes + ?Sized> Thinned<'a, P> {
-    pub(super) fn new(input: &'a P, winners: Winners) -> Self {
+impl<'a> Thinned<'a> {
+    pub(super) fn new(input: &'a dyn Passes, winners: Winners) -> Self {
         let stated_points = Some(winners.numbers.len() as u64);
         let description = Description { stated_points, ..input.description().clone() };
         Thinned { input, description, winners }
     }
 }
 
-impl<P: Passes + ?Sized> Passes for Thinned<'_, P> {
+impl Passes for Thinned<'_> {
     fn description(&self) -> &Description {
         &self.description
     }
 
     fn read(&self) -> Result<Box<dyn PointReader + '_>> {
-        let row_len = self.description.attributes.row_len();
-        let reader = self.input.read()?;
-        Ok(Box::new(ThinnedReader {
-            reader,
-            winners: &self.winners,
-            next: 0,
-            read: 0,
-            row_len,
-            rows: Vec::new(),
-        }))
+        Ok(Box::new(KeptPoints::new(self.input, ThinnedPass { winners: &self.winners, next: 0, read: 0 })?))
     }
 
-    fn is_costly(&self) -> bool {
-        self.input.is_costly()
-    }
-
-    fn name(&self) -> Option<String> {
-        self.input.name()
+    fn source(&self) -> Option<&dyn Passes> {
+        Some(self.input)
     }
 }
 
 /// One pass over a thinned input.
-struct ThinnedReader<'a> {
-    reader: Box<dyn PointReader + 'a>,
+struct ThinnedPass<'a> {
     winners: &'a Winners,
     /// Points kept so far, and points read.
     next: usize,
     read: u64,
-    row_len: usize,
-    rows: Vec<u8>,
 }
 
-impl PointReader for ThinnedReader<'_> {
-    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
-        let ThinnedReader { reader, winners, next, read, row_len, rows } = self;
-        next_kept(&mut **reader, batch, *row_len, rows, |_| {
-            let is_kept = winners.numbers.get(*next) == Some(&*read);
-            *read += 1;
-            *next += usize::from(is_kept);
-            is_kept
-        })?;
-        let is_end = batch.is_empty();
-        let is_same = *read == winners.points && *next == winners.numbers.len();
-        if is_end && !is_same { Err(input_changed()) } else { Ok(()) }
+impl Keep for ThinnedPass<'_> {
+    fn keeps(&mut self, _: &Point) -> bool {
+        let is_kept = self.winners.numbers.get(self.next) == Some(&self.read);
+        self.read += 1;
+        self.next += usize::from(is_kept);
+        is_kept
     }
 
-    fn rows(&self) -> &[u8] {
-        &self.rows
-    }
-
-    fn invalid(&self) -> u64 {
-        self.reader.invalid()
+    fn end(&mut self) -> Result<()> {
+        let is_same = self.read == self.winners.points && self.next == self.winners.numbers.len();
+        if is_same { Ok(()) } else { Err(input_changed()) }
     }
 }

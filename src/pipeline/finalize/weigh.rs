@@ -1,10 +1,13 @@
 //! Weights of points: an attribute `weight` that triangulators understand, made of another attribute.
 
 use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
 
 use super::passes::{Observer, Pass, Passes};
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::source::{Description, PointReader};
+use spmesh_formats::molecules::Radii;
+use spmesh_formats::source::{AttributeChoice, Description, PointReader, SourceOptions};
 use spmesh_stream::model::attributes::{Attributes, Column};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Weighted};
@@ -14,7 +17,7 @@ const ROUNDINGS: f64 = 4.0;
 
 /// What the weights of points are made of. Values are those of the world.
 #[derive(Debug, Clone, PartialEq)]
-pub enum WeightSource {
+pub(super) enum WeightSource {
     /// An attribute with weights.
     Weights(String),
     /// An attribute with radii, whose squares are weights, and a length that is added to each.
@@ -28,7 +31,7 @@ pub enum WeightSource {
 
 impl WeightSource {
     /// The name of the attribute.
-    pub fn attribute(&self) -> &str {
+    fn attribute(&self) -> &str {
         match self {
             WeightSource::Weights(attribute) | WeightSource::Radii { attribute, .. } => attribute,
         }
@@ -68,9 +71,50 @@ fn in_steps(value: f64, step: f64) -> f64 {
     if is_whole && step != 1.0 { steps } else { value / step }
 }
 
+/// The attribute that atoms with radii have.
+const RADIUS: &str = "radius";
+
+/// What points are weighed by.
+#[derive(Debug, Clone)]
+pub struct Weighing {
+    pub(super) source: WeightSource,
+    /// The radii of atoms, if they are looked up.
+    radii: Option<Arc<Radii>>,
+}
+
+impl Weighing {
+    /// By an attribute that holds weights.
+    pub fn by_weights(attribute: &str) -> Weighing {
+        Weighing { source: WeightSource::Weights(attribute.to_string()), radii: None }
+    }
+
+    /// By radii and that of a probe: `name` is that of a table or a file of radii of atoms, or else of an attribute.
+    ///
+    /// # Errors
+    /// As [`Radii::load`].
+    pub fn by_radii(name: &str, probe: f64) -> Result<Weighing> {
+        let is_table = Radii::named(name).is_some() || Path::new(name).exists();
+        let radii = is_table.then(|| Radii::load(name)).transpose()?.map(|loaded| Arc::new(loaded.radii));
+        let attribute = if is_table { RADIUS } else { name }.to_string();
+        Ok(Weighing { source: WeightSource::Radii { attribute, probe }, radii })
+    }
+
+    /// Lets the attribute be read, beside those that were chosen.
+    pub(super) fn enter(&self, source: &mut SourceOptions) {
+        source.radii.clone_from(&self.radii);
+        let own = self.source.attribute().to_string();
+        match &mut source.attributes {
+            AttributeChoice::All => {}
+            AttributeChoice::Named(names) if names.contains(&own) => {}
+            AttributeChoice::Named(names) => names.push(own),
+            none => *none = AttributeChoice::Named(vec![own]),
+        }
+    }
+}
+
 /// An input whose points get weights.
-pub struct Weighed<'a, P: Passes + ?Sized> {
-    input: &'a P,
+pub(super) struct Weighed<'a> {
+    input: &'a dyn Passes,
     source: &'a WeightSource,
     column: Column,
     step: f64,
@@ -79,14 +123,14 @@ pub struct Weighed<'a, P: Passes + ?Sized> {
     description: Description,
 }
 
-impl<'a, P: Passes + ?Sized> Weighed<'a, P> {
+impl<'a> Weighed<'a> {
     /// Gives the points of `input` weights, whose attribute comes last in their rows. It may take the place
     /// of the one that it is made of.
     ///
     /// # Errors
     /// Usage, if the points lack the attribute of `source`, are points of the plane, or have another
     /// attribute of the name of weights.
-    pub fn new(input: &'a P, source: &'a WeightSource) -> Result<Self> {
+    pub(super) fn new(input: &'a dyn Passes, source: &'a WeightSource) -> Result<Self> {
         let description = input.description();
         if description.dims != 3 {
             return Err(Error::usage("weights need points of space: add --octree"));
@@ -113,14 +157,24 @@ impl<'a, P: Passes + ?Sized> Weighed<'a, P> {
     ///
     /// # Errors
     /// Those of the input; malformed, if a value is no weight.
-    pub fn weighted(&self, observer: &mut dyn Observer) -> Result<Weighted> {
+    pub(super) fn weighted(&self, observer: &mut dyn Observer) -> Result<Weighted> {
+        let greatest = self.greatest(observer);
+        let greatest = greatest.map_err(|error| match self.input.name() {
+            Some(name) => error.of_input(name),
+            None => error,
+        })?;
+        Ok(Weighted { greatest: greatest.unwrap_or(0.0) })
+    }
+
+    /// The greatest weight; `None` without points.
+    fn greatest(&self, observer: &mut dyn Observer) -> Result<Option<f64>> {
         observer.pass(Pass::Weights, self.input.description().stated_points);
         let mut reader = WeighedReader::new(self)?;
         let (mut batch, mut done, mut greatest) = (Vec::new(), 0, None::<f64>);
         loop {
             reader.next_batch(&mut batch)?;
             if batch.is_empty() {
-                return Ok(Weighted { greatest: greatest.unwrap_or(0.0) });
+                return Ok(greatest);
             }
             done += batch.len() as u64;
             observer.done(done);
@@ -130,7 +184,7 @@ impl<'a, P: Passes + ?Sized> Weighed<'a, P> {
     }
 }
 
-impl<P: Passes + ?Sized> Passes for Weighed<'_, P> {
+impl Passes for Weighed<'_> {
     fn description(&self) -> &Description {
         &self.description
     }
@@ -139,12 +193,8 @@ impl<P: Passes + ?Sized> Passes for Weighed<'_, P> {
         Ok(Box::new(WeighedReader::new(self)?))
     }
 
-    fn is_costly(&self) -> bool {
-        self.input.is_costly()
-    }
-
-    fn name(&self) -> Option<String> {
-        self.input.name()
+    fn source(&self) -> Option<&dyn Passes> {
+        Some(self.input)
     }
 }
 
@@ -163,7 +213,7 @@ struct WeighedReader<'a> {
 }
 
 impl<'a> WeighedReader<'a> {
-    fn new<P: Passes + ?Sized>(weighed: &'a Weighed<'_, P>) -> Result<Self> {
+    fn new(weighed: &'a Weighed<'_>) -> Result<Self> {
         let Weighed { input, source, column, step, replaced, .. } = weighed;
         Ok(WeighedReader {
             reader: input.read()?,

@@ -2,18 +2,17 @@
 
 use std::time::Instant;
 
-use super::batch::PointBatch;
+use super::batch::{PointBatch, read_ahead};
 use super::options::Options;
 use super::passes::{Observer, Pass, Passes};
-use super::read_ahead::read_ahead;
+use super::run::Stats;
 use super::spool::{Spool, SpoolPlan, Tee};
-use super::stats::Stats;
 use spmesh_base::error::Result;
 use spmesh_formats::source::PointReader;
 
 /// The state that all passes share.
-pub(super) struct Work<'a, P: Passes + ?Sized> {
-    pub(super) input: &'a P,
+pub(super) struct Work<'a> {
+    pub(super) input: &'a dyn Passes,
     pub(super) observer: &'a mut dyn Observer,
     pub(super) stats: Stats,
     kept: Kept,
@@ -27,9 +26,9 @@ enum Kept {
     In(Box<Spool>),
 }
 
-impl<'a, P: Passes + ?Sized> Work<'a, P> {
+impl<'a> Work<'a> {
     /// A run over `input`. The options decide whether its points are kept.
-    pub(super) fn new(input: &'a P, options: &Options, observer: &'a mut dyn Observer) -> Self {
+    pub(super) fn new(input: &'a dyn Passes, options: &Options, observer: &'a mut dyn Observer) -> Self {
         let folder = options.temp_dir.as_deref();
         let spooling = SpoolPlan::new(options.spooling, input.is_costly(), folder, input.description());
         Work { input, observer, stats: Stats::default(), kept: spooling.map_or(Kept::Not, Kept::Next) }

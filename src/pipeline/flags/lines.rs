@@ -4,11 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::lines::{Areas, ChangeKind, Changes, Levels, Options, Sources, Target, Water};
+use crate::lines::{ChangeKind, Changes, Options};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_base::system;
-use spmesh_delaunay::network::Network;
 use spmesh_shell::parse_numbers;
 
 /// Lines that are read along with points or a mesh.
@@ -50,34 +48,9 @@ impl LineFlags {
         }
     }
 
-    /// Reads lines and water as a network on the grid of `target`; `None` without them.
-    ///
-    /// # Errors
-    /// As [`crate::lines::read_with_water`].
-    pub fn read(&self, water: &[PathBuf], target: &Target) -> Result<Option<(Network, Water, Changes)>> {
-        if self.files.is_empty() && water.is_empty() {
-            return Ok(None);
-        }
-        let options = Options { densify: self.densify, lists_changes: self.report.is_some() };
-        let sources = Sources { lines: &self.files, water, ..Sources::default() };
-        system::give_back_large_blocks();
-        crate::lines::read_with_water(&sources, target, &options).map(Some)
-    }
-
-    /// Reads lines, and polygons to cut the mesh with.
-    ///
-    /// # Errors
-    /// As [`crate::lines::read_with_areas`].
-    pub fn read_with_areas(
-        &self,
-        hull: &[PathBuf],
-        holes: &[PathBuf],
-        target: &Target,
-    ) -> Result<(Network, Areas, Changes)> {
-        let options = Options { densify: self.densify, lists_changes: self.report.is_some() };
-        let sources = Sources { lines: &self.files, hull, holes, water: &[] };
-        system::give_back_large_blocks();
-        crate::lines::read_with_areas(&sources, target, &options)
+    /// How the lines are read.
+    pub fn options(&self) -> Options {
+        Options { densify: self.densify, lists_changes: self.report.is_some() }
     }
 
     /// Creates the file for the report, if one is asked for.
@@ -87,17 +60,6 @@ impl LineFlags {
     pub fn create_report(&self) -> Result<Option<Output>> {
         self.report.as_ref().map(|path| Output::create(path, false)).transpose()
     }
-}
-
-/// Writes the report, with levels if there is water.
-///
-/// # Errors
-/// If writing fails.
-pub fn write_report(report: Option<Output>, changes: &Changes, levels: Option<&Levels>) -> Result<()> {
-    let Some(mut output) = report else { return Ok(()) };
-    crate::lines::write_report(&mut output, changes, levels)
-        .map_err(|e| Error::io("writing the report", e))?;
-    output.commit()
 }
 
 /// What was changed about lines, in one line; `None` if nothing was.

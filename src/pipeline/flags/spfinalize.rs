@@ -1,46 +1,36 @@
 //! `spfinalize`: flags.
 
-mod areas;
 mod figures;
-pub(crate) mod leaf;
+mod groups;
 mod planning;
-mod water;
-mod weights;
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
 
-use super::lines::{LineFlags, summary, write_report};
+use super::lines::{LineFlags, summary};
 use super::point_filters::PointFilters;
 use crate::finalize::{
-    AddedPoints, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Passes, Selected, Spooling,
-    Weighed,
+    Budget, CELL_POINTS, Leaves, Observer, Options, Order, Outcome, Pass, Recipe, Spooling,
 };
-use crate::lines::{Changes, Levels, Target, Water};
-use areas::AreaFlags;
-use figures::{Drops, LineStats, stats_json, stats_text};
+use crate::lines::write_report;
+use figures::{stats_json, stats_text};
+use groups::{AreaFlags, WaterFlags, WeightFlags};
 use planning::PlanFlags;
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::Output;
 use spmesh_base::parallel::available_threads;
 use spmesh_base::places::check_apart;
 use spmesh_base::system;
-use spmesh_delaunay::network::Network;
 use spmesh_formats::detect::SPFINALIZE;
-use spmesh_formats::source::{
-    AttributeChoice, Description, DropReason, Dropped, Input, InvalidAdvice, RawType, SourceOptions,
-};
+use spmesh_formats::source::{AttributeChoice, DropReason, Dropped, InvalidAdvice, RawType, SourceOptions};
 use spmesh_shell::compression::Compression;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{Common, StatsFormat, notice, parse_numbers, parse_size, read_list};
-use spmesh_stream::model::bounds::Point;
-use water::WaterFlags;
-use weights::{Weighing, WeightFlags};
 
 const TOOL: &str = "spfinalize";
 
@@ -224,62 +214,28 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if let Some(plan) = &flags.plan.plan {
         return planning::make(&flags, plan);
     }
-    let mut options = flags.options()?;
-    let weighing = flags.weights.load()?;
+    let mut recipe = flags.recipe()?;
     flags.lines.check(!flags.water.files().is_empty())?;
     // Fail before the work if the output cannot be created.
     let mut output = Output::create(&flags.output, true)?;
-    let paths = flags.paths()?;
-    let inputs = paths.iter().chain(&flags.lof).chain(flags.beside()).map(PathBuf::as_path);
+    recipe.inputs = flags.paths()?;
+    let inputs = recipe.inputs.iter().chain(&flags.lof).chain(flags.beside()).map(PathBuf::as_path);
     let inputs = inputs.chain(flags.weights.file());
     let mut outputs = vec![("--output", flags.output.as_path())];
     outputs.extend(flags.lines.report.as_ref().map(|report| ("--report", report.as_path())));
     check_apart(inputs, &outputs)?;
     let report = flags.lines.create_report()?;
     endings::check(&flags.output, &[endings::STREAM])?;
-    let input = Input::open(&paths, &flags.source_options(weighing.as_ref())?)?;
-    for message in input.notices() {
-        notice(TOOL, &flags.common, message);
-    }
-    let target = target_of(&input);
-    let (areas, messages) = flags.areas.read(&target)?;
-    let (network, water, changes) = flags.network(&target)?;
-    for message in messages.iter().chain(&changes.notices) {
-        notice(TOOL, &flags.common, message);
-    }
     let mut watch = Watch { common: &flags.common, progress: None };
-    let (areas, levels) = flags.water.levels((&network, &water), (&input, areas), &target, &mut watch)?;
-    for message in &levels.notices {
-        watch.notice(message);
-    }
-    let added = flags.added(&network, &levels, &target);
-    let has_lines = !network.vertices.is_empty();
-    drop(network);
-    let selected = Selected::new(&input, &areas);
-    // Without polygons, no point takes a way round.
-    let points: &dyn Passes = if areas.keep_all() { &input } else { &selected };
-    let weighed = weighing.as_ref().map(|weighing| Weighed::new(points, &weighing.source)).transpose()?;
-    if let Some(weighed) = &weighed {
-        let named = |error: Error| error.of_input(input.name());
-        options.weighted = Some(weighed.weighted(&mut watch).map_err(named)?);
-    }
-    let points: &dyn Passes = weighed.as_ref().map_or(points, |weighed| weighed);
-    let stats = crate::finalize::run_with(points, &added, &options, &mut watch, &mut output)?;
+    let outcome = recipe.run(&mut watch, &mut output)?;
     drop(watch);
-    let has_water = !flags.water.files().is_empty();
-    write_report(report, &changes, has_water.then_some(&levels))?;
+    let Outcome { stats, dropped, lines, levels, salvaged } = outcome;
+    let levels = lines.water.map(|_| &levels);
+    report.map_or(Ok(()), |report| write_report(report, &lines.changes, levels))?;
     output.commit()?;
-    if let Some(message) = summary(&changes) {
+    if let Some(message) = summary(&lines.changes) {
         notice(TOOL, &flags.common, &message);
     }
-    let lines = LineStats {
-        has_lines,
-        water: flags.water.counts(&water, &levels),
-        points: added.len(),
-        replaced: added.replaced(),
-        changes: &changes,
-    };
-    let dropped = Drops { filters: input.dropped(), areas: selected.dropped() };
     if let Some(message) = withheld_notice(&dropped.filters) {
         notice(TOOL, &flags.common, &message);
     }
@@ -298,15 +254,36 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         }
         None => {}
     }
-    let salvaged = input.salvaged();
     if !salvaged.is_empty() {
         anyhow::bail!(Error::new(ErrorKind::Salvaged, salvaged.join("; ")));
     }
     Ok(())
 }
 
+/// The flags that a plan was made with.
+pub(super) fn flags_of(arguments: &[String]) -> Result<Flags> {
+    let program = std::iter::once("spfinalize".to_string());
+    Flags::try_parse_from(program.chain(arguments.iter().cloned()))
+        .map_err(|e| Error::malformed(format!("the arguments of the plan: {e}")))
+}
+
 impl Flags {
-    fn options(&self) -> anyhow::Result<Options> {
+    /// What the flags ask for, but for the files of points.
+    pub(super) fn recipe(&self) -> Result<Recipe> {
+        Ok(Recipe {
+            inputs: Vec::new(),
+            options: self.options()?,
+            weighing: self.weights.load()?,
+            source: self.source_options()?,
+            clip: self.areas.clip.clone(),
+            drop_inside: self.areas.drop_inside.clone(),
+            lines: self.lines.files.clone(),
+            line_options: self.lines.options(),
+            flatten: self.water.flatten(),
+        })
+    }
+
+    fn options(&self) -> Result<Options> {
         let leaves = match (self.level, self.cell_points) {
             (Some(level), None) => Leaves::Level(level),
             (level_max, cell_points) => {
@@ -329,44 +306,17 @@ impl Flags {
         })
     }
 
-    /// Lines and water, and what was changed about them.
-    fn network(&self, target: &Target) -> anyhow::Result<(Network, Water, Changes)> {
-        let of_plane = [("--lines", &self.lines.files[..]), ("--flatten", self.water.files())];
-        if let Some((flag, _)) = of_plane.iter().find(|(_, files)| self.octree && !files.is_empty()) {
-            anyhow::bail!(Error::usage(format!("{flag} needs points of the plane: leave out --octree")));
-        }
-        Ok(self.lines.read(self.water.files(), target)?.unwrap_or_default())
-    }
-
-    /// The vertices of lines and water that become points.
-    fn added(&self, network: &Network, levels: &Levels, target: &Target) -> AddedPoints {
-        let is_kept = |&point: &Point| {
-            self.points.bounds.is_none_or(|bounds| bounds.contains(target.coordinates.to_decimal(point)))
-        };
-        let points = (0..).zip(&network.vertices).filter_map(|(number, vertex)| {
-            let [x, y] = vertex.place;
-            Some([x, y, levels.elevations.get(&number).copied().or(vertex.z)?])
-        });
-        AddedPoints::new(points.filter(is_kept).collect())
-    }
-
     fn threads(&self) -> usize {
         self.threads.map_or_else(|| available_threads().get(), usize::from)
     }
 
-    fn source_options(&self, weighing: Option<&Weighing>) -> Result<SourceOptions> {
-        let chosen = &self.attributes;
+    fn source_options(&self) -> Result<SourceOptions> {
         Ok(SourceOptions {
             crs: self.crs.system()?,
             reader: &SPFINALIZE,
-            attributes: match weighing {
-                Some(weighing) => weighing.with_own(chosen),
-                None => AttributeChoice::of_names(chosen),
-            },
-            radii: weighing.and_then(|weighing| weighing.radii.clone()),
+            attributes: AttributeChoice::of_names(&self.attributes),
             filters: self.points.filters(),
             bounds: self.points.bounds,
-            reach: None,
             skip_invalid: self.points.skip_invalid,
             invalid_advice: InvalidAdvice::SkipInvalid,
             dims: if self.octree { 3 } else { 2 },
@@ -430,12 +380,6 @@ impl Observer for Watch<'_> {
     fn notice(&mut self, message: &str) {
         notice(TOOL, self.common, message);
     }
-}
-
-/// What lines and polygons are read for.
-fn target_of(input: &Input) -> Target {
-    let Description { coordinates, has_elevation, ref crs, .. } = *input.description();
-    Target { coordinates, crs: crs.clone(), has_elevation }
 }
 
 fn withheld_notice(dropped: &Dropped) -> Option<String> {

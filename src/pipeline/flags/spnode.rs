@@ -1,19 +1,18 @@
 //! `spnode`: the jobs of a plan.
 
-mod collect;
-mod make;
-mod outputs;
-
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::plan::{Node, Plan};
+use super::spfinalize;
+use crate::plan::{Maker, Node, Plan, Work, collect};
 use crate::reduce::Duplicates;
-use spmesh_base::error::{ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::output::Output;
+use spmesh_base::places::check_apart;
 use spmesh_base::system;
-use spmesh_shell::{Common, parse_size, say, threads};
+use spmesh_shell::{Common, endings, notice, parse_size, threads};
 
 const TOOL: &str = "spnode";
 
@@ -62,7 +61,7 @@ enum Action {
     /// Make nodes, unless they are complete
     Run(RunFlags),
     /// Check that all nodes are complete and account for every point, and write the manifest of the mesh
-    Collect(collect::Flags),
+    Collect(CollectFlags),
 }
 
 #[derive(Debug, Args)]
@@ -102,6 +101,24 @@ struct RunFlags {
     work: WorkFlags,
 }
 
+#[derive(Debug, Args)]
+struct CollectFlags {
+    /// The plan of spfinalize --plan
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+
+    /// File for the manifest, which stands for the mesh wherever a stream of it is read
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+
+    /// Read all parts, and make those again whose checksums are wrong
+    #[arg(long)]
+    verify: bool,
+
+    #[command(flatten)]
+    work: WorkFlags,
+}
+
 /// How nodes are made.
 #[derive(Debug, Args)]
 struct WorkFlags {
@@ -127,8 +144,10 @@ struct WorkFlags {
 }
 
 impl WorkFlags {
-    fn threads(&self) -> NonZeroUsize {
-        threads(self.threads)
+    fn work(&self, duplicates: Duplicates) -> Work {
+        let &WorkFlags { ref dir, threads: asked, memory, ref temp_dir, compress } = self;
+        let (folder, threads, temp_dir) = (dir.clone(), threads(asked), temp_dir.clone());
+        Work { folder, duplicates, threads, memory, temp_dir, compress }
     }
 }
 
@@ -165,16 +184,26 @@ impl Policy {
 /// Everything that reading points, triangulating and writing fail with.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    let recipe = |plan: &Plan| spfinalize::flags_of(&plan.arguments)?.recipe();
+    let note = |message: &str| notice(TOOL, &flags.common, message);
     match &flags.action {
-        Action::List(action) => Ok(list(action)?),
+        Action::List(action) => list(action)?,
         Action::Run(action) => {
             let plan = Plan::read(&action.plan)?;
-            let maker = make::Maker::new(&plan, &action.work, action.duplicates, &flags.common)?;
+            let work = action.work.work(action.duplicates.duplicates());
+            let maker = Maker::new(&plan, &work, &recipe, &note)?;
             action.nodes.iter().try_for_each(|&number| plan.node(number).map(|_| ()))?;
-            action.nodes.iter().try_for_each(|&number| maker.run(number, action.force))
+            action.nodes.iter().try_for_each(|&number| maker.run(number, action.force))?;
         }
-        Action::Collect(action) => collect::run(action, &flags.common),
+        Action::Collect(CollectFlags { plan, output, verify, work }) => {
+            endings::check(output, &[endings::JSON])?;
+            let work = work.work(Duplicates::default());
+            let loaded = Plan::read(plan)?;
+            check_apart([plan.as_path()], &[("--output", output)])?;
+            collect(&loaded, &work, output, *verify, &recipe, &note)?;
+        }
     }
+    Ok(())
 }
 
 fn list(flags: &ListFlags) -> Result<()> {
@@ -195,14 +224,7 @@ fn line_of(node: &Node) -> String {
 }
 
 fn print(text: &str) -> Result<()> {
-    use std::io::Write;
-    let mut output = spmesh_base::output::Output::create(std::path::Path::new("-"), false)?;
-    output.write_all(text.as_bytes()).map_err(|e| spmesh_base::error::Error::io("writing", e))?;
+    let mut output = Output::create(Path::new("-"), false)?;
+    output.write_all(text.as_bytes()).map_err(|e| Error::io("writing", e))?;
     output.commit()
-}
-
-fn tell(common: &Common, message: &str) {
-    if !common.quiet {
-        say(&format!("{TOOL}: {message}\n"));
-    }
 }

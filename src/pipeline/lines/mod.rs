@@ -19,13 +19,12 @@ mod stations;
 mod water;
 
 use std::borrow::Cow;
-use std::path::PathBuf;
 
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::{LINE_CROSSINGS_MAX, check_line_vertices};
 use spmesh_delaunay::network::{Network, NetworkVertex};
 use spmesh_delaunay::noding::{LineVertex, Noded, NodingOptions, node_lines};
-use spmesh_formats::source::{Breaklines, name_of, read_breaklines};
+use spmesh_formats::source::{Breaklines, Description, name_of, read_breaklines};
 use spmesh_stream::{Coordinates, Crs, Header};
 
 pub use areas::{Areas, Sources};
@@ -53,6 +52,12 @@ impl Target {
         let Header { coordinates, has_elevation, ref crs, .. } = *header;
         Target { coordinates, crs: crs.clone(), has_elevation }
     }
+
+    /// The target of lines for these points.
+    pub(crate) fn of_points(points: &Description) -> Target {
+        let Description { coordinates, has_elevation, ref crs, .. } = *points;
+        Target { coordinates, crs: crs.clone(), has_elevation }
+    }
 }
 
 /// How lines are read.
@@ -64,51 +69,32 @@ pub struct Options {
     pub lists_changes: bool,
 }
 
-/// Reads the lines of files as one network. Lines are numbered over all files, in their order. Between the
-/// ends of two banks of a river are lines, too, behind all others.
+/// Lines, and what was made of them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Lines {
+    /// All lines as one network.
+    pub network: Network,
+    /// The polygons to cut the mesh with.
+    pub areas: Areas,
+    /// Lakes and rivers.
+    pub water: Water,
+    /// What was changed about lines.
+    pub changes: Changes,
+}
+
+/// Reads the lines of files as one network. Lines are numbered over all files, in their order. Rings of areas, shores,
+/// banks and centre lines are lines, too. Between the ends of two banks of a river are lines behind all others.
 ///
 /// The network depends on the set of lines alone, but for the numbers of lines. Its coordinates are those
 /// that the stream stores. If these are f64, they are rounded to decimals: as many places as leave fewer than
 /// 2^42 steps up to the greatest magnitude of the lines, 6 for coordinates in millions.
 ///
 /// # Errors
-/// Those of reading; usage, if the system of a file differs from that of the stream, or a coordinate is
-/// beyond the grid of the stream; malformed, if there are too many vertices or crossings.
-pub fn read(paths: &[PathBuf], target: &Target, options: &Options) -> Result<(Network, Changes)> {
-    let sources = Sources { lines: paths, ..Sources::default() };
-    read_all(&sources, target, options).map(|(network, _, _, changes)| (network, changes))
-}
-
-/// Reads lines as [`read`], and the polygons of areas, whose rings are lines, too.
-///
-/// # Errors
-/// As there; malformed, if an area has no polygon.
-pub fn read_with_areas(
-    sources: &Sources,
-    target: &Target,
-    options: &Options,
-) -> Result<(Network, Areas, Changes)> {
-    read_all(sources, target, options).map(|(network, areas, _, changes)| (network, areas, changes))
-}
-
-/// Reads lines as [`read`], and lakes and rivers, whose shores, banks and centre lines are lines, too.
-///
-/// # Errors
-/// As there; malformed, if a feature is neither a polygon nor the centre line or a bank of a river, or banks
-/// bound no area; usage, if there is water and points have no elevation.
-pub fn read_with_water(
-    sources: &Sources,
-    target: &Target,
-    options: &Options,
-) -> Result<(Network, Water, Changes)> {
-    read_all(sources, target, options).map(|(network, _, water, changes)| (network, water, changes))
-}
-
-fn read_all(
-    sources: &Sources,
-    target: &Target,
-    options: &Options,
-) -> Result<(Network, Areas, Water, Changes)> {
+/// Those of reading; usage, if the system of a file differs from that of the stream, a coordinate is beyond the
+/// grid of the stream, or there is water and points have no elevation; malformed, if there are too many vertices or
+/// crossings, an area has no polygon, a feature of water is neither a polygon nor the centre line or a bank of a
+/// river, or banks bound no area.
+pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lines> {
     if options.densify.is_some_and(|longest| !(longest > 0.0 && longest.is_finite())) {
         return Err(Error::usage("--densify, the longest part of a line, must be a positive number"));
     }
@@ -135,13 +121,13 @@ fn read_all(
     if rings.is_empty() && features.is_empty() {
         let noded =
             node_lines(Cow::Owned(vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
-        return Ok((network(noded, &grid), Areas::default(), Water::default(), changes));
+        return Ok(Lines { network: network(noded, &grid), changes, ..Lines::default() });
     }
     let noded =
         node_lines(Cow::Borrowed(&vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
     let bent = Bent::new(&noded, &vertices, &starts);
     let (areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
-    Ok((network(noded, &grid), areas, water, changes))
+    Ok(Lines { network: network(noded, &grid), areas, water, changes })
 }
 
 fn noding(target: &Target) -> NodingOptions {

@@ -5,6 +5,8 @@ use std::io::{self, Write};
 use super::changes::{Change, Changes};
 use super::levels::{Given, Levels};
 use super::water::{River, WaterPolygon};
+use spmesh_base::error::{Error, Result};
+use spmesh_base::output::Output;
 use spmesh_stream::model::points::Point2;
 
 /// How a level was found.
@@ -94,7 +96,12 @@ fn in_a_field(text: &str) -> String {
 ///
 /// # Errors
 /// If writing fails.
-pub fn write_report(output: &mut impl Write, changes: &Changes, levels: Option<&Levels>) -> io::Result<()> {
+pub fn write_report(mut output: Output, changes: &Changes, levels: Option<&Levels>) -> Result<()> {
+    write(&mut output, changes, levels).map_err(|e| Error::io("writing the report", e))?;
+    output.commit()
+}
+
+fn write(output: &mut impl Write, changes: &Changes, levels: Option<&Levels>) -> io::Result<()> {
     let (names, empty) = match levels {
         Some(_) => ("\tlevel\tmeasured\tfound\tpoints\triver\tfeature", "\t\t\t\t\t\t"),
         None => ("", ""),

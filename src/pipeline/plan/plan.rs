@@ -8,14 +8,13 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::check;
-use super::crs::PlannedCrs;
 use super::files::PlannedFile;
 use super::node::Node;
 use super::tree::{Division, Share};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::{self, PLAN_LEN_MAX};
 use spmesh_formats::source::{Description, Extent, Survey};
-use spmesh_stream::{Coordinates, Header, Kind, PartName};
+use spmesh_stream::{Coordinates, Crs, Header, Kind, PartName};
 
 /// What a plan says of itself, so that no other JSON is taken for one.
 const FORMAT: &str = "spmesh plan";
@@ -32,6 +31,40 @@ const NO_POINTS: Extent = Extent { points: 0, bounds: None };
 struct Grid {
     scale: [f64; 3],
     offset: [f64; 3],
+}
+
+/// A coordinate reference system: text, or the three GeoTIFF records of LAS files in hexadecimal digits.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum PlannedCrs {
+    Unknown,
+    Wkt(String),
+    GeoKeys([String; 3]),
+}
+
+impl PlannedCrs {
+    fn of(crs: &Crs) -> PlannedCrs {
+        match crs {
+            Crs::Unknown => PlannedCrs::Unknown,
+            Crs::Wkt(text) => PlannedCrs::Wkt(text.clone()),
+            Crs::GeoKeys { directory, doubles, ascii } => {
+                PlannedCrs::GeoKeys([directory, doubles, ascii].map(|bytes| HEXLOWER.encode(bytes)))
+            }
+        }
+    }
+
+    fn crs(&self) -> Result<Crs> {
+        let bytes = |text: &String| {
+            HEXLOWER.decode(text.as_bytes()).map_err(|e| Error::malformed(format!("coordinate system: {e}")))
+        };
+        Ok(match self {
+            PlannedCrs::Unknown => Crs::Unknown,
+            PlannedCrs::Wkt(text) => Crs::Wkt(text.clone()),
+            PlannedCrs::GeoKeys([directory, doubles, ascii]) => {
+                Crs::GeoKeys { directory: bytes(directory)?, doubles: bytes(doubles)?, ascii: bytes(ascii)? }
+            }
+        })
+    }
 }
 
 /// How to make a plan.

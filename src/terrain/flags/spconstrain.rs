@@ -10,8 +10,8 @@ use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
 use spmesh_base::system;
-use spmesh_pipeline::flags::lines::{LineFlags, summary, write_report};
-use spmesh_pipeline::lines::Target;
+use spmesh_pipeline::flags::lines::{LineFlags, summary};
+use spmesh_pipeline::lines::{self, Lines, Sources, Target, write_report};
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::open_stream;
@@ -121,7 +121,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let output = Output::create(&flags.output, true)?;
     let mut reader = open_stream(&flags.input)?;
     let target = Target::of(reader.header());
-    let (network, areas, changes) = flags.lines.read_with_areas(&flags.hull, &flags.holes, &target)?;
+    let sources = Sources { lines: &flags.lines.files, hull: &flags.hull, holes: &flags.holes, water: &[] };
+    system::give_back_large_blocks();
+    let Lines { network, areas, changes, .. } = lines::read(&sources, &target, &flags.lines.options())?;
     changes.notices.iter().chain(summary(&changes).as_ref()).for_each(|text| flags.notice(text));
     let kill = length("--kill", flags.kill)?;
     let cut = CutOptions { kill, memory: flags.memory, temp_dir: flags.temp_dir.clone() };
@@ -131,7 +133,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         constrain(&mut reader, &network, &areas, output, &options, |vertices| progress.set(vertices))?;
     drop(progress);
     let output_bytes = output.bytes_written();
-    write_report(report, &changes, None)?;
+    report.map_or(Ok(()), |report| write_report(report, &changes, None))?;
     output.commit()?;
     if stats.triangles[0] > 0 && stats.triangles[1] == 0 {
         flags.notice("no triangles are left: --hull, --holes or --kill leave out all of them");

@@ -1,29 +1,11 @@
 //! Figures of a run of `spfinalize`, as text and as JSON.
 
-use crate::finalize::Stats;
-use crate::lines::{ChangeKind, Changes};
-use spmesh_formats::source::{DropReason, Dropped};
+use crate::finalize::{Drops, LineStats, Stats};
+use crate::lines::ChangeKind;
+use spmesh_formats::source::DropReason;
 use spmesh_shell::peak_memory;
 
-/// Numbers of dropped points.
-pub(super) struct Drops {
-    /// By the filters of the input.
-    pub(super) filters: Dropped,
-    /// Outside of polygons to keep, inside of those to drop, and in water.
-    pub(super) areas: [u64; 3],
-}
-
-/// Figures about lines.
-pub(super) struct LineStats<'a> {
-    pub(super) has_lines: bool,
-    /// Lakes, rivers, and levels that were found from points; `None` without water.
-    pub(super) water: Option<[u64; 3]>,
-    pub(super) points: usize,
-    pub(super) replaced: u64,
-    pub(super) changes: &'a Changes,
-}
-
-impl LineStats<'_> {
+impl LineStats {
     /// Rows of the report; empty without lines.
     pub(super) fn text(&self) -> String {
         let changes =

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::leaf::flags_of;
-use super::{Flags, TOOL};
+use super::{Flags, TOOL, flags_of};
 use crate::plan::{NodeKind, Plan, Planning, plan_of};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
@@ -54,7 +53,7 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     check_apart(inputs, &[("--plan", path)])?;
     let mut output = Output::create(path, false)?;
     let mut progress = Progress::counting("files", &flags.common, "headers", Some(paths.len() as u64));
-    let survey = Survey::of(&paths, &flags.source_options(None)?, |done| progress.set(done))?;
+    let survey = Survey::of(&paths, &flags.source_options()?, |done| progress.set(done))?;
     drop(progress);
     for message in survey.notices.iter().take(NOTICES_MAX) {
         notice(TOOL, &flags.common, message);

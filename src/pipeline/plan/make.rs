@@ -1,14 +1,15 @@
 //! Makes nodes.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::{PipeReader, Write, pipe};
-use std::path::Path;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::outputs::{Folder, mesh_name, residual_name};
-use super::{Policy, TOOL, WorkFlags, tell};
-use crate::flags::spfinalize::leaf::{LeafCounts, Resources, write_leaf};
-use crate::plan::{FileSize, Node, NodeKind, NodeReport, Plan, hash_of_file};
+use super::folder::{Folder, mesh_name, open_stream, residual_name};
+use super::leaf::{LeafCounts, write_leaf};
+use super::{FileSize, Node, NodeKind, NodeReport, Plan, hash_of_file};
+use crate::finalize::Recipe;
 use crate::reduce::{
     Duplicates, Options, Outputs, Part, Stats, join_tetrahedra, join_triangles, tetrahedralize_part,
     triangulate_part,
@@ -16,19 +17,35 @@ use crate::reduce::{
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::system;
-use spmesh_shell::open_stream;
-use spmesh_shell::{Common, notice, peak_memory};
+use spmesh_formats::source::Plain;
 use spmesh_stream::StreamReader;
 use spmesh_stream::model::bounds::Region;
 
+/// How nodes are made.
+#[derive(Debug, Clone)]
+pub struct Work {
+    /// Folder for the parts.
+    pub folder: PathBuf,
+    /// Which elevation survives where points coincide. In space: `First` or `Error`.
+    pub duplicates: Duplicates,
+    /// Threads of a node.
+    pub threads: NonZeroUsize,
+    /// Memory for points of a leaf that wait. Units: bytes.
+    pub memory: u64,
+    /// Folder for temporary files; that of the system if `None`.
+    pub temp_dir: Option<PathBuf>,
+    /// Whether parts and residuals are compressed.
+    pub compress: bool,
+}
+
 /// Makes nodes of a plan in a folder.
-pub(super) struct Maker<'a> {
+pub struct Maker<'a> {
     pub(super) folder: Folder<'a>,
-    work: &'a WorkFlags,
-    policy: Policy,
+    work: &'a Work,
     /// What was asked for that changes the mesh.
     options: String,
-    common: &'a Common,
+    recipe: &'a dyn Fn(&Plan) -> Result<Recipe>,
+    pub(super) note: &'a dyn Fn(&str),
 }
 
 /// What a node has read and made.
@@ -38,24 +55,36 @@ struct Made {
     counts: LeafCounts,
 }
 
+/// What a report says of the options that change the mesh.
+pub(super) fn options_text(duplicates: Duplicates) -> String {
+    format!("duplicates {duplicates:?}").to_lowercase()
+}
+
 impl<'a> Maker<'a> {
-    pub(super) fn new(
+    /// A maker of nodes, which makes the folder. `recipe` says how points were to be finalized when the plan was made,
+    /// and `note` takes messages for the user.
+    ///
+    /// # Errors
+    /// Usage, if points of space are to get an elevation; I/O, if the folder cannot be made.
+    pub fn new(
         plan: &'a Plan,
-        work: &'a WorkFlags,
-        policy: Policy,
-        common: &'a Common,
+        work: &'a Work,
+        recipe: &'a dyn Fn(&Plan) -> Result<Recipe>,
+        note: &'a dyn Fn(&str),
     ) -> Result<Self> {
-        if plan.dims() == 3 && !matches!(policy, Policy::First | Policy::Error) {
+        if plan.dims() == 3 && !matches!(work.duplicates, Duplicates::First | Duplicates::Error) {
             return Err(Error::usage("points of space have no elevation: --duplicates first or error"));
         }
-        create_folder(&work.dir)?;
-        let folder = Folder { path: &work.dir, plan };
-        let options = format!("duplicates {policy:?}").to_lowercase();
-        Ok(Maker { folder, work, policy, options, common })
+        create_folder(&work.folder)?;
+        let folder = Folder { path: &work.folder, plan };
+        Ok(Maker { folder, work, options: options_text(work.duplicates), recipe, note })
     }
 
-    /// Makes a node, unless it is complete.
-    pub(super) fn run(&self, number: u32, is_forced: bool) -> anyhow::Result<()> {
+    /// Makes a node, and what it needs, unless it is complete.
+    ///
+    /// # Errors
+    /// Those of reading points, triangulating and writing; usage, if files have changed since the plan was made.
+    pub fn run(&self, number: u32, is_forced: bool) -> Result<()> {
         let node = self.folder.plan.node(number)?;
         let done = self.folder.complete(node)?;
         if !is_forced && done.is_some_and(|report| report.options == self.options) {
@@ -65,7 +94,7 @@ impl<'a> Maker<'a> {
     }
 
     /// Makes a node.
-    pub(super) fn make(&self, node: &Node) -> anyhow::Result<()> {
+    pub(super) fn make(&self, node: &Node) -> Result<()> {
         // Without its report, a node counts as incomplete while its files are replaced.
         self.forget(node.number)?;
         if node.kind() == NodeKind::Inner {
@@ -85,26 +114,22 @@ impl<'a> Maker<'a> {
     }
 
     /// Makes the children whose residuals are not there as they were written, or were made with other options.
-    fn complete_children(&self, node: &Node) -> anyhow::Result<()> {
+    fn complete_children(&self, node: &Node) -> Result<()> {
         for &child in &node.children {
             let options = self.folder.report(child)?.map(|report| report.options);
             if !self.folder.has_whole_residual(child)?
                 || options.is_some_and(|options| options != self.options)
             {
                 let what = "is missing or damaged, or was made differently: making it first";
-                self.note(&format!("the residual of node {child} {what}"));
+                (self.note)(&format!("the residual of node {child} {what}"));
                 self.make(self.folder.plan.node(child)?)?;
             }
         }
         Ok(())
     }
 
-    pub(super) fn note(&self, message: &str) {
-        notice(TOOL, self.common, message);
-    }
-
     /// Makes a node from what is there.
-    fn try_to_make(&self, node: &Node) -> anyhow::Result<()> {
+    fn try_to_make(&self, node: &Node) -> Result<()> {
         let (started, cpu) = (Instant::now(), system::cpu_seconds());
         system::reset_peak_memory();
         let made = match self.folder.plan.dims() {
@@ -122,21 +147,14 @@ impl<'a> Maker<'a> {
         let mut report = self.commit(node, made)?;
         report.seconds = started.elapsed().as_secs_f64();
         report.cpu_seconds = system::cpu_seconds() - cpu;
-        report.peak_memory_bytes = peak_memory();
+        report.peak_memory_bytes = system::peak_memory();
         report.host = system::host_name();
         let mut output = Output::create(&self.folder.report_path(node.number), false)?;
         output.write_all(report.to_json()?.as_bytes()).map_err(|e| Error::io("writing the report", e))?;
         output.commit()?;
-        tell(
-            self.common,
-            &format!(
-                "node {}: {} {}, {:.1} s",
-                node.number,
-                report.simplices,
-                if self.folder.plan.dims() == 2 { "triangles" } else { "tetrahedra" },
-                report.seconds
-            ),
-        );
+        let what = if self.folder.plan.dims() == 2 { "triangles" } else { "tetrahedra" };
+        let (number, simplices, seconds) = (node.number, report.simplices, report.seconds);
+        (self.note)(&format!("node {number}: {simplices} {what}, {seconds:.1} s"));
         Ok(())
     }
 
@@ -149,15 +167,15 @@ impl<'a> Maker<'a> {
             &Options<D>,
         ) -> Result<(Outputs<Output>, Stats)>,
         join: impl FnOnce(
-            Vec<StreamReader<Box<dyn std::io::Read + Send>>>,
+            Vec<StreamReader<Plain<File>>>,
             Outputs<Output>,
             &Options<D>,
         ) -> Result<(Outputs<Output>, Stats)>,
-    ) -> anyhow::Result<Made> {
+    ) -> Result<Made> {
         let (min, max) = (node.region.region().min, node.region.region().max);
         let options = Options::<D> {
-            duplicates: if D == 2 { self.policy.duplicates() } else { self.duplicates_in_space() },
-            threads: self.work.threads().get(),
+            duplicates: self.work.duplicates,
+            threads: self.work.threads.get(),
             part: Some(Part::Stored(Region::between(min, max))),
             name: Some(self.folder.plan.part(node)),
             compress: self.work.compress,
@@ -174,10 +192,6 @@ impl<'a> Maker<'a> {
         }
     }
 
-    fn duplicates_in_space(&self) -> Duplicates {
-        if self.policy == Policy::Error { Duplicates::Error } else { Duplicates::First }
-    }
-
     fn outputs(&self, node: &Node) -> Result<Outputs<Output>> {
         let mesh = Output::create(&self.folder.mesh(node.number), true)?;
         let residual = (!node.is_root()).then(|| Output::create(&self.folder.residual(node.number), true));
@@ -190,17 +204,12 @@ impl<'a> Maker<'a> {
         &self,
         node: &Node,
         reduce: impl FnOnce(StreamReader<PipeReader>) -> Result<(Outputs<Output>, Stats)>,
-    ) -> anyhow::Result<Made> {
+    ) -> Result<Made> {
         let (reader, writer) = pipe().map_err(|e| Error::io("making a pipe", e))?;
         system::widen_pipe(&writer);
-        let resources = Resources {
-            memory: self.work.memory,
-            threads: self.work.threads().get(),
-            temp_dir: self.work.temp_dir.clone(),
-        };
-        let plan = self.folder.plan;
+        let (plan, work, recipe) = (self.folder.plan, self.work, (self.recipe)(self.folder.plan)?);
         let (finalized, reduced) = std::thread::scope(|scope| {
-            let finalizer = scope.spawn(move || write_leaf(plan, node, &resources, writer));
+            let finalizer = scope.spawn(move || write_leaf(plan, node, recipe, work, writer));
             let name = format!("points of node {}", node.number);
             let reduced = StreamReader::new(reader, name).and_then(reduce);
             (finalizer.join(), reduced)
@@ -208,13 +217,13 @@ impl<'a> Maker<'a> {
         let finalized = finalized.map_err(|_| Error::new(ErrorKind::Io, "a thread ended unexpectedly"))?;
         let counts = match (finalized, &reduced) {
             // The points ended early for a reason of their own.
-            (Err(error), _) if !is_closed_pipe(&error) => return Err(error),
+            (Err(error), _) if error.kind() != ErrorKind::ClosedPipe => return Err(error),
             (Err(error), Ok(_)) => return Err(error),
             (Err(_), Err(_)) => LeafCounts::default(),
             (Ok(counts), _) => counts,
         };
         let (outputs, stats) = reduced?;
-        counts.notices.iter().for_each(|message| self.note(message));
+        counts.notices.iter().for_each(|message| (self.note)(message));
         Ok(Made { outputs, stats, counts })
     }
 
@@ -256,8 +265,4 @@ impl<'a> Maker<'a> {
 fn bounds_of(path: &Path) -> Result<Option<[[f64; 3]; 2]>> {
     let bounds = open_stream(path)?.header().bounds;
     Ok(bounds.map(|bounds| [bounds.min, bounds.max]))
-}
-
-fn is_closed_pipe(error: &anyhow::Error) -> bool {
-    error.downcast_ref::<Error>().is_some_and(|error| error.kind() == ErrorKind::ClosedPipe)
 }

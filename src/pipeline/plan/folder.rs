@@ -1,11 +1,12 @@
 //! The files of a node, and whether they are complete.
 
-use std::fs;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use crate::plan::{FileSize, Node, NodeReport, Plan, hash_of_file};
+use super::{FileSize, Node, NodeReport, Plan, hash_of_file};
 use spmesh_base::error::{Error, ErrorKind, Result};
-use spmesh_shell::open_stream;
+use spmesh_formats::source::{Plain, open_file};
+use spmesh_stream::StreamReader;
 
 /// The folder of all parts.
 #[derive(Debug, Clone, Copy)]
@@ -27,6 +28,14 @@ pub(super) fn residual_name(number: u32) -> String {
 /// Name of the report of a node.
 pub(super) fn report_name(number: u32) -> String {
     format!("{number:06}.json")
+}
+
+/// Opens a stream that a node has written.
+pub(super) fn open_stream(path: &Path) -> Result<StreamReader<Plain<File>>> {
+    let name = path.display().to_string();
+    let (file, _) = open_file(path).map_err(|e| e.of_input(&name))?;
+    let plain = Plain::new(file).map_err(|e| Error::io("reading", e).of_input(&name))?;
+    StreamReader::new(plain, name)
 }
 
 impl Folder<'_> {

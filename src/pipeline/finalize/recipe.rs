@@ -1,0 +1,214 @@
+//! A whole run over files: points of one input, which polygons select, with vertices of lines and water, and
+//! with weights.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use super::added::AddedPoints;
+use super::options::Options;
+use super::passes::{Observer, Passes};
+use super::run::Stats;
+use super::run::run_with;
+use super::select::{Areas, Selected};
+use super::shores::{Shores, shore_width};
+use super::weigh::{Weighed, Weighing};
+use crate::lines::{self, Changes, Levels, Lines, Sources, Target, Water};
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::network::Network;
+use spmesh_formats::source::{Dropped, Input, SourceOptions};
+use spmesh_stream::Coordinates;
+use spmesh_stream::model::bounds::Point;
+
+/// What is finalized, and how.
+#[derive(Debug, Clone)]
+pub struct Recipe {
+    /// Files of points, which are one input; `-` is stdin.
+    pub inputs: Vec<PathBuf>,
+    /// How these are read. Weights add what they are made of to the attributes.
+    pub source: SourceOptions,
+    /// Files of polygons. If there are any, only points inside of one of them or on its border count.
+    pub clip: Vec<PathBuf>,
+    /// Files of polygons inside of which no point counts.
+    pub drop_inside: Vec<PathBuf>,
+    /// Files of lines, whose vertices with elevations are added.
+    pub lines: Vec<PathBuf>,
+    /// How these are read.
+    pub line_options: lines::Options,
+    /// Lakes and rivers to make flat.
+    pub flatten: Flatten,
+    /// What points are weighed by, if they are.
+    pub weighing: Option<Weighing>,
+    /// How points are finalized. What the header says of weights follows from `weighing`.
+    pub options: Options,
+}
+
+/// Lakes and rivers, and how their levels are found where no file states them.
+#[derive(Debug, Clone)]
+pub struct Flatten {
+    /// Their files.
+    pub files: Vec<PathBuf>,
+    /// The percentile of the elevations of points near a shore, from 0 to 100.
+    pub percentile: f64,
+    /// Up to this distance points are near, in world units; a few mean distances between points if `None`.
+    pub width: Option<f64>,
+}
+
+/// What a run has done.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Figures of the finalization.
+    pub stats: Stats,
+    /// Numbers of dropped points.
+    pub dropped: Drops,
+    /// Figures about lines.
+    pub lines: LineStats,
+    /// The levels of water.
+    pub levels: Levels,
+    /// What was taken of each input that was cut off.
+    pub salvaged: Vec<String>,
+}
+
+/// Numbers of dropped points.
+#[derive(Debug, Default)]
+pub struct Drops {
+    /// By the filters of the input.
+    pub filters: Dropped,
+    /// Outside of polygons to keep, inside of those to drop, and in water.
+    pub areas: [u64; 3],
+}
+
+/// Figures about lines.
+#[derive(Debug)]
+pub struct LineStats {
+    /// Whether lines or water have vertices.
+    pub has_lines: bool,
+    /// Lakes, rivers, and levels that were found from points; `None` without water.
+    pub water: Option<[u64; 3]>,
+    /// Points of lines.
+    pub points: usize,
+    /// Points of the input that they replace.
+    pub replaced: u64,
+    /// What was changed about lines.
+    pub changes: Changes,
+}
+
+impl Recipe {
+    /// Writes the finalized stream, END included.
+    ///
+    /// # Errors
+    /// Those of reading; those of [`super::run()`].
+    pub fn run(&self, observer: &mut dyn Observer, mut output: impl Write) -> Result<Outcome> {
+        let input = self.open()?;
+        input.notices().iter().for_each(|message| observer.notice(message));
+        let mut outcome = self.finalize(&input, observer, &mut output)?;
+        (outcome.dropped.filters, outcome.salvaged) = (input.dropped(), input.salvaged());
+        Ok(outcome)
+    }
+
+    /// Opens the points.
+    pub(crate) fn open(&self) -> Result<Input> {
+        let mut source = self.source.clone();
+        if let Some(weighing) = &self.weighing {
+            weighing.enter(&mut source);
+        }
+        Input::open(&self.inputs, &source)
+    }
+
+    /// Finalizes `input`, which are the points of [`Self::open`] or a part of them.
+    pub(crate) fn finalize(
+        &self,
+        input: &dyn Passes,
+        observer: &mut dyn Observer,
+        output: &mut dyn Write,
+    ) -> Result<Outcome> {
+        let target = Target::of_points(input.description());
+        let (mut areas, notices) = Areas::read(&self.clip, &self.drop_inside, &target)?;
+        let Lines { network, water, changes, .. } = self.read_lines(&target)?;
+        notices.iter().chain(&changes.notices).for_each(|message| observer.notice(message));
+        let levels = if water.polygons.is_empty() {
+            Levels::default()
+        } else {
+            let points = Selected::new(input, &areas);
+            let levels = self.flatten.levels(&network, &water, &points, observer)?;
+            areas = areas.with_water(water.edges(&network).into_iter());
+            levels
+        };
+        levels.notices.iter().for_each(|message| observer.notice(message));
+        let added = self.added(&network, &levels, &target);
+        let has_lines = !network.vertices.is_empty();
+        drop(network);
+        let selected = Selected::new(input, &areas);
+        // Without polygons, no point takes a way round.
+        let points: &dyn Passes = if areas.keep_all() { input } else { &selected };
+        let weighed =
+            self.weighing.as_ref().map(|weighing| Weighed::new(points, &weighing.source)).transpose()?;
+        let mut options = self.options.clone();
+        if let Some(weighed) = &weighed {
+            options.weighted = Some(weighed.weighted(observer)?);
+        }
+        let points: &dyn Passes = weighed.as_ref().map_or(points, |weighed| weighed);
+        let stats = run_with(points, &added, &options, observer, output)?;
+        let [lakes, rivers] = water.counts();
+        let water = (!self.flatten.files.is_empty()).then_some([lakes, rivers, levels.found]);
+        let (points, replaced) = (added.len(), added.replaced());
+        Ok(Outcome {
+            stats,
+            dropped: Drops { areas: selected.dropped(), ..Drops::default() },
+            lines: LineStats { has_lines, water, points, replaced, changes },
+            levels,
+            salvaged: Vec::new(),
+        })
+    }
+
+    /// Lines and water, and what was changed about them.
+    fn read_lines(&self, target: &Target) -> Result<Lines> {
+        let of_plane = [("--lines", &self.lines), ("--flatten", &self.flatten.files)];
+        match of_plane.iter().find(|(_, files)| !files.is_empty()) {
+            None => Ok(Lines::default()),
+            Some((flag, _)) if self.source.dims != 2 => {
+                Err(Error::usage(format!("{flag} needs points of the plane: leave out --octree")))
+            }
+            Some(_) => {
+                let sources =
+                    Sources { lines: &self.lines, water: &self.flatten.files, ..Sources::default() };
+                lines::read(&sources, target, &self.line_options)
+            }
+        }
+    }
+
+    /// The vertices of lines and water that become points.
+    fn added(&self, network: &Network, levels: &Levels, target: &Target) -> AddedPoints {
+        let is_kept = |&point: &Point| {
+            self.source.bounds.is_none_or(|bounds| bounds.contains(target.coordinates.to_decimal(point)))
+        };
+        let points = (0..).zip(&network.vertices).filter_map(|(number, vertex)| {
+            let [x, y] = vertex.place;
+            Some([x, y, levels.elevations.get(&number).copied().or(vertex.z)?])
+        });
+        AddedPoints::new(points.filter(is_kept).collect())
+    }
+}
+
+impl Flatten {
+    /// Finds the levels, from those of `points` that are near a shore if none are stated.
+    fn levels(
+        &self,
+        network: &Network,
+        water: &Water,
+        points: &dyn Passes,
+        observer: &mut dyn Observer,
+    ) -> Result<Levels> {
+        let (target, needed) = (Target::of_points(points.description()), water.need_points());
+        let mut shores = Vec::new();
+        if needed.contains(&true) {
+            let width = match (self.width, target.coordinates) {
+                (Some(width), Coordinates::I32 { scale, .. }) => Some(width / scale[0]),
+                (Some(width), Coordinates::F64) => Some(width),
+                (None, _) => shore_width(points, observer)?,
+            };
+            let near = Shores::new(water.edges(network), &needed, width.unwrap_or(1.0));
+            shores = near.collect(points, observer)?;
+        }
+        Levels::find(network, water, shores, self.percentile, &target)
+    }
+}

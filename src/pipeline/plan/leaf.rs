@@ -1,0 +1,174 @@
+//! The points of one leaf of a plan.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use super::{FileCount, Node, Plan, PlannedFile, Work};
+use crate::finalize::{Budget, Observer, Passes, Recipe};
+use spmesh_base::error::{Error, Result};
+use spmesh_formats::source::{AttributeChoice, Description, PointReader, SourceOptions};
+use spmesh_stream::model::bounds::{Bounds, Point, Region};
+use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
+
+/// What a leaf has read.
+#[derive(Debug, Default)]
+pub(super) struct LeafCounts {
+    /// Points of each file in the box.
+    pub(super) files: Vec<FileCount>,
+    /// Points in the box that were dropped.
+    pub(super) dropped: u64,
+    /// Messages for the user.
+    pub(super) notices: Vec<String>,
+}
+
+/// Writes the finalized points of a leaf to `output`. `recipe` is that of the plan.
+pub(super) fn write_leaf(
+    plan: &Plan,
+    node: &Node,
+    recipe: Recipe,
+    work: &Work,
+    mut output: impl Write,
+) -> Result<LeafCounts> {
+    let files = plan.files_of(node);
+    let polygons: Vec<PathBuf> = recipe.clip.iter().chain(&recipe.drop_inside).cloned().collect();
+    let check = || {
+        files.iter().try_for_each(|file| file.check())?;
+        check_beside(plan, &polygons)
+    };
+    check()?;
+    let header = plan.header(Kind::Points)?;
+    if files.is_empty() {
+        StreamWriter::new(output, Header { points: Some(0), ..header })?.end(0, 0)?;
+        return Ok(LeafCounts::default());
+    }
+    let window = node.region.region();
+    let mut recipe = recipe;
+    recipe.inputs = files.iter().map(|file| file.path()).collect();
+    recipe.source = SourceOptions {
+        attributes: AttributeChoice::of_names(&plan.attributes),
+        encoding: Some(plan.coordinates()),
+        crs: Some(header.crs.clone()),
+        window: Some(window),
+        reach: Some(in_world(&window, &plan.coordinates())),
+        threads: Some(work.threads),
+        temp_dir: work.temp_dir.clone(),
+        ..recipe.source
+    };
+    recipe.options.budget = Budget::of_process(work.memory, work.threads.get())?;
+    recipe.options.temp_dir.clone_from(&work.temp_dir);
+    let input = recipe.open()?;
+    let windowed = Windowed::new(&input, &files, &window, header.has_elevation);
+    let mut watch = Watch::default();
+    let stats = recipe.finalize(&windowed, &mut watch, &mut output)?.stats;
+    // A file that changed while it was read may look whole.
+    check()?;
+    let in_box: u64 = input.counts().iter().sum();
+    let files = node.files.iter().zip(input.counts()).map(|(&file, &points)| FileCount { file, points });
+    Ok(LeafCounts { files: files.collect(), dropped: in_box - stats.points, notices: watch.notices })
+}
+
+/// Checks that polygons are those of the plan: the same files, unchanged.
+fn check_beside(plan: &Plan, polygons: &[PathBuf]) -> Result<()> {
+    for (path, planned) in polygons.iter().zip(&plan.beside) {
+        let absolute = std::path::absolute(path).map_err(|e| Error::io("finding", e))?;
+        if absolute != planned.path() {
+            let message = "is another file than when the plan was made: run jobs in the same folder";
+            return Err(Error::usage(message).of_input(absolute.display().to_string()));
+        }
+        planned.check()?;
+    }
+    Ok(())
+}
+
+/// The closed box of the world that holds the points of a window.
+fn in_world(window: &Region<3>, coordinates: &Coordinates) -> Bounds {
+    Bounds { min: coordinates.to_world(window.min), max: coordinates.to_world(window.max) }
+}
+
+/// The points of an input that reads one window only, with a check that no file has points outside of the box that
+/// it was planned with: no other job would look for them.
+struct Windowed<'a> {
+    input: &'a dyn Passes,
+    files: &'a [&'a PlannedFile],
+    description: Description,
+}
+
+impl<'a> Windowed<'a> {
+    /// The points of `input`, which reads `files` and has a window of its own, the box `window`. Their elevation is
+    /// as that of all points of the plan.
+    fn new(
+        input: &'a dyn Passes,
+        files: &'a [&'a PlannedFile],
+        window: &Region<3>,
+        has_elevation: bool,
+    ) -> Self {
+        let mut description = input.description().clone();
+        let are_whole = matches!(description.coordinates, Coordinates::I32 { .. });
+        description.stated_bounds =
+            description.stated_bounds.and_then(|bounds| bounds.within(window, are_whole));
+        description.has_elevation = has_elevation;
+        description.stated_points = None;
+        Windowed { input, files, description }
+    }
+}
+
+impl Passes for Windowed<'_> {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn read(&self) -> Result<Box<dyn PointReader + '_>> {
+        Ok(Box::new(WindowedReader { reader: self.input.read()?, files: self.files }))
+    }
+
+    fn source(&self) -> Option<&dyn Passes> {
+        Some(self.input)
+    }
+}
+
+struct WindowedReader<'a> {
+    reader: Box<dyn PointReader + 'a>,
+    files: &'a [&'a PlannedFile],
+}
+
+impl PointReader for WindowedReader<'_> {
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        self.reader.next_batch(batch)?;
+        let Some(found) = Bounds::of_points(batch) else { return Ok(()) };
+        let Some(file) = self.files.get(self.reader.file()) else { return Ok(()) };
+        if file.bounds().is_some_and(|bounds| bounds.union(found) == bounds) {
+            return Ok(());
+        }
+        let is_outside = |point: &&Point| !file.bounds().is_some_and(|bounds| bounds.contains(**point));
+        let point = batch.iter().find(is_outside).copied().unwrap_or_default();
+        let message = format!(
+            "point {point:?} (stored coordinates) lies outside of the box that the header states, so that other jobs \
+             do not find it: write the file again with a right header, and plan again"
+        );
+        Err(Error::malformed(message).of_input(&file.path))
+    }
+
+    fn rows(&self) -> &[u8] {
+        self.reader.rows()
+    }
+
+    fn file(&self) -> usize {
+        self.reader.file()
+    }
+
+    fn invalid(&self) -> u64 {
+        self.reader.invalid()
+    }
+}
+
+/// Keeps notices for the caller.
+#[derive(Default)]
+struct Watch {
+    notices: Vec<String>,
+}
+
+impl Observer for Watch {
+    fn notice(&mut self, message: &str) {
+        self.notices.push(message.to_string());
+    }
+}
