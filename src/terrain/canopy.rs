@@ -39,7 +39,8 @@ pub struct Settings {
     pub temp_dir: Option<PathBuf>,
 }
 
-/// The thresholds of layers that have points up to `greatest`, ascending from 0; without `layers`, regular ones.
+/// The thresholds of layers that have points up to `greatest`, ascending from 0; without `layers`, regular
+/// ones.
 ///
 /// # Errors
 /// Usage, if one of `layers` is negative or not finite.
@@ -59,8 +60,8 @@ pub fn thresholds(layers: &[f64], greatest: f64) -> Result<Vec<f64>> {
     Ok(thresholds)
 }
 
-/// Draws the layers of all thresholds, the lowest of them as `bottom` says; calls `progress` with the number of layers
-/// done. Returns the highest surface, and the number of triangles of all layers.
+/// Draws the layers of all thresholds, the lowest of them as `bottom` says; calls `progress` with the number
+/// of layers done. Returns the highest surface, and the number of triangles of all layers.
 ///
 /// # Errors
 /// Those of finalizing, triangulating and drawing.

@@ -26,10 +26,10 @@
 //! * *Radius* `r = |o| <= |o^| + E_x + E_y`, and the computed `|o^|` is off by less than `4 u |o^|`.
 //! * *Sides*: `a + o + r` is summed in floating point with three roundings, each below `u` times the sum of
 //!   the magnitudes; `4 u` times that sum covers them.
-//! * *Power*: that of a place `w` relative to `a`, times `d`, is `g = d |w|^2 - m w`. With four roundings of
-//!   `d x x`, of `m x` and of their difference, and two of sums, its part along an axis errs by at most
-//!   `(E_d + 6 u |d^|) x^2 + (E_m + 6 u |m^|) |x|`. Along an axis, `g` is `d x^2` and a linear function, so inside
-//!   of a box with the sides `s` and `t` it is less than at the corners by at most `d (s^2 + t^2) / 4`.
+//! * *Power*: that of a place `w` relative to `a`, times `d`, is `g = d |w|^2 - m w`. With the roundings of
+//!   `d x x`, of `m x`, of their difference and of sums, its part along an axis errs by at most
+//!   `(E_d + 6 u |d^|) x^2 + (E_m + 6 u |m^|) |x|`. Along an axis, `g` is `d x^2` and a linear function, so
+//!   inside of a box with the sides `s` and `t` it is less than at the corners by at most `d (s^2 + t^2) / 4`.
 //!
 //! Underflow would break relative errors: where one of `n_d`, `n_x`, `n_y`, `p`, `q` is below 2^-900 nothing
 //! is claimed, and above it an underflowing product errs by less than 2^-1074, which is below `u` times the
@@ -54,8 +54,8 @@ impl CircleBounds {
     /// Bounds for integer coordinates below 2^52 in magnitude, whose differences are exact.
     pub const INTEGER: CircleBounds = CircleBounds { area: 3.0 * U, numerator: 5.0 * U };
 
-    /// The circle through `a`, `b` and `c`; `None` if underflow may spoil its error bounds. Overflow makes these infinite
-    /// or NaN.
+    /// The circle through `a`, `b` and `c`; `None` if underflow may spoil its error bounds. Overflow makes
+    /// these infinite or NaN.
     #[inline]
     pub fn circle(self, a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Option<Circle> {
         let (bx, by) = (b[0] - a[0], b[1] - a[1]);
@@ -132,8 +132,9 @@ impl Circle {
         Some(Disk { centre, errors, radius })
     }
 
-    /// Whether a closed box, with corners relative to the first point, certainly has nothing in common with the
-    /// closed disk. The three points are counterclockwise. This tells more than [`Disk`] for flat triangles.
+    /// Whether a closed box, with corners relative to the first point, certainly has nothing in common with
+    /// the closed disk. The three points are counterclockwise. This tells more than [`Disk`] for flat
+    /// triangles.
     pub fn misses(&self, [low, high]: [[f64; 2]; 2]) -> bool {
         let (d, e_d) = self.area;
         let power = |axis: usize, x: f64| {

@@ -1,5 +1,5 @@
-//! Batches of points, and reading ahead: a thread decodes and prepares the next batches while the calling thread works
-//! on one.
+//! Batches of points, and reading ahead: a thread decodes and prepares the next batches while the calling
+//! thread works on one.
 
 use spmesh_base::error::Result;
 use spmesh_base::parallel;

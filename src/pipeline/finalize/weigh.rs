@@ -88,7 +88,8 @@ impl Weighing {
         Weighing { source: WeightSource::Weights(attribute.to_string()), radii: None }
     }
 
-    /// By radii and that of a probe: `name` is that of a table or a file of radii of atoms, or else of an attribute.
+    /// By radii and that of a probe: `name` is that of a table or a file of radii of atoms, or else of an
+    /// attribute.
     ///
     /// # Errors
     /// As [`Radii::load`].

@@ -82,18 +82,19 @@ pub struct Lines {
     pub changes: Changes,
 }
 
-/// Reads the lines of files as one network. Lines are numbered over all files, in their order. Rings of areas, shores,
-/// banks and centre lines are lines, too. Between the ends of two banks of a river are lines behind all others.
+/// Reads the lines of files as one network. Lines are numbered over all files, in their order. Rings of
+/// areas, shores, banks and centre lines are lines, too. Between the ends of two banks of a river are lines
+/// behind all others.
 ///
 /// The network depends on the set of lines alone, but for the numbers of lines. Its coordinates are those
 /// that the stream stores. If these are f64, they are rounded to decimals: as many places as leave fewer than
 /// 2^42 steps up to the greatest magnitude of the lines, 6 for coordinates in millions.
 ///
 /// # Errors
-/// Those of reading; usage, if the system of a file differs from that of the stream, a coordinate is beyond the
-/// grid of the stream, or there is water and points have no elevation; malformed, if there are too many vertices or
-/// crossings, an area has no polygon, a feature of water is neither a polygon nor the centre line or a bank of a
-/// river, or banks bound no area.
+/// Those of reading; usage, if the system of a file differs from that of the stream, a coordinate is beyond
+/// the grid of the stream, or there is water and points have no elevation; malformed, if there are too many
+/// vertices or crossings, an area has no polygon, a feature of water is neither a polygon nor the centre line
+/// or a bank of a river, or banks bound no area.
 pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lines> {
     if options.densify.is_some_and(|longest| !(longest > 0.0 && longest.is_finite())) {
         return Err(Error::usage("--densify, the longest part of a line, must be a positive number"));

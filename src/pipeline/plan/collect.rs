@@ -12,13 +12,13 @@ use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::Output;
 use spmesh_formats::source::{Manifest, ManifestPart};
 
-/// Checks all parts, makes missing ones with the policy for duplicates of those that are there, and writes the manifest
-/// of the mesh into the file `manifest`. With `is_verified`, all parts are read, and those made again whose checksums
-/// are wrong. `recipe` and `note` are as in [`Maker::new`].
+/// Checks all parts, makes missing ones with the policy for duplicates of those that are there, and writes
+/// the manifest of the mesh into the file `manifest`. With `is_verified`, all parts are read, and those made
+/// again whose checksums are wrong. `recipe` and `note` are as in [`Maker::new`].
 ///
 /// # Errors
-/// Those of [`Maker::run`]; usage, if nodes were made differently, or the manifest would replace the report of one;
-/// malformed, if points are not accounted for.
+/// Those of [`Maker::run`]; usage, if nodes were made differently, or the manifest would replace the report
+/// of one; malformed, if points are not accounted for.
 pub fn collect(
     plan: &Plan,
     work: &Work,
@@ -77,8 +77,8 @@ pub fn collect(
     Ok(())
 }
 
-/// Checks that every point that the files state was in the box of one leaf, and became a vertex, was merged, or was
-/// dropped by a filter there.
+/// Checks that every point that the files state was in the box of one leaf, and became a vertex, was merged,
+/// or was dropped by a filter there.
 fn check_sums(plan: &Plan, reports: &[NodeReport]) -> Result<()> {
     let mut found = vec![0u64; plan.files.len()];
     for count in reports.iter().flat_map(|report| &report.files) {
@@ -167,8 +167,8 @@ fn manifest_of(plan: &Plan, reports: &[NodeReport], folder: &Path, output: &Path
     Ok(manifest)
 }
 
-/// The folder of the parts as seen from the folder of the manifest: relative if it is inside of it, so that both can
-/// be moved together.
+/// The folder of the parts as seen from the folder of the manifest: relative if it is inside of it, so that
+/// both can be moved together.
 fn relative(folder: &Path, manifest: &Path) -> Result<PathBuf> {
     let finding = |e| Error::io("finding the folder of the parts", e);
     let folder = std::fs::canonicalize(folder).map_err(finding)?;

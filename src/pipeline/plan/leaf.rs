@@ -85,8 +85,8 @@ fn in_world(window: &Region<3>, coordinates: &Coordinates) -> Bounds {
     Bounds { min: coordinates.to_world(window.min), max: coordinates.to_world(window.max) }
 }
 
-/// The points of an input that reads one window only, with a check that no file has points outside of the box that
-/// it was planned with: no other job would look for them.
+/// The points of an input that reads one window only, with a check that no file has points outside of the box
+/// that it was planned with: no other job would look for them.
 struct Windowed<'a> {
     input: &'a dyn Passes,
     files: &'a [&'a PlannedFile],
@@ -94,8 +94,8 @@ struct Windowed<'a> {
 }
 
 impl<'a> Windowed<'a> {
-    /// The points of `input`, which reads `files` and has a window of its own, the box `window`. Their elevation is
-    /// as that of all points of the plan.
+    /// The points of `input`, which reads `files` and has a window of its own, the box `window`. Their
+    /// elevation is as that of all points of the plan.
     fn new(
         input: &'a dyn Passes,
         files: &'a [&'a PlannedFile],

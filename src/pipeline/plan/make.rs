@@ -61,8 +61,8 @@ pub(super) fn options_text(duplicates: Duplicates) -> String {
 }
 
 impl<'a> Maker<'a> {
-    /// A maker of nodes, which makes the folder. `recipe` says how points were to be finalized when the plan was made,
-    /// and `note` takes messages for the user.
+    /// A maker of nodes, which makes the folder. `recipe` says how points were to be finalized when the plan
+    /// was made, and `note` takes messages for the user.
     ///
     /// # Errors
     /// Usage, if points of space are to get an elevation; I/O, if the folder cannot be made.
@@ -83,7 +83,8 @@ impl<'a> Maker<'a> {
     /// Makes a node, and what it needs, unless it is complete.
     ///
     /// # Errors
-    /// Those of reading points, triangulating and writing; usage, if files have changed since the plan was made.
+    /// Those of reading points, triangulating and writing; usage, if files have changed since the plan was
+    /// made.
     pub fn run(&self, number: u32, is_forced: bool) -> Result<()> {
         let node = self.folder.plan.node(number)?;
         let done = self.folder.complete(node)?;

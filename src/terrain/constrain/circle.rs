@@ -6,8 +6,8 @@ use super::cells::{CELLS_MAX, CellBox};
 use spmesh_delaunay::predicates::circle::{self, CircleBounds};
 use spmesh_stream::model::points::Point2;
 
-/// More than all roundings between a corner of a triangle and a vertex of the network in units of cells, as a part of
-/// their coordinates.
+/// More than all roundings between a corner of a triangle and a vertex of the network in units of cells, as a
+/// part of their coordinates.
 const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
 /// More than the few roundings of a length.
@@ -26,14 +26,14 @@ pub(super) struct Circle {
     corner: Point2,
     /// How far rounding moves a vertex of the network from the triangle, at most, along an axis.
     margin: f64,
-    /// Centre and radius of a disk that has all vertices of the network that are inside of the circle, if its centre is
-    /// known well.
+    /// Centre and radius of a disk that has all vertices of the network that are inside of the circle, if its
+    /// centre is known well.
     disk: Option<(Point2, f64)>,
 }
 
 impl Circle {
-    /// The circle through the corners of a triangle in stored coordinates, which are counterclockwise. `corner` is the
-    /// first one in units of cells, and `scale` the number of cells per unit.
+    /// The circle through the corners of a triangle in stored coordinates, which are counterclockwise.
+    /// `corner` is the first one in units of cells, and `scale` the number of cells per unit.
     pub(super) fn of([a, b, c]: [Point2; 3], corner: Point2, scale: f64) -> Circle {
         let exact = CircleBounds::FLOAT.circle(a, b, c);
         let margin = ROUNDINGS * (corner[0].abs() + corner[1].abs() + CELLS_MAX);

@@ -1,5 +1,5 @@
-//! Bits for the squares of a grid, and a pyramid of them: each level says which squares of the level below hold
-//! something.
+//! Bits for the squares of a grid, and a pyramid of them: each level says which squares of the level below
+//! hold something.
 
 use super::cells::CellBox;
 

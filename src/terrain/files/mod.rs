@@ -1,7 +1,7 @@
 //! Files of rasters: complete tiles in, one file or many out.
 //!
-//! `tiles` says how tiles are passed on, and a `tile_store` holds them. `part` writes a file from tiles. `division` divides a raster into `sheets`, and `dependencies` says when all
-//! tiles of a sheet have come.
+//! `tiles` says how tiles are passed on, and a `tile_store` holds them. `part` writes a file from tiles.
+//! `division` divides a raster into `sheets`, and `dependencies` says when all tiles of a sheet have come.
 
 mod dependencies;
 mod division;
