@@ -6,6 +6,7 @@ pub mod compression;
 pub mod crs;
 pub mod endings;
 pub mod messages;
+mod named;
 pub mod outline;
 pub mod progress;
 pub mod rows;
@@ -21,6 +22,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser};
 
 pub use messages::{notice, say};
+pub use named::{Names, named, value_name};
 pub use spmesh_base::allocator::Allocator;
 use spmesh_base::error::{Error, ErrorKind};
 use spmesh_base::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};

@@ -14,7 +14,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Parser;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::tess3::sweep::{News, Outcome, Sweep, sweep};
 use crate::tess3::{Arithmetic, Options, Product, Radius, Stats};
@@ -32,8 +31,9 @@ use spmesh_formats::molecules::{Structure, read_structure};
 use spmesh_formats::sink::TableFormat;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
-use spmesh_shell::{Common, StatsFormat, notice, progress::Progress, read_list, refuse_terminal};
-use tables::TableFlag;
+use spmesh_shell::{
+    Common, Names, StatsFormat, named, notice, progress::Progress, read_list, refuse_terminal, value_name,
+};
 
 const SUMMARY_NAME: &str = "summary.tsv";
 
@@ -108,8 +108,8 @@ pub struct Flags {
 
     /// Format of tables, also in a sweep: text with tabs, JSON Lines, or Parquet [default: that of the ending
     /// of --output, else tsv]
-    #[arg(long, value_enum, value_name = "tsv|jsonl|parquet", hide_possible_values = true)]
-    format: Option<TableFlag>,
+    #[arg(long, value_name = "tsv|jsonl|parquet", hide_possible_values = true, value_parser = named(tables::NAMES))]
+    format: Option<TableFormat>,
 
     /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere
     /// of at most that radius
@@ -117,7 +117,7 @@ pub struct Flags {
     alpha: Option<Radius>,
 
     /// Format of the input, if its content does not tell
-    #[arg(long, value_name = "FORMAT", value_parser = formats())]
+    #[arg(long, value_name = "FORMAT", value_parser = named(FORMATS))]
     from: Option<Format>,
 
     /// Sweep: write an output for each file to this folder, and a summary
@@ -171,24 +171,16 @@ pub struct Flags {
     method: MethodFlags,
 }
 
-/// Formats of the input, with the values of `--from` and their help.
-const FROM: [(Format, &str, &str); 7] = [
-    (Format::Pdb, "pdb", "PDB"),
-    (Format::Mmcif, "mmcif", "PDBx/mmCIF"),
-    (Format::Xyz, "xyz", "XYZ of chemistry: number of atoms, comment, and lines of element x y z"),
-    (Format::Text, "points", "Points as spfinalize reads them: lines of x y z, streams, LAS, VTK"),
-    (Format::Ply, "ply", "Vertices of a PLY file"),
-    (Format::Obj, "obj", "Vertices of an OBJ file"),
-    (Format::Off, "off", "Vertices of an OFF file"),
+/// Values of `--from`.
+const FORMATS: Names<Format> = &[
+    ("pdb: PDB", Format::Pdb),
+    ("mmcif: PDBx/mmCIF", Format::Mmcif),
+    ("xyz: XYZ of chemistry: number of atoms, comment, and lines of element x y z", Format::Xyz),
+    ("points: Points as spfinalize reads them: lines of x y z, streams, LAS, VTK", Format::Text),
+    ("ply: Vertices of a PLY file", Format::Ply),
+    ("obj: Vertices of an OBJ file", Format::Obj),
+    ("off: Vertices of an OFF file", Format::Off),
 ];
-
-fn formats() -> impl TypedValueParser<Value = Format> {
-    let values = FROM.map(|(_, value, help)| PossibleValue::new(value).help(help));
-    PossibleValuesParser::new(values).map(|name| {
-        let found = FROM.into_iter().find(|(_, value, _)| *value == name);
-        found.expect("the value is one of the values").0
-    })
-}
 
 /// Runs the tool.
 ///
@@ -372,8 +364,8 @@ impl Flags {
     /// The options that determine the content of the outputs, as text.
     fn options_text(&self, options: &Options) -> String {
         let mut text = self.selection.to_string();
-        if let Some((_, value, _)) = FROM.iter().find(|(format, ..)| self.from == Some(*format)) {
-            text += &format!(" --from {value}");
+        if let Some(format) = self.from {
+            text += &format!(" --from {}", value_name(FORMATS, &format));
         }
         if let Some(radius) = &self.alpha {
             text += &format!(" --alpha {radius}");

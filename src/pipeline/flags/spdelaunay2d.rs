@@ -30,34 +30,8 @@ pub struct Flags {
     shared: Shared<2>,
 
     /// Elevation of a vertex where points coincide in x and y
-    #[arg(long, value_enum, default_value_t = DuplicatesFlag::First, value_name = "POLICY")]
-    duplicates: DuplicatesFlag,
-}
-
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum DuplicatesFlag {
-    /// The elevation of the point that comes first
-    First,
-    /// The lowest elevation
-    Lowest,
-    /// The highest elevation
-    Highest,
-    /// The mean elevation
-    Mean,
-    /// Coinciding points are an error
-    Error,
-}
-
-impl From<DuplicatesFlag> for Duplicates {
-    fn from(flag: DuplicatesFlag) -> Self {
-        match flag {
-            DuplicatesFlag::First => Duplicates::First,
-            DuplicatesFlag::Lowest => Duplicates::Lowest,
-            DuplicatesFlag::Highest => Duplicates::Highest,
-            DuplicatesFlag::Mean => Duplicates::Mean,
-            DuplicatesFlag::Error => Duplicates::Error,
-        }
-    }
+    #[arg(long, value_enum, default_value_t = Duplicates::First, value_name = "POLICY")]
+    duplicates: Duplicates,
 }
 
 const TOOL: Tool<2> = Tool {
@@ -78,5 +52,5 @@ const TOOL: Tool<2> = Tool {
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::give_back_large_blocks();
     system::share_heap();
-    TOOL.run(&flags.shared, flags.duplicates.into(), false)
+    TOOL.run(&flags.shared, flags.duplicates, false)
 }

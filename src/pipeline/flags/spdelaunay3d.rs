@@ -5,6 +5,7 @@ use clap::Parser;
 use super::reduction::{Shared, Tool};
 use crate::reduce::Duplicates;
 use spmesh_base::system;
+use spmesh_shell::{Names, named};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -37,8 +38,8 @@ pub struct Flags {
     shared: Shared<3>,
 
     /// Treatment of coinciding points
-    #[arg(long, value_enum, default_value_t = DuplicatesFlag::First, value_name = "POLICY")]
-    duplicates: DuplicatesFlag,
+    #[arg(long, default_value = "first", value_name = "POLICY", value_parser = named(DUPLICATES))]
+    duplicates: Duplicates,
 
     /// Make the regular tetrahedralization, for points that have weights (spfinalize --radii or --weights).
     /// Of coinciding points the heaviest is the vertex
@@ -46,22 +47,9 @@ pub struct Flags {
     weights: bool,
 }
 
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum DuplicatesFlag {
-    /// They are one vertex
-    First,
-    /// They are an error
-    Error,
-}
-
-impl From<DuplicatesFlag> for Duplicates {
-    fn from(flag: DuplicatesFlag) -> Self {
-        match flag {
-            DuplicatesFlag::First => Duplicates::First,
-            DuplicatesFlag::Error => Duplicates::Error,
-        }
-    }
-}
+/// What coinciding points may be.
+const DUPLICATES: Names<Duplicates> =
+    &[("first: They are one vertex", Duplicates::First), ("error: They are an error", Duplicates::Error)];
 
 const TOOL: Tool<3> = Tool {
     name: "spdelaunay3d",
@@ -80,5 +68,5 @@ const TOOL: Tool<3> = Tool {
 /// output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::give_back_large_blocks();
-    TOOL.run(&flags.shared, flags.duplicates.into(), flags.weights)
+    TOOL.run(&flags.shared, flags.duplicates, flags.weights)
 }

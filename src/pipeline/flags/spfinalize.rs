@@ -30,7 +30,7 @@ use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::text_flags::TextFlags;
-use spmesh_shell::{Common, StatsFormat, notice, parse_numbers, parse_size, read_list};
+use spmesh_shell::{Common, Names, StatsFormat, named, notice, parse_numbers, parse_size, read_list};
 
 const TOOL: &str = "spfinalize";
 
@@ -144,8 +144,8 @@ pub struct Flags {
 
     /// Spool decoded points to a temporary file for later passes (see --temp-dir): where decoding again would
     /// cost more and the disk has room, always, or never
-    #[arg(long, value_enum, value_name = "WHEN", default_value_t = Spool::Auto)]
-    spool: Spool,
+    #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = named(SPOOLING))]
+    spool: Spooling,
 
     /// Threads that decode LAZ [default: one per core]; each takes a part of --memory. One more always reads
     /// ahead
@@ -197,12 +197,8 @@ pub struct Flags {
 }
 
 /// When decoded points are kept for later passes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Spool {
-    Auto,
-    Always,
-    Never,
-}
+const SPOOLING: Names<Spooling> =
+    &[("auto", Spooling::Auto), ("always", Spooling::Always), ("never", Spooling::Never)];
 
 /// Runs the tool.
 ///
@@ -297,11 +293,7 @@ impl Flags {
             thin: self.points.thin,
             compress: self.compression.of_stream(),
             temp_dir: self.temp_dir.clone(),
-            spooling: match self.spool {
-                Spool::Auto => Spooling::Auto,
-                Spool::Always => Spooling::Always,
-                Spool::Never => Spooling::Never,
-            },
+            spooling: self.spool,
             weighted: None,
         })
     }

@@ -10,7 +10,7 @@ use std::io::{BufReader, Write};
 use std::iter;
 use std::path::{Path, PathBuf};
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 
 use report::Summary;
 use spmesh_audit::configurations::{self as config_audit};
@@ -24,7 +24,7 @@ use spmesh_formats::detect::SPINFO;
 use spmesh_formats::source::{Input, SourceOptions};
 use spmesh_shell::messages::escaped_json;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::{Common, notice, open_input};
+use spmesh_shell::{Common, Names, named, notice, open_input};
 use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader};
 
 const INPUT_BUFFER_LEN: usize = 1 << 18;
@@ -69,13 +69,13 @@ pub struct Flags {
     /// ties in any way
     #[arg(
         long,
-        value_enum,
+        value_parser = named(STANDARDS),
         value_name = "STANDARD",
         num_args = 0..=1,
         require_equals = true,
         default_missing_value = "canonical"
     )]
-    audit: Option<AuditStandard>,
+    audit: Option<Standard>,
 
     /// Also prove that the vertices of the mesh are exactly the points of this file, in any format that
     /// spfinalize reads, with the atoms of PDB and mmCIF; can be repeated. The points are held, with 4 bytes
@@ -93,23 +93,14 @@ pub struct Flags {
     common: Common,
 }
 
-/// The standard for the edges or facets of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum AuditStandard {
-    /// Interior edges or facets are locally Delaunay, and ties are resolved as spdelaunay2d and tess3 do
-    Canonical,
-    /// Interior edges or facets are locally Delaunay
-    Delaunay,
-}
-
-impl From<AuditStandard> for Standard {
-    fn from(standard: AuditStandard) -> Self {
-        match standard {
-            AuditStandard::Canonical => Standard::Canonical,
-            AuditStandard::Delaunay => Standard::Delaunay,
-        }
-    }
-}
+/// The standards for the edges or facets of a mesh.
+const STANDARDS: Names<Standard> = &[
+    (
+        "canonical: Interior edges or facets are locally Delaunay, and ties are resolved as spdelaunay2d and tess3 do",
+        Standard::Canonical,
+    ),
+    ("delaunay: Interior edges or facets are locally Delaunay", Standard::Delaunay),
+];
 
 /// Reads the stream to its end and prints what it holds.
 ///
@@ -178,7 +169,7 @@ enum Proof {
 
 impl Proof {
     fn of(flags: &Flags, header: &Header) -> Result<Self> {
-        let Some(standard) = flags.audit.map(Standard::from) else { return Ok(Proof::None) };
+        let Some(standard) = flags.audit else { return Ok(Proof::None) };
         if header.kind.is_4d() && !flags.count_violations && flags.points.is_empty() {
             return Ok(Proof::Diagram(Box::new(StreamAudit::new(header.kind)?)));
         }

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 
 use super::spfinalize;
 use crate::plan::{Maker, Node, Plan, Work, collect};
@@ -94,8 +94,8 @@ struct RunFlags {
     force: bool,
 
     /// Elevation of a vertex where points coincide in x and y; the same for all nodes
-    #[arg(long, value_enum, default_value_t = Policy::First, value_name = "POLICY")]
-    duplicates: Policy,
+    #[arg(long, value_enum, default_value_t = Duplicates::First, value_name = "POLICY")]
+    duplicates: Duplicates,
 
     #[command(flatten)]
     work: WorkFlags,
@@ -151,33 +151,6 @@ impl WorkFlags {
     }
 }
 
-/// Which elevation survives where points coincide.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Policy {
-    /// The elevation of the point that comes first
-    First,
-    /// The lowest elevation
-    Lowest,
-    /// The highest elevation
-    Highest,
-    /// The mean elevation
-    Mean,
-    /// Coinciding points are an error
-    Error,
-}
-
-impl Policy {
-    fn duplicates(self) -> Duplicates {
-        match self {
-            Policy::First => Duplicates::First,
-            Policy::Lowest => Duplicates::Lowest,
-            Policy::Highest => Duplicates::Highest,
-            Policy::Mean => Duplicates::Mean,
-            Policy::Error => Duplicates::Error,
-        }
-    }
-}
-
 /// Runs the tool.
 ///
 /// # Errors
@@ -190,7 +163,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         Action::List(action) => list(action)?,
         Action::Run(action) => {
             let plan = Plan::read(&action.plan)?;
-            let work = action.work.work(action.duplicates.duplicates());
+            let work = action.work.work(action.duplicates);
             let maker = Maker::new(&plan, &work, &recipe, &note)?;
             action.nodes.iter().try_for_each(|&number| plan.node(number).map(|_| ()))?;
             action.nodes.iter().try_for_each(|&number| maker.run(number, action.force))?;

@@ -7,18 +7,21 @@ use spmesh_stream::{Coordinates, Weights};
 /// Which elevation survives where points coincide in x and y. The attributes are those of the point whose
 /// elevation survives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "flags", derive(clap::ValueEnum))]
 pub enum Duplicates {
-    /// The elevation of the first point in the stream.
+    /// The elevation of the point that comes first
     #[default]
     First,
-    /// The lowest.
+    /// The lowest elevation
     Lowest,
-    /// The highest.
+    /// The highest elevation
     Highest,
-    /// The mean; with integer coordinates rounded to the nearest, halves away from zero. The attributes are
-    /// those of the first point.
+    /// The mean elevation
+    ///
+    /// With integer coordinates it is rounded to the nearest, halves away from zero. The attributes are those
+    /// of the first point.
     Mean,
-    /// Coinciding points are an error.
+    /// Coinciding points are an error
     Error,
 }
 

@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 
 use crate::configgen::{Border, BoxName, Flips, Made, Options, Places, RuleName, Sites, SpecialKind};
 use crate::configgen::{read_features, read_patches};
@@ -17,7 +17,7 @@ use spmesh_base::system;
 use spmesh_formats::source::{name_of, read_values};
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
-use spmesh_shell::{Common, StatsFormat, notice, open_held, progress::Progress};
+use spmesh_shell::{Common, StatsFormat, named, notice, open_held, progress::Progress};
 
 const TOOL: &str = "configgen";
 
@@ -108,8 +108,9 @@ pub struct Flags {
 
     /// Repeat knots on the border, so that splines sum to one up to it: corners as often as the degree needs,
     /// or all of them once, which is for degree 1
-    #[arg(long, value_enum, value_name = "clamped|pulled-apart", hide_possible_values = true)]
-    boundary: Option<BorderFlag>,
+    #[arg(long, value_name = "clamped|pulled-apart", hide_possible_values = true)]
+    #[arg(value_parser = named(&[("clamped", Border::Clamped), ("pulled-apart", Border::PulledApart)]))]
+    boundary: Option<Border>,
 
     /// Make two of each of these knots: all, boundary, or ids between commas. Their links are triangulated
     /// from each other, so that splines of degree 2 interpolate there
@@ -147,15 +148,6 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
-}
-
-/// Values of `--boundary`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum BorderFlag {
-    /// Corners
-    Clamped,
-    /// All
-    PulledApart,
 }
 
 /// Runs the tool.
@@ -221,11 +213,7 @@ impl Flags {
             rule: self.rule,
             seed: self.seed,
             flips: self.flip,
-            border: match self.boundary {
-                None => Border::Free,
-                Some(BorderFlag::Clamped) => Border::Clamped,
-                Some(BorderFlag::PulledApart) => Border::PulledApart,
-            },
+            border: self.boundary.unwrap_or_default(),
             pull_apart: self.pull_apart.clone(),
             special,
             values,

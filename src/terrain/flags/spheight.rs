@@ -14,7 +14,7 @@ use spmesh_formats::las::LasFile;
 use spmesh_shell::open_stream;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::rows::{self, Row};
-use spmesh_shell::{Common, StatsFormat, notice, parse_size, peak_memory, read_list, threads};
+use spmesh_shell::{Common, StatsFormat, named, notice, parse_size, peak_memory, read_list, threads};
 
 const TOOL: &str = "spheight";
 
@@ -89,8 +89,9 @@ pub struct Flags {
 
     /// Heights of points outside of the mesh of the ground: none, or those above its nearest place
     /// [default: no-data; with --replace-z, nearest]
-    #[arg(long, value_enum, value_name = "HOW")]
-    outside: Option<OutsideFlag>,
+    #[arg(long, value_name = "HOW")]
+    #[arg(value_parser = named(&[("no-data", Outside::NoData), ("nearest", Outside::Nearest)]))]
+    outside: Option<Outside>,
 
     /// Whether points are compressed [default: by the extension of --output, else as in the input]
     #[arg(long, value_enum, value_name = "FORMAT")]
@@ -115,13 +116,6 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
-}
-
-/// The values of `--outside`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum OutsideFlag {
-    NoData,
-    Nearest,
 }
 
 /// The values of `--format`.
@@ -271,30 +265,27 @@ impl Flags {
         }
         let place = if self.replace_z { HeightPlace::Z } else { HeightPlace::Field(self.name.clone()) };
         let is_named = self.output.is_some().then(|| format_of(output)).flatten();
-        let outside = match self.outside {
-            None if self.replace_z => Outside::Nearest,
-            Some(OutsideFlag::NoData) if self.replace_z => {
-                return Err(Error::usage(
-                    "z cannot be without a value: give --outside nearest, or leave out --replace-z",
-                ));
-            }
-            Some(OutsideFlag::Nearest) => Outside::Nearest,
-            None | Some(OutsideFlag::NoData) => Outside::NoData,
-        };
+        if self.replace_z && self.outside() == Outside::NoData {
+            return Err(Error::usage(
+                "z cannot be without a value: give --outside nearest, or leave out --replace-z",
+            ));
+        }
         Ok(FileOptions {
             place,
-            outside,
+            outside: self.outside(),
             is_compressed: self.format.or(is_named).map(|format| format == FormatFlag::Laz),
             memory: self.memory,
             threads: threads(self.threads).get(),
         })
     }
 
+    fn outside(&self) -> Outside {
+        self.outside.unwrap_or(if self.replace_z { Outside::Nearest } else { Outside::NoData })
+    }
+
     fn about_outside(&self, count: u64) -> String {
         let points = if count == 1 { "1 point is".to_string() } else { format!("{count} points are") };
-        let is_nearest =
-            self.outside == Some(OutsideFlag::Nearest) || self.outside.is_none() && self.replace_z;
-        let what = if is_nearest {
+        let what = if self.outside() == Outside::Nearest {
             "heights there are those above its nearest place"
         } else {
             "they have no height (--outside nearest gives them that above its nearest place)"

@@ -8,7 +8,7 @@ mod tee;
 use std::io::{BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 
 use crate::{Extent, Fill, Form, Moments, Options, Picture, When};
 use moment::{Every, Moment};
@@ -21,7 +21,7 @@ use spmesh_shell::cells::window_of;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::outline::OutlineFlags;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::{Common, notice, open_input, parse_numbers};
+use spmesh_shell::{Common, Names, named, notice, open_input, parse_numbers};
 use spmesh_stream::{Kind, StreamReader};
 use tee::{Passed, Tee};
 
@@ -103,8 +103,8 @@ pub struct Flags {
     format: Option<Format>,
 
     /// What triangles or points show [default: relief where there are elevations, time for points]
-    #[arg(long, value_enum, value_name = "WHAT")]
-    fill: Option<FillFlag>,
+    #[arg(long, value_name = "WHAT", value_parser = named(FILLS))]
+    fill: Option<Fill>,
 
     /// Show an attribute of the points: its name, with :1, :2 ... for one of several components. One of three
     /// components, such as rgb, is taken as a colour
@@ -112,8 +112,9 @@ pub struct Flags {
     colour_by: Option<String>,
 
     /// Whether to draw the edges of triangles
-    #[arg(long, value_enum, value_name = "WHEN", default_value_t = WhenFlag::Auto)]
-    edges: WhenFlag,
+    #[arg(long, value_name = "WHEN", default_value = "auto")]
+    #[arg(value_parser = named(&[("auto", When::Auto), ("always", When::Always), ("never", When::Never)]))]
+    edges: When,
 
     /// Draw finalized points without their cells
     #[arg(long)]
@@ -214,22 +215,13 @@ fn parse_stretch(text: &str) -> std::result::Result<Stretch, String> {
 }
 
 /// The values of `--fill`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum FillFlag {
-    None,
-    Elevation,
-    Hillshade,
-    Relief,
-    Time,
-}
-
-/// The values of `--edges`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum WhenFlag {
-    Auto,
-    Always,
-    Never,
-}
+const FILLS: Names<Fill> = &[
+    ("none", Fill::None),
+    ("elevation", Fill::Elevation),
+    ("hillshade", Fill::Hillshade),
+    ("relief", Fill::Relief),
+    ("time", Fill::Time),
+];
 
 /// Runs the tool.
 ///
@@ -313,19 +305,9 @@ impl Flags {
         let [azimuth, altitude] = self.light;
         let defaults = Options::new(name.filter(|name| name != "-").unwrap_or("stdin".to_string()));
         Ok(Options {
-            fill: self.fill.map(|fill| match fill {
-                FillFlag::None => Fill::None,
-                FillFlag::Elevation => Fill::Elevation,
-                FillFlag::Hillshade => Fill::Hillshade,
-                FillFlag::Relief => Fill::Relief,
-                FillFlag::Time => Fill::Time,
-            }),
+            fill: self.fill,
             colour_by: self.colour_by.clone(),
-            edges: match self.edges {
-                WhenFlag::Auto => When::Auto,
-                WhenFlag::Always => When::Always,
-                WhenFlag::Never => When::Never,
-            },
+            edges: self.edges,
             cells: !self.no_cells,
             form: match (self.vector, self.raster) {
                 (true, _) => Form::Vector,

@@ -4,11 +4,12 @@ use std::fmt::Write;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::tess3::{BallOptions, ContactFilter, Level, NamedRadii, Product};
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::molecules::Radii;
+use spmesh_shell::named;
 
 /// Steps of a probe in 1 Å.
 const STEPS: f64 = 1000.0;
@@ -63,7 +64,7 @@ pub(super) struct BallFlags {
 
     /// Level of the rows; areas and volumes are summed [default: atom; of --pockets molecule]
     #[arg(long, value_enum, value_name = "LEVEL")]
-    per: Option<LevelFlag>,
+    per: Option<Level>,
 
     /// Only contacts of at least this area (Å²); with --per, the sum
     #[arg(long, value_name = "AREA", value_parser = parse_positive)]
@@ -76,30 +77,12 @@ pub(super) struct BallFlags {
     /// Only contacts between different residues or chains
     #[arg(
         long,
-        value_enum,
+        value_parser = named(&[("residues", Level::Residue), ("chains", Level::Chain)]),
         value_name = "residues|chains",
         requires = "contact_areas",
         hide_possible_values = true
     )]
-    between: Option<BetweenFlag>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum LevelFlag {
-    /// Each atom
-    Atom,
-    /// Each residue
-    Residue,
-    /// Each chain
-    Chain,
-    /// All atoms together
-    Molecule,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum BetweenFlag {
-    Residues,
-    Chains,
+    between: Option<Level>,
 }
 
 impl BallFlags {
@@ -153,10 +136,7 @@ impl BallFlags {
             contacts: ContactFilter {
                 min_area: self.min_area.unwrap_or(0.0),
                 within: self.within,
-                between: self.between.map(|between| match between {
-                    BetweenFlag::Residues => Level::Residue,
-                    BetweenFlag::Chains => Level::Chain,
-                }),
+                between: self.between,
             },
             threads,
             mouths: self.mouths,
@@ -220,13 +200,7 @@ impl BallFlags {
     }
 
     fn level(&self) -> Level {
-        match self.per {
-            None if self.pockets => Level::Molecule,
-            None | Some(LevelFlag::Atom) => Level::Atom,
-            Some(LevelFlag::Residue) => Level::Residue,
-            Some(LevelFlag::Chain) => Level::Chain,
-            Some(LevelFlag::Molecule) => Level::Molecule,
-        }
+        self.per.unwrap_or(if self.pockets { Level::Molecule } else { Level::Atom })
     }
 
     fn text(&self, options: &BallOptions, radii: &str) -> String {

@@ -3,12 +3,13 @@
 use std::fmt;
 use std::num::NonZeroUsize;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
-use super::selection::Switch;
+use super::selection::SWITCH;
 use crate::tess3::{Arithmetic, Method, NO_EXPERIMENTS};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::order::{Curve, Sequence};
+use spmesh_shell::{Names, named};
 
 /// Builds without experiments hide these flags, and refuse them.
 const HAS_EXPERIMENTS: bool = cfg!(feature = "experiments");
@@ -22,22 +23,26 @@ const SEED: u64 = 1;
 pub(super) struct MethodFlags {
     /// Arithmetic of the predicates: float is that of the first tess3 (2003), whose tetrahedra fit together
     /// but may not be Delaunay
-    #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, default_value_t = ArithmeticFlag::Exact, value_name = "exact|float", hide_possible_values = true)]
-    arithmetic: ArithmeticFlag,
+    #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "exact|float", hide_possible_values = true)]
+    #[arg(default_value = "exact", value_parser = named(ARITHMETICS))]
+    arithmetic: Arithmetic,
 
     /// Order in which points are inserted: along a curve, or at random
-    #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, default_value_t = OrderFlag::Hilbert, value_name = "hilbert|morton|gray|row-major|random", hide_possible_values = true)]
-    order: OrderFlag,
+    #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "hilbert|morton|gray|row-major|random", hide_possible_values = true)]
+    #[arg(default_value = "hilbert", value_parser = named(ORDERS))]
+    order: Order,
 
     /// How often insertion goes along the curve: in a few rounds, each with more of the points, or in one
     /// pass [default: rounds, with --arithmetic float pass]
-    #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, value_name = "rounds|pass", hide_possible_values = true)]
-    sequence: Option<SequenceFlag>,
+    #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "rounds|pass", hide_possible_values = true)]
+    #[arg(value_parser = named(SEQUENCES))]
+    sequence: Option<Sequence>,
 
     /// Whether points that have more of their lowest bits in common are inserted first
     /// [default: off, with --arithmetic float on]
-    #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, value_name = "on|off", hide_possible_values = true)]
-    bit_levels: Option<Switch>,
+    #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "on|off", hide_possible_values = true)]
+    #[arg(value_parser = named(SWITCH))]
+    bit_levels: Option<bool>,
 
     /// Seed of --order random, and of the walks of --arithmetic float
     #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "N", default_value_t = SEED)]
@@ -52,55 +57,35 @@ pub(super) struct MethodFlags {
     timed: bool,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ArithmeticFlag {
-    /// Signs are never wrong
-    Exact,
-    /// Rounded
-    Float,
-}
+const ARITHMETICS: Names<Arithmetic> =
+    &[("exact", Arithmetic::Exact), ("float", Arithmetic::Float { check_signs: false })];
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum OrderFlag {
-    /// Along Hilbert's curve
-    Hilbert,
-    /// Along the Z-order curve
-    Morton,
-    /// Along the curve of Gray codes
-    Gray,
-    /// Row by row through 8 x 8 x 8 boxes, and through each box again
-    RowMajor,
-    /// At random
-    Random,
-}
+/// A curve; `None` for a random order.
+type Order = Option<Curve>;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SequenceFlag {
-    /// Every 512th point, then every 64th, every 8th, and the rest
-    Rounds,
-    /// One after the other
-    Pass,
-}
+const ORDERS: Names<Order> = &[
+    ("hilbert", Some(Curve::Hilbert)),
+    ("morton", Some(Curve::Morton)),
+    ("gray", Some(Curve::Gray)),
+    ("row-major", Some(Curve::RowMajor)),
+    ("random", None),
+];
+
+const SEQUENCES: Names<Sequence> = &[("rounds", Sequence::Rounds), ("pass", Sequence::Pass)];
 
 impl MethodFlags {
     pub(super) fn method(&self, threads: NonZeroUsize) -> Result<Method> {
         if !HAS_EXPERIMENTS && !self.is_default() {
             return Err(Error::usage(NO_EXPERIMENTS));
         }
-        let curve = match self.order {
-            OrderFlag::Hilbert | OrderFlag::Random => Curve::Hilbert,
-            OrderFlag::Morton => Curve::Morton,
-            OrderFlag::Gray => Curve::Gray,
-            OrderFlag::RowMajor => Curve::RowMajor,
+        let is_float = self.arithmetic != Arithmetic::Exact;
+        let usual = if is_float { Sequence::Pass } else { Sequence::Rounds };
+        let sequence = match self.order {
+            None => Sequence::Random { seed: self.seed },
+            Some(_) => self.sequence.unwrap_or(usual),
         };
-        let is_float = self.arithmetic == ArithmeticFlag::Float;
-        let usual = if is_float { SequenceFlag::Pass } else { SequenceFlag::Rounds };
-        let sequence = match (self.order, self.sequence.unwrap_or(usual)) {
-            (OrderFlag::Random, _) => Sequence::Random { seed: self.seed },
-            (_, SequenceFlag::Rounds) => Sequence::Rounds,
-            (_, SequenceFlag::Pass) => Sequence::Pass,
-        };
-        let by_bit_levels = self.bit_levels.map_or(is_float, |switch| switch == Switch::On);
+        let curve = self.order.unwrap_or_default();
+        let by_bit_levels = self.bit_levels.unwrap_or(is_float);
         let arithmetic = match (is_float, self.check_signs) {
             (true, check_signs) => Arithmetic::Float { check_signs },
             (false, false) => Arithmetic::Exact,
@@ -112,7 +97,7 @@ impl MethodFlags {
 
     fn is_default(&self) -> bool {
         let MethodFlags { arithmetic, order, sequence, bit_levels, seed, check_signs, timed } = *self;
-        (arithmetic, order, seed) == (ArithmeticFlag::Exact, OrderFlag::Hilbert, SEED)
+        (arithmetic, order, seed) == (Arithmetic::Exact, Some(Curve::Hilbert), SEED)
             && sequence.is_none()
             && bit_levels.is_none()
             && !(check_signs || timed)

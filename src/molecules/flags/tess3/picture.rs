@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::balls::{BallFlags, parse_positive};
 use crate::tess3::{ColourBy, PictureForm, PictureOptions, Product};
 use spmesh_base::error::{Error, Result};
+use spmesh_shell::{Names, named};
 
 /// Resolution by default, in Å.
 const RESOLUTION: f64 = 0.5;
@@ -20,16 +21,12 @@ pub(super) struct PictureFlags {
 
     /// What the colours of --sasa tell: the element, the chain, or the pocket around which a triangle lies
     /// [default: element]
-    #[arg(long, value_enum, value_name = "WHAT", requires = "sasa")]
-    colour_by: Option<ColourFlag>,
+    #[arg(long, value_name = "WHAT", requires = "sasa", value_parser = named(COLOURS))]
+    colour_by: Option<ColourBy>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ColourFlag {
-    Element,
-    Chain,
-    Pocket,
-}
+const COLOURS: Names<ColourBy> =
+    &[("element", ColourBy::Element), ("chain", ColourBy::Chain), ("pocket", ColourBy::Pocket)];
 
 impl PictureFlags {
     /// The mesh that the ending of the output asks for; `None` for a table.
@@ -50,11 +47,7 @@ impl PictureFlags {
             }
         };
         balls.check_for_mesh()?;
-        let colours = match self.colour_by {
-            None | Some(ColourFlag::Element) => ColourBy::Element,
-            Some(ColourFlag::Chain) => ColourBy::Chain,
-            Some(ColourFlag::Pocket) => ColourBy::Pocket,
-        };
+        let colours = self.colour_by.unwrap_or(ColourBy::Element);
         Ok(Some(PictureOptions { form, resolution: self.resolution.unwrap_or(RESOLUTION), colours }))
     }
 

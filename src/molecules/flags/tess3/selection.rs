@@ -2,9 +2,10 @@
 
 use std::fmt;
 
-use clap::{Args, ValueEnum};
+use clap::{ArgAction, Args};
 
 use spmesh_formats::molecules::{Altlocs, Atoms, Class, Models, Selection};
+use spmesh_shell::{Names, named, value_name};
 
 /// Which atoms are triangulated.
 #[derive(Debug, Clone, Args)]
@@ -29,60 +30,29 @@ pub(super) struct SelectionFlags {
 
     /// Only these classes of residues: polymer (amino acids and nucleotides, modified ones too), ligand, ion
     /// (single atoms), water [default: all]. mmCIF states them; in other files names, SEQRES and TER tell
-    #[arg(long, value_enum, value_name = "CLASS,...", value_delimiter = ',', hide_possible_values = true)]
-    classes: Vec<ClassFlag>,
+    #[arg(long, value_name = "CLASS,...", value_delimiter = ',', hide_possible_values = true)]
+    #[arg(value_parser = named(CLASSES))]
+    classes: Vec<Class>,
 
     /// Whether HETATM records are wanted: ligands, ions, water, and modified residues of polymers (to keep
     /// these, use --classes polymer)
-    #[arg(long, value_enum, default_value_t = Switch::On, value_name = "on|off", hide_possible_values = true)]
-    hetatm: Switch,
+    #[arg(long, default_value = "on", value_name = "on|off", hide_possible_values = true)]
+    #[arg(action = ArgAction::Set, value_parser = named(SWITCH))]
+    hetatm: bool,
 
     /// Which atoms: all, all but hydrogen (heavy), or alpha carbons (ca)
-    #[arg(long, value_enum, default_value_t = AtomsFlag::All, value_name = "ca|heavy|all", hide_possible_values = true)]
-    atoms: AtomsFlag,
+    #[arg(long, value_name = "ca|heavy|all", hide_possible_values = true)]
+    #[arg(default_value = "all", value_parser = named(ATOMS))]
+    atoms: Atoms,
 }
 
 /// On or off.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Switch {
-    /// Yes
-    On,
-    /// No
-    Off,
-}
+pub(super) const SWITCH: Names<bool> = &[("on", true), ("off", false)];
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum AtomsFlag {
-    /// Alpha carbons only
-    Ca,
-    /// All but hydrogen and deuterium
-    Heavy,
-    /// All
-    All,
-}
+const ATOMS: Names<Atoms> = &[("ca", Atoms::CAlpha), ("heavy", Atoms::Heavy), ("all", Atoms::All)];
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
-enum ClassFlag {
-    /// Amino acids and nucleotides in chains
-    Polymer,
-    /// Small molecules
-    Ligand,
-    /// Metals and halogens
-    Ion,
-    /// Water
-    Water,
-}
-
-impl ClassFlag {
-    fn class(self) -> Class {
-        match self {
-            ClassFlag::Polymer => Class::Polymer,
-            ClassFlag::Ligand => Class::Ligand,
-            ClassFlag::Ion => Class::Ion,
-            ClassFlag::Water => Class::Water,
-        }
-    }
-}
+const CLASSES: Names<Class> =
+    &[("polymer", Class::Polymer), ("ligand", Class::Ligand), ("ion", Class::Ion), ("water", Class::Water)];
 
 impl SelectionFlags {
     pub(super) fn selection(&self) -> Selection {
@@ -90,13 +60,9 @@ impl SelectionFlags {
             models: self.model.unwrap_or_default(),
             chains: self.chain.clone(),
             altlocs: self.altloc.clone(),
-            hetatm: self.hetatm == Switch::On,
-            atoms: match self.atoms {
-                AtomsFlag::Ca => Atoms::CAlpha,
-                AtomsFlag::Heavy => Atoms::Heavy,
-                AtomsFlag::All => Atoms::All,
-            },
-            classes: self.classes.iter().map(|flag| flag.class()).collect(),
+            hetatm: self.hetatm,
+            atoms: self.atoms,
+            classes: self.classes.clone(),
         }
     }
 
@@ -129,19 +95,11 @@ impl fmt::Display for SelectionFlags {
             Altlocs::All => "all",
             Altlocs::Named(name) => name,
         };
-        let hetatm = if self.hetatm == Switch::On { "on" } else { "off" };
-        let atoms = match self.atoms {
-            AtomsFlag::Ca => "ca",
-            AtomsFlag::Heavy => "heavy",
-            AtomsFlag::All => "all",
-        };
+        let (hetatm, atoms) = (value_name(SWITCH, &self.hetatm), value_name(ATOMS, &self.atoms));
         write!(f, "--altloc {altloc} --hetatm {hetatm} --atoms {atoms}")?;
-        let mut classes = self.classes.clone();
-        classes.sort_unstable();
-        classes.dedup();
-        for (flag, class) in std::iter::once(" --classes ").chain(std::iter::repeat(",")).zip(classes) {
-            let name = class.to_possible_value().expect("each class has a name");
-            write!(f, "{flag}{}", name.get_name())?;
+        let classes = CLASSES.iter().filter(|(_, class)| self.classes.contains(class));
+        for (flag, (class, _)) in std::iter::once(" --classes ").chain(std::iter::repeat(",")).zip(classes) {
+            write!(f, "{flag}{class}")?;
         }
         Ok(())
     }

@@ -67,6 +67,7 @@ pub struct ContactFilter {
 
 /// What a row of a table is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "flags", derive(clap::ValueEnum))]
 pub enum Level {
     /// Each atom.
     #[default]

@@ -3,13 +3,14 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::dd4::Product;
 use crate::slices::Rule;
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::drivers::Format;
 use spmesh_formats::volumes::{From4, Request, Selection, Spacing, read_points4};
+use spmesh_shell::{Names, named, value_name};
 use spmesh_stream::model::cells4::Point4;
 
 /// Examples for the end of the help.
@@ -29,8 +30,9 @@ pub struct ProductFlags {
     /// Write simplices instead of cells: each cell as cones from its lexicographically greatest vertices
     /// (canonical), or as cones from the barycentres of all faces that are no simplices (barycentric), where
     /// values are means; these are not Delaunay
-    #[arg(long, value_enum, value_name = "canonical|barycentric", hide_possible_values = true, conflicts_with_all = ["at", "at_file", "slice"])]
-    triangulate: Option<TriangulateFlag>,
+    #[arg(long, value_name = "canonical|barycentric", hide_possible_values = true, value_parser = named(RULES))]
+    #[arg(conflicts_with_all = ["at", "at_file", "slice"])]
+    triangulate: Option<Rule>,
 
     /// Write the value at a site, interpolated, as a line of x y z t value; nan outside of the points' convex
     /// hull. May be given several times
@@ -52,13 +54,8 @@ pub struct ProductFlags {
     isosurface: Option<f64>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum TriangulateFlag {
-    /// Vertices are pulled
-    Canonical,
-    /// Barycentres are added
-    Barycentric,
-}
+/// How faces that are no simplices are divided.
+const RULES: Names<Rule> = &[("canonical", Rule::Pulled), ("barycentric", Rule::Barycentric)];
 
 impl ProductFlags {
     /// The file of sites.
@@ -92,8 +89,7 @@ impl ProductFlags {
             check_stream(output)?;
         }
         Ok(match (self.triangulate, self.slice, self.isosurface) {
-            (Some(TriangulateFlag::Canonical), ..) => Product::Simplices(Rule::Pulled),
-            (Some(TriangulateFlag::Barycentric), ..) => Product::Simplices(Rule::Barycentric),
+            (Some(rule), ..) => Product::Simplices(rule),
             (None, Some(time), Some(level)) => {
                 Product::Isosurface { time, level, format: format_of(output, true)? }
             }
@@ -107,10 +103,7 @@ impl ProductFlags {
 impl fmt::Display for ProductFlags {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut flags = Vec::new();
-        flags.extend(self.triangulate.map(|flag| match flag {
-            TriangulateFlag::Canonical => "--triangulate canonical".to_string(),
-            TriangulateFlag::Barycentric => "--triangulate barycentric".to_string(),
-        }));
+        flags.extend(self.triangulate.map(|rule| format!("--triangulate {}", value_name(RULES, &rule))));
         flags.extend(self.at.iter().map(|[x, y, z, t]| format!("--at {x},{y},{z},{t}")));
         flags.extend(self.at_file.as_ref().map(|path| format!("--at-file {}", path.display())));
         flags.extend(self.slice.map(|time| format!("--slice {time}")));

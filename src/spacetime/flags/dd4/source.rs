@@ -3,13 +3,13 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::volumes::{
     Condition, From4, RawLayout, Request, Selected4, Selection, Share, Spacing, parse_sizes, read_points4,
 };
-use spmesh_shell::refuse_terminal;
+use spmesh_shell::{named, refuse_terminal};
 
 /// Examples for the end of the help.
 pub const EXAMPLES: &str =
@@ -43,8 +43,9 @@ pub struct SourceFlags {
     /// Coordinates of a volume: grid indices from 0, or what its header states (world), in its units and
     /// rounded. The grid may be oblique if its axes are perpendicular: a stream then holds distances along
     /// them
-    #[arg(long, value_enum, default_value_t = SpacingFlag::Index, value_name = "index|world", hide_possible_values = true)]
-    spacing: SpacingFlag,
+    #[arg(long, default_value = "index", value_name = "index|world", hide_possible_values = true)]
+    #[arg(value_parser = named(&[("index", Spacing::Index), ("world", Spacing::World)]))]
+    spacing: Spacing,
 
     /// Only points that fulfil a condition: <, <=, >, >=, == or != between numbers and value, x, y, z, t,
     /// joined by and, or, and parentheses
@@ -66,15 +67,6 @@ pub struct SourceFlags {
     /// Seed of --sample and --count: the same seed chooses the same points
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-}
-
-/// Values of `--spacing`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SpacingFlag {
-    /// Grid indices
-    Index,
-    /// World units
-    World,
 }
 
 impl SourceFlags {
@@ -111,13 +103,9 @@ impl SourceFlags {
             refuse_terminal()?;
         }
         let share = self.sample.map(Share::Part).or(self.count.map(Share::Count));
-        let spacing = match self.spacing {
-            SpacingFlag::Index => Spacing::Index,
-            SpacingFlag::World => Spacing::World,
-        };
         let condition = self.condition.clone();
         let selection = Selection { condition, keep_nan: self.keep_nan, share, seed: self.seed };
-        Ok(Request { from, spacing, selection, temp_dir: None, in_memory: true })
+        Ok(Request { from, spacing: self.spacing, selection, temp_dir: None, in_memory: true })
     }
 }
 
@@ -127,7 +115,7 @@ impl fmt::Display for SourceFlags {
         let mut flags = Vec::new();
         flags.extend(self.grid.map(|[x, y, z, t]| format!("--grid {x}x{y}x{z}x{t}")));
         flags.extend(self.raw.map(|layout| format!("--raw {layout}")));
-        flags.extend((self.spacing == SpacingFlag::World).then(|| "--spacing world".to_string()));
+        flags.extend((self.spacing == Spacing::World).then(|| "--spacing world".to_string()));
         flags.extend(self.condition.as_ref().map(|condition| format!("--where '{condition}'")));
         flags.extend(self.keep_nan.then(|| "--keep-nan".to_string()));
         if let Some(share) = self.sample.map(Share::Part).or(self.count.map(Share::Count)) {

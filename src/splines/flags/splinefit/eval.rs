@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::eval_format::{Form, FormatFlag, KindFlag, format_of};
+use super::eval_format::{FORMATS, Form, KINDS, format_of};
 use super::{Threads, check_stdin, say};
 use crate::splinefit::{Attribute, Layout, Spline};
 use spmesh_base::error::{Error, Result};
@@ -16,7 +16,7 @@ use spmesh_formats::raster::Grid;
 use spmesh_formats::sink::MatrixFormat;
 use spmesh_formats::source::{Input, InvalidAdvice, SourceOptions};
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
-use spmesh_shell::{Common, progress::Progress};
+use spmesh_shell::{Common, named, progress::Progress};
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
@@ -77,8 +77,8 @@ pub(super) struct Flags {
     raster: RasterFlags,
 
     /// The attribute to evaluate
-    #[arg(long, value_enum, value_name = "KIND", default_value_t = KindFlag::Value)]
-    kind: KindFlag,
+    #[arg(long, value_name = "KIND", default_value = "value", value_parser = named(KINDS))]
+    kind: Attribute,
 
     /// Evaluate this function of the basis instead of the spline; functions are numbered from 0
     #[arg(long, value_name = "J")]
@@ -90,8 +90,8 @@ pub(super) struct Flags {
 
     /// GeoTIFF, ESRI ASCII grid, an array of numpy, or lines of x, y and values; for --collocation
     /// MatrixMarket or the arrays of scipy
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    format: Option<FormatFlag>,
+    #[arg(long, value_name = "FORMAT", value_parser = named(FORMATS))]
+    format: Option<Form>,
 
     #[command(flatten)]
     threads: Threads,
@@ -124,7 +124,7 @@ impl Flags {
         let spline = self.spline()?;
         let sites = open_sites(sites)?;
         let mut progress = Progress::new(common, "evaluating", sites.description().stated_points);
-        let (attribute, done) = (self.kind.into(), |count| progress.set(count));
+        let (attribute, done) = (self.kind, |count| progress.set(count));
         let (temp_dir, into) = (self.raster.temp_dir(), &mut output);
         let [count, outside] = match is_array {
             true => crate::splinefit::write_value_array(&spline, attribute, &sites, temp_dir, into, done)?,
@@ -155,7 +155,7 @@ impl Flags {
     }
 
     fn cells(&self, common: &Common, form: Form) -> Result<()> {
-        let attribute = self.kind.into();
+        let attribute = self.kind;
         let mut output = self.output(form, attribute)?;
         let spline = self.spline()?;
         let grid = self.cells.grid(spline.crs(), || spline.window())?;

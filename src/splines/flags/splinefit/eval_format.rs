@@ -2,39 +2,33 @@
 
 use std::path::Path;
 
-use clap::ValueEnum;
-
 use crate::splinefit::Attribute;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::places::is_device;
 use spmesh_formats::raster::RasterFormat;
 use spmesh_formats::sink::MatrixFormat;
-use spmesh_shell::{cells, endings};
+use spmesh_shell::{Names, cells, endings};
 
 /// Values of `--kind`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum KindFlag {
-    Value,
-    Slope,
-    Aspect,
-    ProfileCurvature,
-    TangentialCurvature,
-    /// Both derivatives: dx, dy
-    Gradient,
-    /// The second derivatives: dxx, dxy, dyy
-    Hessian,
-}
+pub(super) const KINDS: Names<Attribute> = &[
+    ("value", Attribute::Value),
+    ("slope", Attribute::Slope),
+    ("aspect", Attribute::Aspect),
+    ("profile-curvature", Attribute::ProfileCurvature),
+    ("tangential-curvature", Attribute::TangentialCurvature),
+    ("gradient: Both derivatives: dx, dy", Attribute::Gradient),
+    ("hessian: The second derivatives: dxx, dxy, dyy", Attribute::Hessian),
+];
 
 /// Values of `--format`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum FormatFlag {
-    Tif,
-    Asc,
-    Npy,
-    Text,
-    Mtx,
-    Npz,
-}
+pub(super) const FORMATS: Names<Form> = &[
+    ("tif", Form::Raster(RasterFormat::GeoTiff)),
+    ("asc", Form::Raster(RasterFormat::Ascii)),
+    ("npy", Form::Array),
+    ("text", Form::Text),
+    ("mtx", Form::Matrix(MatrixFormat::MatrixMarket)),
+    ("npz", Form::Matrix(MatrixFormat::Npz)),
+];
 
 /// The form of an output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,17 +44,12 @@ pub(super) enum Form {
 /// The form that `--format` asks for, or else the ending of the output.
 pub(super) fn format_of(
     output: &Path,
-    format: Option<FormatFlag>,
+    format: Option<Form>,
     has_sites: bool,
     is_collocation: bool,
 ) -> Result<Form> {
     let form = match format {
-        Some(FormatFlag::Tif) => Form::Raster(RasterFormat::GeoTiff),
-        Some(FormatFlag::Asc) => Form::Raster(RasterFormat::Ascii),
-        Some(FormatFlag::Npy) => Form::Array,
-        Some(FormatFlag::Text) => Form::Text,
-        Some(FormatFlag::Mtx) => Form::Matrix(MatrixFormat::MatrixMarket),
-        Some(FormatFlag::Npz) => Form::Matrix(MatrixFormat::Npz),
+        Some(form) => form,
         None => match of_ending(output) {
             Some(form @ Form::Matrix(_)) => form,
             of_ending if is_collocation => {
@@ -101,18 +90,4 @@ fn only_for_collocation(form: Form, output: &Path) -> Error {
     let ending = if form == Form::Matrix(MatrixFormat::Npz) { ".npz" } else { ".mtx" };
     let what = format!("{ending} is for sparse matrices (--collocation): values go to .npy, or to text");
     Error::usage(what).of_input(output.display().to_string())
-}
-
-impl From<KindFlag> for Attribute {
-    fn from(kind: KindFlag) -> Attribute {
-        match kind {
-            KindFlag::Value => Attribute::Value,
-            KindFlag::Slope => Attribute::Slope,
-            KindFlag::Aspect => Attribute::Aspect,
-            KindFlag::ProfileCurvature => Attribute::ProfileCurvature,
-            KindFlag::TangentialCurvature => Attribute::TangentialCurvature,
-            KindFlag::Gradient => Attribute::Gradient,
-            KindFlag::Hessian => Attribute::Hessian,
-        }
-    }
 }

@@ -6,7 +6,7 @@ use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::{Threads, check_stdin, report, say};
 use crate::fitting::Loss;
@@ -22,7 +22,7 @@ use spmesh_formats::source::{
 use spmesh_shell::compression::Compression;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
-use spmesh_shell::{Common, StatsFormat, open_held, parse_box, progress::Progress, refuse_terminal};
+use spmesh_shell::{Common, StatsFormat, named, open_held, parse_box, progress::Progress, refuse_terminal};
 use spmesh_stream::model::bounds::Bounds;
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -97,8 +97,9 @@ pub(super) struct Flags {
     tension: Option<f64>,
 
     /// Weigh points by their residuals, so that gross errors count little, or not at all
-    #[arg(long, value_enum, value_name = "huber|tukey", hide_possible_values = true)]
-    robust: Option<LossFlag>,
+    #[arg(long, value_name = "huber|tukey", hide_possible_values = true)]
+    #[arg(value_parser = named(&[("huber", Loss::Huber), ("tukey", Loss::Tukey)]))]
+    robust: Option<Loss>,
 
     /// Instead of least squares, interpolate: pass through the triangulated points at the Greville sites
     #[arg(long, requires = "knots")]
@@ -155,13 +156,6 @@ pub(super) struct Flags {
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1)]
     #[arg(default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
-}
-
-/// Values of `--robust`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum LossFlag {
-    Huber,
-    Tukey,
 }
 
 impl Flags {
@@ -228,10 +222,7 @@ impl Flags {
         Options {
             smoothing: self.lambda,
             tension: self.tension,
-            loss: self.robust.map(|loss| match loss {
-                LossFlag::Huber => Loss::Huber,
-                LossFlag::Tukey => Loss::Tukey,
-            }),
+            loss: self.robust,
             interpolates: self.interpolate,
             tolerance: self.tol,
             max_knots: self.max_knots,

@@ -6,7 +6,7 @@ use crate::dem::{Interpolation, Method, Quantity, Sample};
 use crate::points::Statistic;
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::raster::{Differences, Light, Shading};
-use spmesh_shell::parse_numbers;
+use spmesh_shell::{Names, named, parse_numbers};
 
 /// Flags that say what cells hold.
 #[derive(Debug, Clone, Args)]
@@ -22,13 +22,13 @@ pub(super) struct QuantityFlags {
 
     /// What of the surface over a cell its elevation is, also where slopes and the like follow from it: the elevation at
     /// the centre, or the mean, the least or the greatest over the part that the mesh covers [default: centre]
-    #[arg(long, value_enum, value_name = "WHAT", conflicts_with_all = ["contours", "fill", "interpolation"])]
-    sample: Option<SampleFlag>,
+    #[arg(long, value_name = "WHAT", conflicts_with_all = ["contours", "fill", "interpolation"], value_parser = named(SAMPLES))]
+    sample: Option<Sample>,
 
     /// What slopes, aspects and hillshades are those of: the cells around (Horn, or Zevenbergen and Thorne), or the
     /// triangle at the centre [default: horn]
-    #[arg(long, value_enum, value_name = "METHOD")]
-    method: Option<MethodFlag>,
+    #[arg(long, value_name = "METHOD", value_parser = named(METHODS))]
+    method: Option<Method>,
 
     /// Draw an attribute of the points instead of elevations: its name, with :1, :2 ... for one of several
     /// components; red, green and blue are those of rgb
@@ -37,8 +37,9 @@ pub(super) struct QuantityFlags {
 
     /// How an attribute varies between points: linear, or the value of the nearest corner of the triangle, as
     /// classes need it [default: linear]
-    #[arg(long, value_enum, value_name = "HOW", requires = "attribute", conflicts_with = "contours")]
-    interpolation: Option<InterpolationFlag>,
+    #[arg(long, value_name = "HOW", requires = "attribute", conflicts_with = "contours")]
+    #[arg(value_parser = named(&[("linear", Interpolation::Linear), ("nearest", Interpolation::Nearest)]))]
+    interpolation: Option<Interpolation>,
 
     /// Direction of the light of a hillshade, in degrees: clockwise from north, and above the horizon
     /// [default: 315,45]
@@ -88,28 +89,15 @@ impl KindFlag {
 }
 
 /// The values of `--sample`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SampleFlag {
-    Centre,
-    Mean,
-    Min,
-    Max,
-}
+const SAMPLES: Names<Sample> =
+    &[("centre", Sample::Centre), ("mean", Sample::Mean), ("min", Sample::Min), ("max", Sample::Max)];
 
 /// The values of `--method`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MethodFlag {
-    Horn,
-    Zevenbergen,
-    Triangle,
-}
-
-/// The values of `--interpolation`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum InterpolationFlag {
-    Linear,
-    Nearest,
-}
+const METHODS: Names<Method> = &[
+    ("horn", Method::Cells(Differences::Horn)),
+    ("zevenbergen", Method::Cells(Differences::ZevenbergenThorne)),
+    ("triangle", Method::Triangle),
+];
 
 impl QuantityFlags {
     /// What is said of the points in a cell.
@@ -130,10 +118,7 @@ impl QuantityFlags {
             ));
         }
         self.check(kind)?;
-        let interpolation = match self.interpolation {
-            None | Some(InterpolationFlag::Linear) => Interpolation::Linear,
-            Some(InterpolationFlag::Nearest) => Interpolation::Nearest,
-        };
+        let interpolation = self.interpolation.unwrap_or(Interpolation::Linear);
         let [azimuth, altitude] = self.light.unwrap_or([315.0, 45.0]);
         let shading = match self.multidirectional {
             true => Shading::Many(altitude),
@@ -151,21 +136,12 @@ impl QuantityFlags {
 
     /// What of the surface over a cell its elevation is.
     pub(super) fn sample(&self) -> Sample {
-        match self.sample.unwrap_or(SampleFlag::Centre) {
-            SampleFlag::Centre => Sample::Centre,
-            SampleFlag::Mean => Sample::Mean,
-            SampleFlag::Min => Sample::Min,
-            SampleFlag::Max => Sample::Max,
-        }
+        self.sample.unwrap_or_default()
     }
 
     /// What slopes and the like are those of.
     pub(super) fn method(&self) -> Method {
-        match self.method.unwrap_or(MethodFlag::Horn) {
-            MethodFlag::Horn => Method::Cells(Differences::Horn),
-            MethodFlag::Zevenbergen => Method::Cells(Differences::ZevenbergenThorne),
-            MethodFlag::Triangle => Method::Triangle,
-        }
+        self.method.unwrap_or(Method::Cells(Differences::Horn))
     }
 
     /// Refuses flags that are for other kinds.
@@ -175,7 +151,7 @@ impl QuantityFlags {
         }
         let is_lit = matches!(kind, KindFlag::Hillshade | KindFlag::ShadedRelief);
         let is_relief = kind == KindFlag::ShadedRelief;
-        let is_triangle = self.method == Some(MethodFlag::Triangle);
+        let is_triangle = self.method == Some(Method::Triangle);
         let refusals = [
             (
                 self.attribute.is_some() && self.kind.is_some(),

@@ -3,8 +3,8 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::{Flags, LIGHT, WhenFlag};
-use crate::{Picture, SolidOptions, draw_solid};
+use super::{Flags, LIGHT};
+use crate::{Picture, SolidOptions, When, draw_solid};
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::source::read_ply_surface;
 use spmesh_shell::parse_numbers;
@@ -41,7 +41,7 @@ fn check(flags: &Flags) -> Result<()> {
     let of_streams = [
         ("--fill", flags.fill.is_some()),
         ("--colour-by", flags.colour_by.is_some()),
-        ("--edges", flags.edges != WhenFlag::Auto),
+        ("--edges", flags.edges != When::Auto),
         ("--oblique", flags.oblique),
         ("--bounds", flags.bounds.is_some()),
         ("--vector", flags.vector),
