@@ -9,7 +9,7 @@ pub mod messages;
 mod named;
 pub mod outline;
 pub mod progress;
-pub mod rows;
+pub mod stats;
 pub mod text_flags;
 
 use std::ffi::{OsStr, OsString};
@@ -19,6 +19,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use clap::builder::TypedValueParser;
 use clap::{Args, Parser};
 
 pub use messages::{notice, say};
@@ -34,6 +35,7 @@ use spmesh_formats::detect::BYTE_ORDER_MARK;
 use spmesh_formats::source::{Plain, is_manifest, name_of, open_file, open_manifest, open_stdin};
 use spmesh_stream::StreamReader;
 use spmesh_stream::model::bounds::Bounds;
+pub use stats::{Report, StatsFlag};
 
 /// Runs a tool: parses its flags, calls `run`, and turns the result into an exit code and a message.
 ///
@@ -54,6 +56,12 @@ pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> Exi
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => messages::fail(Flags::command().get_name(), &error),
     }
+}
+
+/// From now on, a tool that lacks memory ends with this advice.
+pub fn advise_on_memory(tool: &str, advice: &str) {
+    let message = format!("{tool}: not enough memory: {advice}\n");
+    system::exit_at_abort(message.leak(), ErrorKind::Memory.exit_code());
 }
 
 /// Joins `--stats json` into one argument. clap needs `--stats=json`, or it would take the file in `--stats
@@ -85,15 +93,6 @@ pub struct Common {
     /// Show progress: on a terminal, never, or as JSON lines on stderr. In a pipe, the last program shows it
     #[arg(long, value_enum, default_value_t = progress::When::Auto, global = true)]
     pub progress: progress::When,
-}
-
-/// How `--stats` is printed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum StatsFormat {
-    /// A table for people.
-    Text,
-    /// One JSON object.
-    Json,
 }
 
 /// A size with a unit, in bytes: `512M`, `2G`, `65536`. K, M and G are powers of 1024.
@@ -140,10 +139,17 @@ pub fn parse_box(text: &str) -> Result<Bounds, String> {
     Ok(Bounds { min: [x, y, f64::NEG_INFINITY], max: [max_x, max_y, f64::INFINITY] })
 }
 
+/// Parses a number of threads.
+pub fn parse_threads() -> impl TypedValueParser<Value = NonZeroUsize> {
+    clap::value_parser!(u16)
+        .range(1..=1024)
+        .map(|count| NonZeroUsize::MIN.saturating_add(usize::from(count) - 1))
+}
+
 /// The requested number of threads; by default one per core, at most [`THREADS_DEFAULT_MAX`].
-pub fn threads(asked: Option<u16>) -> NonZeroUsize {
-    let cores = || available_threads().get().min(THREADS_DEFAULT_MAX);
-    NonZeroUsize::new(asked.map_or_else(cores, usize::from)).unwrap_or(NonZeroUsize::MIN)
+pub fn threads(asked: Option<NonZeroUsize>) -> NonZeroUsize {
+    let most = NonZeroUsize::new(THREADS_DEFAULT_MAX).unwrap_or(NonZeroUsize::MIN);
+    asked.unwrap_or_else(|| available_threads().min(most))
 }
 
 /// Opens an input that is read in order: stdin for `-`, a file otherwise; with the name that messages use.

@@ -29,6 +29,18 @@ impl PredicateCounts {
         self.perturbed += other.perturbed;
     }
 
+    /// Each count with a label for people and a key for programs.
+    pub fn rows(&self) -> [(&'static str, &'static str, u64); 6] {
+        [
+            ("predicates: filter", "predicates_filter", self.filter),
+            ("predicates: integer", "predicates_integer", self.integer),
+            ("predicates: pairs", "predicates_pairs", self.pairs),
+            ("predicates: residues", "predicates_residues", self.residues),
+            ("predicates: big integer", "predicates_bigint", self.bigint),
+            ("predicates: ties broken", "predicates_perturbed", self.perturbed),
+        ]
+    }
+
     /// Number of decisions, whatever the stage.
     pub fn total(&self) -> u64 {
         self.filter + self.integer + self.pairs + self.residues + self.bigint

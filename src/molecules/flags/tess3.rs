@@ -25,14 +25,14 @@ use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::Output;
 use spmesh_base::parallel::available_threads;
 use spmesh_base::places::check_apart;
-use spmesh_base::system;
 use spmesh_formats::drivers::Format;
 use spmesh_formats::molecules::{Structure, read_structure};
 use spmesh_formats::sink::TableFormat;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::{
-    Common, Names, StatsFormat, named, notice, progress::Progress, read_list, refuse_terminal, value_name,
+    Common, Names, StatsFlag, advise_on_memory, named, notice, parse_threads, progress::Progress, read_list,
+    refuse_terminal, value_name,
 };
 
 const SUMMARY_NAME: &str = "summary.tsv";
@@ -68,9 +68,6 @@ that is occupied most.
 Exit codes: 0 success, 1 I/O or runtime failure, or a file of a sweep failed, 2 usage, 3 malformed or \
 truncated input, 5 not enough memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 
-/// The message after a failed allocation.
-const OUT_OF_MEMORY: &str = "tess3: not enough memory: take fewer points, or fewer --threads in a sweep\n";
-
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
 /// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF, VTK and
@@ -79,6 +76,7 @@ const OUT_OF_MEMORY: &str = "tess3: not enough memory: take fewer points, or few
 /// points only.
 #[derive(Debug, Parser)]
 #[command(name = "tess3", version, after_help = EXAMPLES)]
+#[command(mut_arg("stats", |stats| stats.help("Print statistics on stderr")))]
 pub struct Flags {
     /// Structure or points; - is stdin. Several only with --out-dir
     #[arg(value_name = "FILE")]
@@ -108,7 +106,8 @@ pub struct Flags {
 
     /// Format of tables, also in a sweep: text with tabs, JSON Lines, or Parquet [default: that of the ending
     /// of --output, else tsv]
-    #[arg(long, value_name = "tsv|jsonl|parquet", hide_possible_values = true, value_parser = named(tables::NAMES))]
+    #[arg(long, value_name = "tsv|jsonl|parquet", hide_possible_values = true)]
+    #[arg(value_parser = named(tables::NAMES))]
     format: Option<TableFormat>,
 
     /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere
@@ -129,8 +128,8 @@ pub struct Flags {
     lof: Option<PathBuf>,
 
     /// Number of files of a sweep in parallel, or of threads for one structure [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = parse_threads())]
+    threads: Option<NonZeroUsize>,
 
     /// Where the summary of a sweep goes, a line per mesh: a table, JSON Lines if the name ends in .jsonl, or
     /// Parquet if it ends in .parquet; - is stdout [default: summary.tsv in the folder]
@@ -153,9 +152,8 @@ pub struct Flags {
     #[command(flatten)]
     compression: Compression,
 
-    /// Print statistics on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
-    stats: Option<StatsFormat>,
+    #[command(flatten)]
+    stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
@@ -188,12 +186,13 @@ const FORMATS: Names<Format> = &[
 /// As [`crate::tess3::run`] and [`sweep`]; and if files of a sweep failed.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    advise_on_memory("tess3", "take fewer points, or fewer --threads in a sweep");
     let stats = match &flags.out_dir {
         Some(folder) => run_sweep(&flags, folder)?,
         None => run_one(&flags)?,
     };
-    report::print(flags.stats, &stats.stats, &flags.method.method(NonZeroUsize::MIN)?, started.elapsed());
+    let method = flags.method.method(NonZeroUsize::MIN)?;
+    flags.stats.print(|| report::stats(&stats.stats, &method, started.elapsed()));
     stats.failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
@@ -287,7 +286,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
         folder: folder.to_path_buf(),
         summary,
         parquet: is_parquet.then(|| shown.clone()),
-        threads: flags.threads(),
+        threads: flags.threads().get(),
         resume: flags.resume,
         strict: flags.strict,
     };
@@ -329,8 +328,7 @@ impl Flags {
             _ => Product::Mesh,
         };
         // A sweep has threads for its files.
-        let threads = if self.out_dir.is_some() { 1 } else { self.threads() };
-        let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
+        let threads = if self.out_dir.is_some() { NonZeroUsize::MIN } else { self.threads() };
         let method = self.method.method(threads)?;
         let balls = self.balls.options(product, threads)?;
         let has_weights = product == Product::Filtration || balls.is_some();
@@ -357,8 +355,8 @@ impl Flags {
         self.out_dir.is_none().then_some(&*self.output)
     }
 
-    fn threads(&self) -> usize {
-        self.threads.map_or_else(|| available_threads().get(), usize::from)
+    fn threads(&self) -> NonZeroUsize {
+        self.threads.unwrap_or_else(available_threads)
     }
 
     /// The options that determine the content of the outputs, as text.

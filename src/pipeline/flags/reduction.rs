@@ -3,21 +3,22 @@
 mod report;
 
 use std::io::Read;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
 
 use crate::reduce::{Duplicates, Options, Part, Stats, missing_region};
-use report::Report;
-use spmesh_base::error::{Error, ErrorKind};
+use spmesh_base::error::Error;
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
-use spmesh_base::system;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::{Common, StatsFormat, notice, open_stream, parse_size, threads};
+use spmesh_shell::{
+    Common, StatsFlag, advise_on_memory, notice, open_stream, parse_size, parse_threads, threads,
+};
 use spmesh_stream::StreamReader;
 use spmesh_stream::model::bounds::Region;
 
@@ -33,8 +34,8 @@ pub(super) struct Shared<const D: usize> {
     output: PathBuf,
 
     /// Threads that triangulate; memory grows with them [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = parse_threads())]
+    threads: Option<NonZeroUsize>,
 
     /// Memory limit of the process: fail (exit 5) rather than exceed it [default: none]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
@@ -63,9 +64,8 @@ pub(super) struct Shared<const D: usize> {
     #[command(flatten)]
     compression: Compression,
 
-    /// Print the counts of the run on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
-    stats: Option<StatsFormat>,
+    #[command(flatten)]
+    stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
@@ -103,8 +103,6 @@ type Merge<const D: usize> = fn(Vec<Reader>, Output, &Options<D>, &mut Done) -> 
 /// A program of D dimensions.
 pub(super) struct Tool<const D: usize> {
     pub(super) name: &'static str,
-    /// The message after a failed allocation.
-    pub(super) out_of_memory: &'static str,
     /// The name of the pass in the progress display.
     pub(super) verb: &'static str,
     /// The name of the simplices in messages.
@@ -123,7 +121,7 @@ impl<const D: usize> Tool<D> {
         duplicates: Duplicates,
         weighted: bool,
     ) -> anyhow::Result<()> {
-        system::exit_at_abort(self.out_of_memory, ErrorKind::Memory.exit_code());
+        advise_on_memory(self.name, "take fewer --threads, or merge --partial meshes; see --memory");
         let part = flags.part()?;
         check_apart(flags.inputs.iter().map(PathBuf::as_path), &[("--output", &flags.output)])?;
         endings::check(&flags.output, &[endings::STREAM])?;
@@ -133,11 +131,9 @@ impl<const D: usize> Tool<D> {
             if flags.merge { self.merge(flags, part)? } else { self.reduce(flags, options)? };
         let output_bytes = output.bytes_written();
         output.commit()?;
-        let seconds = started.elapsed().as_secs_f64();
+        let elapsed = started.elapsed();
         self.tell(flags, &stats, part.is_some());
-        if let Some(format) = flags.stats {
-            Report { stats, output_bytes, seconds, simplices: self.simplices }.print(format);
-        }
+        flags.stats.print(|| report::stats(&stats, output_bytes, elapsed, self.simplices));
         Ok(())
     }
 

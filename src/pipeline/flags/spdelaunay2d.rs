@@ -36,7 +36,6 @@ pub struct Flags {
 
 const TOOL: Tool<2> = Tool {
     name: "spdelaunay2d",
-    out_of_memory: "spdelaunay2d: not enough memory: take fewer --threads, or merge --partial meshes; see --memory\n",
     verb: "triangulating",
     simplices: "triangles",
     reasons: ["fewer than three different points", "all points on a line"],

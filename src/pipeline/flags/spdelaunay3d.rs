@@ -53,7 +53,6 @@ const DUPLICATES: Names<Duplicates> =
 
 const TOOL: Tool<3> = Tool {
     name: "spdelaunay3d",
-    out_of_memory: "spdelaunay3d: not enough memory: take fewer --threads, or merge --partial meshes; see --memory\n",
     verb: "tetrahedralizing",
     simplices: "tetrahedra",
     reasons: ["fewer than four different points", "all points in a plane"],

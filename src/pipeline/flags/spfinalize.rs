@@ -15,7 +15,6 @@ use crate::finalize::{
     Budget, CELL_POINTS, Leaves, Observer, Options, Order, Outcome, Pass, Recipe, Spooling,
 };
 use crate::lines::write_report;
-use figures::{stats_json, stats_text};
 use groups::{AreaFlags, WaterFlags, WeightFlags};
 use planning::PlanFlags;
 use spmesh_base::error::{Error, ErrorKind, Result};
@@ -30,7 +29,10 @@ use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::text_flags::TextFlags;
-use spmesh_shell::{Common, Names, StatsFormat, named, notice, parse_numbers, parse_size, read_list};
+use spmesh_shell::{
+    Common, Names, StatsFlag, advise_on_memory, named, notice, parse_numbers, parse_size, parse_threads,
+    read_list,
+};
 
 const TOOL: &str = "spfinalize";
 
@@ -75,9 +77,6 @@ Examples:
 
 Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept,
 6 input of another version of spmesh, 7 complete but for points of inputs that were cut off (--salvage), 141 output closed by its reader.";
-
-/// The message after a failed allocation.
-const OUT_OF_MEMORY: &str = "spfinalize: not enough memory: give less --memory, or fewer --threads\n";
 
 /// Finalize points: tag each cell of a quadtree or octree after the last point in it
 ///
@@ -149,8 +148,8 @@ pub struct Flags {
 
     /// Threads that decode LAZ [default: one per core]; each takes a part of --memory. One more always reads
     /// ahead
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = parse_threads())]
+    threads: Option<NonZeroUsize>,
 
     /// Take attributes of the points along: their names, or all that every file has
     #[arg(long, value_name = "NAMES|all", value_delimiter = ',')]
@@ -170,9 +169,8 @@ pub struct Flags {
     #[command(flatten)]
     crs: CrsFlag,
 
-    /// Print the counts of the run on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "text")]
-    stats: Option<StatsFormat>,
+    #[command(flatten)]
+    stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
@@ -205,7 +203,7 @@ const SPOOLING: Names<Spooling> =
 /// # Errors
 /// Everything that reading, finalizing and writing fail with.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     system::give_back_large_blocks();
     if let Some(plan) = &flags.plan.plan {
         return planning::make(&flags, plan);
@@ -243,13 +241,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         let message = format!("{lacking} points waited in a temporary file, for lack of --memory");
         notice(TOOL, &flags.common, &message);
     }
-    match flags.stats {
-        Some(StatsFormat::Text) => spmesh_shell::say(&(stats_text(&stats, &dropped) + &lines.text())),
-        Some(StatsFormat::Json) => {
-            spmesh_shell::say(&format!("{}\n", lines.in_json(stats_json(&stats, &dropped))))
-        }
-        None => {}
-    }
+    flags.stats.print(|| figures::report(&stats, &dropped, &lines));
     if !salvaged.is_empty() {
         anyhow::bail!(Error::new(ErrorKind::Salvaged, salvaged.join("; ")));
     }
@@ -289,7 +281,7 @@ impl Flags {
         Ok(Options {
             leaves,
             order: if self.preserve { Order::Preserved } else { Order::Chunked },
-            budget: Budget::of_process(self.memory, self.threads())?,
+            budget: Budget::of_process(self.memory, self.threads().get())?,
             thin: self.points.thin,
             compress: self.compression.of_stream(),
             temp_dir: self.temp_dir.clone(),
@@ -298,8 +290,8 @@ impl Flags {
         })
     }
 
-    fn threads(&self) -> usize {
-        self.threads.map_or_else(|| available_threads().get(), usize::from)
+    fn threads(&self) -> NonZeroUsize {
+        self.threads.unwrap_or_else(available_threads)
     }
 
     fn source_options(&self) -> Result<SourceOptions> {
@@ -317,7 +309,7 @@ impl Flags {
             text: self.text.options(),
             salvage: self.salvage,
             temp_dir: self.temp_dir.clone(),
-            threads: NonZeroUsize::new(self.threads()),
+            threads: Some(self.threads()),
             ..SourceOptions::default()
         })
     }

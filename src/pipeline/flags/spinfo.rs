@@ -19,12 +19,11 @@ use spmesh_audit::{Audit, Census, Counts, Inventory, PointSet, Report, Standard}
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
-use spmesh_base::system;
 use spmesh_formats::detect::SPINFO;
 use spmesh_formats::source::{Input, SourceOptions};
 use spmesh_shell::messages::escaped_json;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::{Common, Names, named, notice, open_input};
+use spmesh_shell::{Common, Names, advise_on_memory, named, notice, open_input};
 use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader};
 
 const INPUT_BUFFER_LEN: usize = 1 << 18;
@@ -44,10 +43,6 @@ Examples:
 
 Exit codes: 0 fine, 1 I/O or runtime failure, 2 usage, 3 the stream is malformed or truncated,
 4 the audit found a violation, 5 not enough memory, 6 a stream of another version of spmesh, 141 output closed by its reader.";
-
-/// The message after a failed allocation.
-const OUT_OF_MEMORY: &str =
-    "spinfo: not enough memory: audit without --points, or audit partial meshes one by one\n";
 
 /// Report what a stream holds, and prove that it is what it claims to be
 #[derive(Debug, Parser)]
@@ -107,7 +102,7 @@ const STANDARDS: Names<Standard> = &[
 /// # Errors
 /// If the stream is malformed, cannot be read, or fails the audit (then the report is printed first).
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    advise_on_memory("spinfo", "audit without --points, or audit partial meshes one by one");
     let inputs = iter::once(&flags.input).chain(&flags.points).map(PathBuf::as_path);
     check_apart(inputs, &[("the report", Path::new("-"))])?;
     // Fail before the work if stdout is closed.

@@ -1,6 +1,7 @@
 //! `spnode`: the jobs of a plan.
 
 use std::io::Write;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
@@ -8,11 +9,10 @@ use clap::{Args, Parser, Subcommand};
 use super::spfinalize;
 use crate::plan::{Maker, Node, Plan, Work, collect};
 use crate::reduce::Duplicates;
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
-use spmesh_base::system;
-use spmesh_shell::{Common, endings, notice, parse_size, threads};
+use spmesh_shell::{Common, advise_on_memory, endings, notice, parse_size, parse_threads, threads};
 
 const TOOL: &str = "spnode";
 
@@ -32,9 +32,6 @@ Examples:
 
 Exit codes: 0 success, 1 I/O failure, 2 usage, or files that changed since the plan was made, 3 malformed input, or \
 points that are not accounted for, 5 not enough memory, 6 input of another version of spmesh.";
-
-const OUT_OF_MEMORY: &str =
-    "spnode: not enough memory: take fewer --threads, or plan with fewer --leaf-points\n";
 
 /// Make one part of a mesh that many jobs make, on one machine or on a cluster
 ///
@@ -127,8 +124,8 @@ struct WorkFlags {
     dir: PathBuf,
 
     /// Threads of a node [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = parse_threads())]
+    threads: Option<NonZeroUsize>,
 
     /// Memory for points of a leaf that wait; others wait in a temporary file
     #[arg(long, value_name = "SIZE", default_value = "512M", value_parser = parse_size)]
@@ -156,7 +153,7 @@ impl WorkFlags {
 /// # Errors
 /// Everything that reading points, triangulating and writing fail with.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    advise_on_memory(TOOL, "take fewer --threads, or plan with fewer --leaf-points");
     let recipe = |plan: &Plan| spfinalize::flags_of(&plan.arguments)?.recipe();
     let note = |message: &str| notice(TOOL, &flags.common, message);
     match &flags.action {

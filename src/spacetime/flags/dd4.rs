@@ -4,6 +4,7 @@ mod product;
 mod report;
 mod source;
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -11,13 +12,15 @@ use clap::{Parser, ValueEnum};
 
 use crate::dd4::{Made, Options, Product, Quantum, TimeScale};
 use crate::diagram4::Route;
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
 use spmesh_base::system;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
-use spmesh_shell::{Common, StatsFormat, notice, parse_size, progress::Progress, threads};
+use spmesh_shell::{
+    Common, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, progress::Progress, threads,
+};
 
 pub use product::{EXAMPLES as PRODUCT_EXAMPLES, ProductFlags};
 pub use source::{EXAMPLES as SOURCE_EXAMPLES, SourceFlags};
@@ -41,18 +44,13 @@ that they are.
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed \
 or truncated input, 5 not enough memory for the points, 6 input of another version of spmesh, 141 output closed by its reader.";
 
-/// The message after a failed allocation, without and with `--memory`.
-const OUT_OF_MEMORY: [&str; 2] = [
-    "dd4: not enough memory: give --memory, or take fewer points, as with --count or --where\n",
-    "dd4: not enough memory: give less --memory, or take fewer points, as with --count or --where\n",
-];
-
 /// Exact Delaunay diagrams of points in four dimensions.
 ///
 /// Reads points or volumes that change over time, and writes the cells of their Delaunay diagram with their
 /// neighbours as a stream. The result is exact and unique: it depends on the set of points only.
 #[derive(Debug, Parser)]
 #[command(name = "dd4", version, after_help = format!("{EXAMPLES}{SOURCE_EXAMPLES}\n{PRODUCT_EXAMPLES}{NOTES}"))]
+#[command(mut_arg("stats", |stats| stats.help("Print what the run did on stderr")))]
 pub struct Flags {
     /// Where the diagram goes; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
@@ -81,8 +79,8 @@ pub struct Flags {
     route: RouteFlag,
 
     /// Threads that join simplices to cells [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = parse_threads())]
+    threads: Option<NonZeroUsize>,
 
     /// Compute in stages, in about this much memory, as in 1400M: slower, but the output is the same. Cells
     /// wait in temporary files (see --temp-dir). Not for slices, values, simplices, and --route direct
@@ -96,9 +94,8 @@ pub struct Flags {
     #[command(flatten)]
     compression: Compression,
 
-    /// Print what the run did on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
-    stats: Option<StatsFormat>,
+    #[command(flatten)]
+    stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
@@ -147,8 +144,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
-        let out_of_memory = OUT_OF_MEMORY[usize::from(self.memory.is_some())];
-        system::exit_at_abort(out_of_memory, ErrorKind::Memory.exit_code());
+        let memory = if self.memory.is_some() { "less " } else { "" };
+        let advice = format!("give {memory}--memory, or take fewer points, as with --count or --where");
+        advise_on_memory("dd4", &advice);
         let (quantum, time_scale) = (self.quantum, self.time_scale);
         let (route, threads) = (self.route.route()?, threads(self.threads));
         let options = Options { quantum, time_scale, route, threads };
@@ -191,7 +189,7 @@ impl Flags {
         drop(progress);
         notices.iter().for_each(|text| self.notice(text));
         report::merged(&report).into_iter().for_each(|text| self.notice(&text));
-        report::print(self.stats, &report, read, started.elapsed());
+        self.stats.print(|| report::stats(&report, read, started.elapsed()));
         Ok(())
     }
 

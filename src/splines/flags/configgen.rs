@@ -10,14 +10,13 @@ use clap::Parser;
 
 use crate::configgen::{Border, BoxName, Flips, Made, Options, Places, RuleName, Sites, SpecialKind};
 use crate::configgen::{read_features, read_patches};
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
-use spmesh_base::system;
 use spmesh_formats::source::{name_of, read_values};
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
-use spmesh_shell::{Common, StatsFormat, named, notice, open_held, progress::Progress};
+use spmesh_shell::{Common, StatsFlag, advise_on_memory, named, notice, open_held, progress::Progress};
 
 const TOOL: &str = "configgen";
 
@@ -67,9 +66,6 @@ Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, knots on one line, or 
 or truncated input, 4 a link that theory excludes, 5 not enough memory, 6 input of another \
 version of spmesh, 141 output closed by its reader.";
 
-/// The message after a failed allocation.
-const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a lower degree\n";
-
 /// Delaunay configurations of any degree, and their generalisation.
 ///
 /// Reads points in the plane (text, csv, LAS, LAZ, COPC, SPA, SPB, NPY, vertices of PLY, OBJ and VTK, point
@@ -77,6 +73,7 @@ const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a
 /// define bivariate splines. The result is exact, even if points are cocircular, collinear or coincident.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+#[command(mut_arg("stats", |stats| stats.help("Print what the run did on stderr, with the counts of each degree")))]
 pub struct Flags {
     /// Files of points, read as one input, or one triangle mesh; - is stdin [default: -, or none with
     /// --patches]
@@ -142,9 +139,8 @@ pub struct Flags {
     #[command(flatten)]
     compression: Compression,
 
-    /// Print what the run did on stderr, with the counts of each degree
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
-    stats: Option<StatsFormat>,
+    #[command(flatten)]
+    stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
@@ -161,7 +157,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
-        system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+        advise_on_memory(TOOL, "take fewer knots or a lower degree");
         let inputs = self.inputs();
         let lists = [&self.values, &self.patches, &self.features].into_iter().flatten();
         check_apart(inputs.iter().chain(lists).map(PathBuf::as_path), &[("--output", &self.output)])?;

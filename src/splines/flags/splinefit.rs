@@ -12,9 +12,8 @@ use std::path::Path;
 
 use clap::{Args, Parser, Subcommand};
 
-use spmesh_base::error::{Error, ErrorKind, Result};
-use spmesh_base::system;
-use spmesh_shell::{Common, notice, threads};
+use spmesh_base::error::{Error, Result};
+use spmesh_shell::{Common, advise_on_memory, notice, parse_threads, threads};
 
 const TOOL: &str = "splinefit";
 
@@ -50,9 +49,6 @@ Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that do not 
 malformed or truncated input, 5 not enough memory, 6 input of another version of spmesh, \
 141 output closed by its reader.";
 
-/// The message after a failed allocation.
-const OUT_OF_MEMORY: &str = "splinefit: not enough memory: take fewer knots\n";
-
 /// Bivariate splines fitted to scattered points.
 ///
 /// Reads points with elevations, and writes a stream of a spline: knots, configurations, functions and
@@ -86,7 +82,7 @@ enum Action {
 /// # Errors
 /// As [`crate::splinefit`].
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    advise_on_memory(TOOL, "take fewer knots");
     Ok(match &flags.action {
         Action::Fit(action) => action.run(&flags.common),
         Action::Eval(action) => action.run(&flags.common),
@@ -99,8 +95,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 #[derive(Debug, Clone, Args)]
 struct Threads {
     /// Threads that evaluate functions [default: one per core, at most 8]; results do not depend on them
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = parse_threads())]
+    threads: Option<NonZeroUsize>,
 }
 
 impl Threads {

@@ -12,7 +12,6 @@ use crate::dem::{Method, Options, Quantity, Sample};
 use crate::height::{Ground, HeightPoints, about_below};
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::places::check_apart;
-use spmesh_base::system;
 use spmesh_formats::detect::SPCANOPY;
 use spmesh_formats::raster::{Grid, RasterFormat, Window};
 use spmesh_formats::source::{Filters, Input, SourceOptions};
@@ -22,8 +21,11 @@ use spmesh_shell::endings;
 use spmesh_shell::open_stream;
 use spmesh_shell::outline::{OutlineFlags, length};
 use spmesh_shell::progress::Progress;
-use spmesh_shell::rows::{self, Row};
-use spmesh_shell::{Common, StatsFormat, notice, parse_size, peak_memory, read_list, threads};
+use spmesh_shell::stats::Row;
+use spmesh_shell::{
+    Common, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, peak_memory, read_list,
+    threads,
+};
 use spmesh_stream::Crs;
 
 const TOOL: &str = "spcanopy";
@@ -57,9 +59,6 @@ Withheld points and noise (classes 7 and 18) are dropped, unless flags say which
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
 memory, 6 input of another version of spmesh, 141 output closed by its reader.";
-
-/// The message when memory runs out.
-const OUT_OF_MEMORY: &str = "spcanopy: not enough memory: give less --memory, or fewer --threads\n";
 
 /// Write the height of a canopy above the ground as a raster, without pits.
 ///
@@ -122,15 +121,14 @@ pub struct Flags {
     memory: u64,
 
     /// Threads that decompress, find heights and triangulate [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = parse_threads())]
+    threads: Option<NonZeroUsize>,
 
     #[command(flatten)]
     raster: RasterFlags,
 
-    /// Print the counts of the run on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
-    stats: Option<StatsFormat>,
+    #[command(flatten)]
+    stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
@@ -141,7 +139,7 @@ pub struct Flags {
 /// # Errors
 /// Those of all passes, and if an input or the output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     let started = Instant::now();
     let paths = flags.lof.as_ref().map_or_else(|| Ok(flags.inputs.clone()), |list| read_list(list))?;
     if paths.is_empty() {
@@ -188,8 +186,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     below.iter().for_each(|text| flags.notice(text));
     flags.notice(&cells::summary(&grid, grid.cells() - known));
     committed.notice().iter().for_each(|text| flags.notice(text));
-    if let Some(format) = flags.stats {
-        let rows: [Row<u64>; 8] = [
+    let counts = || -> [Row<u64>; 8] {
+        [
             ("points", "points", points.points()),
             ("points outside of the ground", "outside", points.outside()),
             ("layers", "layers", thresholds.len() as u64),
@@ -198,9 +196,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             ("cells with data", "known", known),
             ("output (bytes)", "output_bytes", committed.bytes),
             ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
-        ];
-        rows::print(format, started.elapsed(), rows);
-    }
+        ]
+    };
+    flags.stats.print(|| Report::of(started.elapsed()).counts(counts()));
     Ok(())
 }
 

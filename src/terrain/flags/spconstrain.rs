@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Parser;
 
 use crate::constrain::{CutOptions, Options, Stats, constrain};
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
 use spmesh_base::system;
@@ -17,8 +17,8 @@ use spmesh_shell::endings;
 use spmesh_shell::open_stream;
 use spmesh_shell::outline::length;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::rows::{self, Row};
-use spmesh_shell::{Common, StatsFormat, notice, parse_size, peak_memory};
+use spmesh_shell::stats::Row;
+use spmesh_shell::{Common, Report, StatsFlag, advise_on_memory, notice, parse_size, peak_memory};
 
 const TOOL: &str = "spconstrain";
 
@@ -56,9 +56,6 @@ the triangles that a line changes, until the last of them has come.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
 memory, 6 input of another version of spmesh, 141 output closed by its reader.";
-
-/// The message when memory runs out.
-const OUT_OF_MEMORY: &str = "spconstrain: not enough memory: give fewer lines at once\n";
 
 /// Make lines edges of a triangle mesh while it streams.
 ///
@@ -98,9 +95,8 @@ pub struct Flags {
     #[command(flatten)]
     compression: Compression,
 
-    /// Print the counts of the run on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
-    stats: Option<StatsFormat>,
+    #[command(flatten)]
+    stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
@@ -114,7 +110,7 @@ pub struct Flags {
 /// # Errors
 /// If the lines cannot be read, the input is no triangle mesh or is malformed, or writing fails.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    advise_on_memory(TOOL, "give fewer lines at once");
     let started = Instant::now();
     flags.check()?;
     let report = flags.lines.create_report()?;
@@ -147,9 +143,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if stats.divided > 0 {
         flags.notice(&about_divided(&stats, flags.lines.densify));
     }
-    if let Some(format) = flags.stats {
-        rows::print(format, started.elapsed(), counts(&stats, reader.bytes_read(), output_bytes));
-    }
+    flags
+        .stats
+        .print(|| Report::of(started.elapsed()).counts(counts(&stats, reader.bytes_read(), output_bytes)));
     Ok(())
 }
 

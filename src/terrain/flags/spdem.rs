@@ -16,9 +16,8 @@ use crate::dem::{self, Options, Quantity, Stats};
 use crate::points::Options as PointOptions;
 use contours::{ContourFlags, Job};
 use quantity::QuantityFlags;
-use spmesh_base::error::{Error, ErrorKind};
+use spmesh_base::error::Error;
 use spmesh_base::places::check_apart;
-use spmesh_base::system;
 use spmesh_formats::raster::RasterFormat;
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
 use spmesh_shell::crs::CrsFlag;
@@ -26,8 +25,8 @@ use spmesh_shell::endings;
 use spmesh_shell::open_stream;
 use spmesh_shell::outline::OutlineFlags;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::rows::{self, Row};
-use spmesh_shell::{Common, StatsFormat, notice, parse_size, peak_memory};
+use spmesh_shell::stats::Row;
+use spmesh_shell::{Common, Report, StatsFlag, advise_on_memory, notice, parse_size, peak_memory};
 
 const TOOL: &str = "spdem";
 
@@ -117,9 +116,6 @@ and QGIS read it.
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
 memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 
-/// The message when memory runs out.
-const OUT_OF_MEMORY: &str = "spdem: not enough memory: take larger cells, or less --memory\n";
-
 /// Write the raster or the contour lines of a triangle mesh, in bounded memory.
 ///
 /// Reads a triangle mesh stream with elevations and writes a GeoTIFF, an ESRI grid, or lines as GeoJSON. The
@@ -172,9 +168,8 @@ pub struct Flags {
     #[command(flatten)]
     crs: CrsFlag,
 
-    /// Print the counts of the run on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
-    stats: Option<StatsFormat>,
+    #[command(flatten)]
+    stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
@@ -201,7 +196,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         endings::check(&flags.output, &[endings::RASTER, endings::LINES])?;
     }
     if let Some(options) = flags.contours.options(&flags.outline, flags.memory, flags.crs.system()?)? {
-        system::exit_at_abort(contours::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+        advise_on_memory(TOOL, contours::LACK_OF_MEMORY);
         let job = Job {
             input: &flags.input,
             output: &flags.output,
@@ -213,7 +208,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         return contours::run(&job, options, started, |message| notice(TOOL, &flags.common, message));
     }
     if flags.quantity.points {
-        system::exit_at_abort(points::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+        advise_on_memory(TOOL, "give less --memory");
         let job = points::Job {
             input: &flags.input,
             output: &flags.output,
@@ -224,7 +219,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         };
         return Ok(points::run(&job, &flags.point_options()?, started)?);
     }
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    advise_on_memory(TOOL, "take larger cells, or less --memory");
     let mut options = flags.options()?;
     let mut output =
         flags.sheets.create(&flags.output, options.raster.format, &flags.cells, flags.inputs())?;
@@ -243,9 +238,11 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let messages =
         messages.chain([cells::summary(&grid, stats.cells - stats.known)]).chain(committed.notice());
     messages.for_each(|message| notice(TOOL, &flags.common, &message));
-    if let Some(format) = flags.stats {
-        rows::print(format, started.elapsed(), counts(&stats, committed.bytes));
-    }
+    flags.stats.print(|| {
+        let report = Report::of(started.elapsed()).counts(counts(&stats, committed.bytes));
+        // A raster breaks no ties.
+        report.counts(stats.predicates.rows().into_iter().take(5))
+    });
     Ok(())
 }
 
@@ -316,7 +313,7 @@ impl Flags {
     }
 }
 
-fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 19] {
+fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 14] {
     [
         ("input (bytes)", "input_bytes", stats.input_bytes),
         ("vertices", "vertices", stats.vertices),
@@ -332,10 +329,5 @@ fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 19] {
         ("temporary file (bytes)", "spilled_bytes", stats.spilled_bytes),
         ("output (bytes)", "output_bytes", output_bytes),
         ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
-        ("predicates: filter", "predicates_filter", stats.predicates.filter),
-        ("predicates: integer", "predicates_integer", stats.predicates.integer),
-        ("predicates: pairs", "predicates_pairs", stats.predicates.pairs),
-        ("predicates: residues", "predicates_residues", stats.predicates.residues),
-        ("predicates: big integer", "predicates_bigint", stats.predicates.bigint),
     ]
 }

@@ -1,20 +1,23 @@
 //! `spheight`: flags, and the counts of `--stats`.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
 
 use crate::height::{Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights};
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, Result};
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::check_apart;
-use spmesh_base::system;
 use spmesh_formats::las::LasFile;
 use spmesh_shell::open_stream;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::rows::{self, Row};
-use spmesh_shell::{Common, StatsFormat, named, notice, parse_size, peak_memory, read_list, threads};
+use spmesh_shell::stats::Row;
+use spmesh_shell::{
+    Common, Report, StatsFlag, advise_on_memory, named, notice, parse_size, parse_threads, peak_memory,
+    read_list, threads,
+};
 
 const TOOL: &str = "spheight";
 
@@ -49,9 +52,6 @@ gets its name when it is complete. After a failure, the outputs of earlier files
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
 memory, 6 input of another version of spmesh.";
-
-/// The message when memory runs out.
-const OUT_OF_MEMORY: &str = "spheight: not enough memory: give less --memory, or fewer --threads\n";
 
 /// Write LAS and LAZ files again with the heights of their points above the ground.
 ///
@@ -103,16 +103,15 @@ pub struct Flags {
 
     /// Threads that decompress, as many that compress, and as many that find heights [default: one
     /// per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = parse_threads())]
+    threads: Option<NonZeroUsize>,
 
     /// Folder for temporary files [default: the system's]
     #[arg(long, value_name = "FOLDER")]
     temp_dir: Option<PathBuf>,
 
-    /// Print the counts of the run on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
-    stats: Option<StatsFormat>,
+    #[command(flatten)]
+    stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
@@ -139,7 +138,7 @@ struct Sums {
 /// # Errors
 /// As [`Ground::read`] and [`write_heights`], and if an input or output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     let started = Instant::now();
     let inputs = flags.inputs()?;
     let outputs = flags.outputs(&inputs)?;
@@ -171,9 +170,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if sums.outside > 0 {
         flags.notice(&flags.about_outside(sums.outside));
     }
-    if let Some(format) = flags.stats {
-        rows::print(format, started.elapsed(), counts(&sums, &ground, reader.bytes_read()));
-    }
+    flags.stats.print(|| Report::of(started.elapsed()).counts(counts(&sums, &ground, reader.bytes_read())));
     Ok(())
 }
 

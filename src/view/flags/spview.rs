@@ -13,15 +13,14 @@ use clap::Parser;
 use crate::{Extent, Fill, Form, Moments, Options, Picture, When};
 use moment::{Every, Moment};
 use outputs::{Format, Outputs};
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, Result};
 use spmesh_base::places::check_apart;
-use spmesh_base::system;
 use spmesh_formats::raster::Light;
 use spmesh_shell::cells::window_of;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::outline::OutlineFlags;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::{Common, Names, named, notice, open_input, parse_numbers};
+use spmesh_shell::{Common, Names, advise_on_memory, named, notice, open_input, parse_numbers};
 use spmesh_stream::{Kind, StreamReader};
 use tee::{Passed, Tee};
 
@@ -73,9 +72,6 @@ colour bar stand for values beyond, and the legend states the range of all value
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
 memory, 6 input of another version of spmesh, 141 output closed by its reader.";
-
-/// The message when memory runs out.
-const OUT_OF_MEMORY: &str = "spview: not enough memory: take less --width, or --raster\n";
 
 /// Length of the input buffer. Units: bytes.
 const BUFFER_LEN: usize = 1 << 18;
@@ -228,7 +224,7 @@ const FILLS: Names<Fill> = &[
 /// # Errors
 /// As [`crate::draw`], and if the input or an output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    advise_on_memory(TOOL, "take less --width, or --raster");
     let options = flags.options()?;
     let is_numbered = flags.snapshot.is_some();
     check_apart(flags.outline.mask_path(), &[("--output", &flags.output)])?;

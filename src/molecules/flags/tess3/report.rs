@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use crate::tess3::{Arithmetic, Method, Report, Stats};
-use spmesh_shell::rows::{Row, entries, lines, seconds};
-use spmesh_shell::{StatsFormat, peak_memory, say};
+use spmesh_shell::peak_memory;
+use spmesh_shell::stats::{self, Row};
 
 /// Notices about a model, usually none.
 pub(super) fn degeneracy(report: &Report, models: usize) -> Vec<String> {
@@ -12,20 +12,18 @@ pub(super) fn degeneracy(report: &Report, models: usize) -> Vec<String> {
     report.warnings().into_iter().map(|text| format!("{which}{text}")).collect()
 }
 
-/// Prints what `--stats` asks for.
-pub(super) fn print(format: Option<StatsFormat>, stats: &Stats, method: &Method, elapsed: Duration) {
-    match format {
-        Some(StatsFormat::Text) => say(&text(stats, method, elapsed)),
-        Some(StatsFormat::Json) => say(&format!("{}\n", json(stats, method, elapsed))),
-        None => {}
-    }
+/// What `--stats` prints.
+pub(super) fn stats(stats: &Stats, method: &Method, elapsed: Duration) -> stats::Report {
+    // Peak bytes of the kernel, for the model with the highest peak.
+    let share = stats.sums.kernel_bytes as f64 / stats.atoms_max.max(1) as f64;
+    let report = stats::Report::of(elapsed).times(times(stats)).counts(counts(stats, method));
+    report.row("kernel bytes per point", format!("{share:.1}")).entry("kernel_bytes_per_point", share)
 }
 
-/// Times in seconds. With the counts these are the columns of thesis table 3.3, as far as they were measured.
-fn times(stats: &Stats, elapsed: Duration) -> Vec<Row<f64>> {
+/// Times. With the counts these are the columns of thesis table 3.3, as far as they were measured.
+fn times(stats: &Stats) -> impl Iterator<Item = Row<Duration>> {
     let times = stats.sums.times;
     let rows = [
-        ("time (s)", "seconds", Some(elapsed)),
         ("reading (s)", "seconds_read", Some(times.read)),
         ("triangulating (s)", "seconds_triangulate", Some(times.triangulate)),
         ("  ordering (s)", "seconds_order", Some(times.order)),
@@ -34,7 +32,7 @@ fn times(stats: &Stats, elapsed: Duration) -> Vec<Row<f64>> {
         ("  update (s)", "seconds_update", measured(times.update)),
         ("writing (s)", "seconds_write", Some(times.write)),
     ];
-    seconds(rows.into_iter().filter_map(|(label, key, time)| Some((label, key, time?))))
+    rows.into_iter().filter_map(|(label, key, time)| Some((label, key, time?)))
 }
 
 fn measured(time: Duration) -> Option<Duration> {
@@ -58,14 +56,7 @@ fn counts(stats: &Stats, method: &Method) -> Vec<Row<u64>> {
     ];
     let (predicates, rounding) = (sums.predicates, sums.rounding);
     match method.arithmetic {
-        Arithmetic::Exact => rows.extend([
-            ("predicates: filter", "predicates_filter", predicates.filter),
-            ("predicates: integer", "predicates_integer", predicates.integer),
-            ("predicates: pairs", "predicates_pairs", predicates.pairs),
-            ("predicates: residues", "predicates_residues", predicates.residues),
-            ("predicates: big integer", "predicates_bigint", predicates.bigint),
-            ("predicates: ties broken", "predicates_perturbed", predicates.perturbed),
-        ]),
+        Arithmetic::Exact => rows.extend(predicates.rows()),
         Arithmetic::Float { check_signs } => {
             rows.push(("points in no tetrahedron", "missing", rounding.missing));
             rows.push(("wrong tetrahedra", "violations", rounding.violations.unwrap_or_default()));
@@ -79,20 +70,4 @@ fn counts(stats: &Stats, method: &Method) -> Vec<Row<u64>> {
         }
     }
     rows
-}
-
-/// Peak bytes of the kernel per point, for the model with the highest peak.
-fn bytes_per_point(stats: &Stats) -> f64 {
-    stats.sums.kernel_bytes as f64 / stats.atoms_max.max(1) as f64
-}
-
-fn text(stats: &Stats, method: &Method, elapsed: Duration) -> String {
-    lines(&times(stats, elapsed), counts(stats, method))
-        + &format!("{:<30} {:>15.1}\n", "kernel bytes per point", bytes_per_point(stats))
-}
-
-fn json(stats: &Stats, method: &Method, elapsed: Duration) -> String {
-    let mut object = entries(&times(stats, elapsed), counts(stats, method));
-    object.insert("kernel_bytes_per_point".into(), bytes_per_point(stats).into());
-    serde_json::Value::Object(object).to_string()
 }

@@ -1,31 +1,28 @@
 //! The counts of `--stats`.
 
+use std::time::Duration;
+
 use crate::reduce::Stats;
-use spmesh_shell::{StatsFormat, peak_memory, say};
+use spmesh_shell::{Report, peak_memory};
 
-/// The values that `--stats` prints.
-pub(crate) struct Report {
-    pub(crate) stats: Stats,
-    pub(crate) output_bytes: u64,
-    pub(crate) seconds: f64,
-    /// The name of the simplices.
-    pub(crate) simplices: &'static str,
-}
-
-impl Report {
-    /// Prints the counts on stderr.
-    pub(crate) fn print(&self, format: StatsFormat) {
-        match format {
-            StatsFormat::Text => say(&text_report(self)),
-            StatsFormat::Json => say(&format!("{}\n", json_report(self))),
-        }
+/// What `--stats` prints of a run whose simplices have this name.
+pub(crate) fn stats(stats: &Stats, output_bytes: u64, elapsed: Duration, simplices: &'static str) -> Report {
+    // Nearly all points are left to the root, where they lie on a surface.
+    let share = stats.root_points as f64 / stats.points.max(1) as f64;
+    let report = Report::of(elapsed)
+        .counts(rows(stats, output_bytes, simplices))
+        .counts(stats.predicates.rows())
+        .row("share left to the root (%)", format!("{:.1}", 100.0 * share))
+        .entry("root_share", share);
+    if stats.untagged == 0 {
+        return report;
     }
+    report.line("note: points without a final cell were held until the end; spfinalize bounds the memory")
 }
 
-/// Rows of the report: a label for people, a key for programs, the value. With the time, the first rows are
+/// Rows of the report. With the time, the first rows are
 /// the columns of thesis tables 5.2 and 5.3.
-fn rows(report: &Report) -> [(String, &'static str, u64); 27] {
-    let (stats, simplices) = (&report.stats, report.simplices);
+fn rows(stats: &Stats, output_bytes: u64, simplices: &'static str) -> [(String, &'static str, u64); 21] {
     let rows = [
         ("points", "points", stats.points),
         ("input (bytes)", "input_bytes", stats.input_bytes),
@@ -33,7 +30,7 @@ fn rows(report: &Report) -> [(String, &'static str, u64); 27] {
         ("most simplices active", "active_max", stats.active_max),
         ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
         ("simplices", simplices, stats.simplices),
-        ("output (bytes)", "output_bytes", report.output_bytes),
+        ("output (bytes)", "output_bytes", output_bytes),
         ("vertices", "vertices", stats.vertices),
         ("merged duplicates", "merged", stats.merged),
         ("outside of the region", "outside", stats.outside),
@@ -48,37 +45,6 @@ fn rows(report: &Report) -> [(String, &'static str, u64); 27] {
         ("most residual points waiting", "residual_max", stats.residual_max),
         ("residual written (points)", "residual", stats.residual),
         ("width (live vertices)", "width", stats.width),
-        ("predicates: filter", "predicates_filter", stats.predicates.filter),
-        ("predicates: integer", "predicates_integer", stats.predicates.integer),
-        ("predicates: pairs", "predicates_pairs", stats.predicates.pairs),
-        ("predicates: residues", "predicates_residues", stats.predicates.residues),
-        ("predicates: big integer", "predicates_bigint", stats.predicates.bigint),
-        ("predicates: ties broken", "predicates_perturbed", stats.predicates.perturbed),
     ];
     rows.map(|(label, key, value)| (label.replace("simplices", simplices), key, value))
-}
-
-/// Share of the points that was left to the root: nearly all, where points lie on a surface.
-fn root_share(stats: &Stats) -> f64 {
-    stats.root_points as f64 / stats.points.max(1) as f64
-}
-
-fn text_report(report: &Report) -> String {
-    let mut text = format!("{:<30} {:>15.3}\n", "time (s)", report.seconds);
-    for (label, _, value) in rows(report) {
-        text += &format!("{label:<30} {value:>15}\n");
-    }
-    text += &format!("{:<30} {:>15.1}\n", "share left to the root (%)", 100.0 * root_share(&report.stats));
-    if report.stats.untagged > 0 {
-        text += "note: points without a final cell were held until the end; spfinalize bounds the memory\n";
-    }
-    text
-}
-
-fn json_report(report: &Report) -> String {
-    let mut object = serde_json::Map::new();
-    object.insert("seconds".into(), report.seconds.into());
-    object.insert("root_share".into(), root_share(&report.stats).into());
-    object.extend(rows(report).into_iter().map(|(_, key, value)| (key.to_string(), value.into())));
-    serde_json::Value::Object(object).to_string()
 }

@@ -1,42 +1,37 @@
 //! Figures of a run of `spfinalize`, as text and as JSON.
 
+use std::fmt::Display;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
 use crate::finalize::{Drops, LineStats, Stats};
 use crate::lines::ChangeKind;
 use spmesh_formats::source::DropReason;
-use spmesh_shell::peak_memory;
+use spmesh_shell::stats::Row;
+use spmesh_shell::{Report, peak_memory};
 
 impl LineStats {
-    /// Rows of the report; empty without lines.
-    pub(super) fn text(&self) -> String {
-        let changes =
-            ChangeKind::ALL.iter().map(|&kind| (kind.name().replace('_', " "), self.changes.count(kind)));
-        let changes = changes.map(|(name, count)| (format!("lines: {name}"), count));
+    /// Adds the figures to those of the run: rows of what there is, and entries if there are lines.
+    fn add_to(&self, report: Report) -> Report {
         let [lakes, rivers, levels] = self.water.unwrap_or_default();
         let points = [
-            ("points of lines", self.points as u64),
-            ("points replaced by lines", self.replaced),
-            ("lakes", lakes),
-            ("rivers", rivers),
-            ("levels found from points", levels),
+            ("points of lines", "lines.points", self.points as u64),
+            ("points replaced by lines", "lines.replaced", self.replaced),
+            ("lakes", "water.lakes", lakes),
+            ("rivers", "water.rivers", rivers),
+            ("levels found from points", "water.levels_found", levels),
         ];
-        let rows = points.map(|(name, count)| (name.to_string(), count)).into_iter().chain(changes);
-        rows.filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name:<32}{count}\n")).collect()
-    }
-
-    /// Adds the figures to those of the run, if there are lines.
-    pub(super) fn in_json(&self, mut stats: serde_json::Value) -> serde_json::Value {
-        if !self.has_lines {
-            return stats;
-        }
-        let changes =
-            ChangeKind::ALL.iter().map(|&kind| (kind.name().into(), self.changes.count(kind).into()));
-        let changes: serde_json::Map<_, _> = changes.collect();
-        stats["lines"] =
-            serde_json::json!({"points": self.points, "replaced": self.replaced, "changes": changes});
-        if let Some([lakes, rivers, found]) = self.water {
-            stats["water"] = serde_json::json!({"lakes": lakes, "rivers": rivers, "levels_found": found});
-        }
-        stats
+        let points = points.map(|(label, key, count)| (label.to_string(), key.to_string(), count));
+        let changes = ChangeKind::ALL.iter().map(|kind| {
+            let (name, count) = (kind.name(), self.changes.count(*kind));
+            (format!("lines: {}", name.replace('_', " ")), format!("lines.changes.{name}"), count)
+        });
+        points.into_iter().chain(changes).fold(report, |report, (label, key, count)| {
+            let report = if count > 0 { row(report, &label, count) } else { report };
+            let is_there = self.has_lines && (self.water.is_some() || !key.starts_with("water"));
+            if is_there { report.entry(&key, count) } else { report }
+        })
     }
 }
 
@@ -47,51 +42,46 @@ fn drops<'a>(stats: &Stats, dropped: &'a Drops) -> impl Iterator<Item = (&'stati
     filters.chain([("clip", clip), ("drop_inside", inside), ("flatten", water), ("thin", stats.thinned)])
 }
 
-pub(super) fn stats_text(stats: &Stats, dropped: &Drops) -> String {
-    let mut rows: Vec<(String, String)> = Vec::new();
-    let mut row = |name: &str, value: String| rows.push((name.into(), value));
-    row("points", stats.points.to_string());
-    row("invalid points skipped", stats.invalid.to_string());
-    for (reason, count) in drops(stats, dropped).filter(|(_, count)| *count > 0) {
-        row(&format!("points dropped: {reason}"), count.to_string());
-    }
-    for (pass, time) in &stats.passes {
-        row(&format!("time of pass {pass}"), format!("{:.2} s", time.as_secs_f64()));
-    }
-    row("peak memory", format!("{:.1} MB", peak_memory() as f64 / 1e6));
-    row("most points buffered", stats.buffered_points_max.to_string());
-    row("most bytes buffered in memory", stats.buffered_bytes_max.to_string());
-    row("level", stats.level.to_string());
-    row("occupied cells", stats.occupied_cells.to_string());
-    row("empty cells", stats.empty_cells.to_string());
-    row("points per cell, average", format!("{:.0}", stats.cell_points_avg()));
-    row("points per cell, most", stats.cell_points_max.to_string());
-    row("points spilled", stats.spilled_points.to_string());
-    row("bytes spilled", stats.spilled_bytes.to_string());
-    row("points spooled", stats.spooled_points.to_string());
-    row("bytes spooled", stats.spooled_bytes.to_string());
-    rows.iter().map(|(name, value)| format!("{name:<32}{value}\n")).collect()
+/// A row of the report.
+fn row(report: Report, label: &str, value: impl Display) -> Report {
+    report.line(&format!("{label:<32}{value}"))
 }
 
-pub(super) fn stats_json(stats: &Stats, dropped: &Drops) -> serde_json::Value {
-    let passes: Vec<_> = stats
-        .passes
-        .iter()
-        .map(|(name, time)| serde_json::json!({"pass": name, "seconds": time.as_secs_f64()}))
-        .collect();
-    let dropped: serde_json::Map<_, _> =
-        drops(stats, dropped).map(|(reason, count)| (reason.into(), count.into())).collect();
-    serde_json::json!({
-        "points": stats.points,
-        "dropped": dropped,
-        "invalid_skipped": stats.invalid,
-        "passes": passes,
-        "peak_memory_bytes": peak_memory(),
-        "buffered": {"points_max": stats.buffered_points_max, "memory_bytes_max": stats.buffered_bytes_max},
-        "level": stats.level,
-        "cells": {"occupied": stats.occupied_cells, "empty": stats.empty_cells},
-        "points_per_cell": {"avg": stats.cell_points_avg(), "max": stats.cell_points_max},
-        "spilled": {"points": stats.spilled_points, "bytes": stats.spilled_bytes},
-        "spooled": {"points": stats.spooled_points, "bytes": stats.spooled_bytes},
-    })
+/// What `--stats` prints.
+pub(super) fn report(stats: &Stats, dropped: &Drops, lines: &LineStats) -> Report {
+    let count = |report, (label, key, count): Row<u64>| row(report, label, count).entry(key, count);
+    let first =
+        [("points", "points", stats.points), ("invalid points skipped", "invalid_skipped", stats.invalid)];
+    let mut report = first.into_iter().fold(Report::default(), count);
+    for (reason, count) in drops(stats, dropped) {
+        report = report.entry(&format!("dropped.{reason}"), count);
+        if count > 0 {
+            report = row(report, &format!("points dropped: {reason}"), count);
+        }
+    }
+    for (pass, time) in &stats.passes {
+        report = row(report, &format!("time of pass {pass}"), format!("{:.2} s", time.as_secs_f64()));
+    }
+    let pass = |(name, time): &(_, Duration)| json!({"pass": name, "seconds": time.as_secs_f64()});
+    let (peak, mean) = (peak_memory(), stats.cell_points_avg());
+    report = row(report, "peak memory", format!("{:.1} MB", peak as f64 / 1e6))
+        .entry("passes", stats.passes.iter().map(pass).collect::<Value>())
+        .entry("peak_memory_bytes", peak);
+    let cells = [
+        ("most points buffered", "buffered.points_max", stats.buffered_points_max),
+        ("most bytes buffered in memory", "buffered.memory_bytes_max", stats.buffered_bytes_max),
+        ("level", "level", stats.level.into()),
+        ("occupied cells", "cells.occupied", stats.occupied_cells),
+        ("empty cells", "cells.empty", stats.empty_cells),
+    ];
+    report = cells.into_iter().fold(report, count);
+    report = row(report, "points per cell, average", format!("{mean:.0}")).entry("points_per_cell.avg", mean);
+    let rest = [
+        ("points per cell, most", "points_per_cell.max", stats.cell_points_max),
+        ("points spilled", "spilled.points", stats.spilled_points),
+        ("bytes spilled", "spilled.bytes", stats.spilled_bytes),
+        ("points spooled", "spooled.points", stats.spooled_points),
+        ("bytes spooled", "spooled.bytes", stats.spooled_bytes),
+    ];
+    lines.add_to(rest.into_iter().fold(report, count))
 }

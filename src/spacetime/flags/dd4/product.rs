@@ -30,7 +30,8 @@ pub struct ProductFlags {
     /// Write simplices instead of cells: each cell as cones from its lexicographically greatest vertices
     /// (canonical), or as cones from the barycentres of all faces that are no simplices (barycentric), where
     /// values are means; these are not Delaunay
-    #[arg(long, value_name = "canonical|barycentric", hide_possible_values = true, value_parser = named(RULES))]
+    #[arg(long, value_name = "canonical|barycentric", hide_possible_values = true)]
+    #[arg(value_parser = named(RULES))]
     #[arg(conflicts_with_all = ["at", "at_file", "slice"])]
     triangulate: Option<Rule>,
 

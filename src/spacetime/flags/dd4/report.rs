@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use crate::dd4::Report;
-use spmesh_shell::rows::{Row, entries, lines, seconds};
-use spmesh_shell::{StatsFormat, peak_memory, say};
+use spmesh_shell::peak_memory;
+use spmesh_shell::stats::{self, Row};
 
 /// The notice about points that coincide.
 pub(super) fn merged(report: &Report) -> Option<String> {
@@ -13,27 +13,23 @@ pub(super) fn merged(report: &Report) -> Option<String> {
     (*merged > 0).then(|| format!("{merged} of {points} points {verb} with an earlier one"))
 }
 
-/// Prints what `--stats` asks for; reading took `read`, everything `elapsed`.
-pub(super) fn print(format: Option<StatsFormat>, report: &Report, read: Duration, elapsed: Duration) {
-    match format {
-        Some(StatsFormat::Text) => say(&text(report, read, elapsed)),
-        Some(StatsFormat::Json) => say(&format!("{}\n", json(report, read, elapsed))),
-        None => {}
-    }
+/// What `--stats` prints; reading took `read`, everything `elapsed`.
+pub(super) fn stats(report: &Report, read: Duration, elapsed: Duration) -> stats::Report {
+    let share = report.counts.share_not_simplices();
+    let printed = stats::Report::of(elapsed).times(times(report, read)).counts(counts(report));
+    printed.row("share that are not simplices", format!("{share:.3}")).entry("share_not_simplices", share)
 }
 
-/// Times in seconds.
-fn times(report: &Report, read: Duration, elapsed: Duration) -> Vec<Row<f64>> {
+fn times(report: &Report, read: Duration) -> [Row<Duration>; 6] {
     let stats = &report.stats;
-    seconds([
-        ("time (s)", "seconds", elapsed),
+    [
         ("reading (s)", "seconds_read", read),
         ("diagram (s)", "seconds_diagram", report.diagram_time),
         ("  ordering (s)", "seconds_order", stats.order),
         ("  insertion (s)", "seconds_insertion", stats.insertion),
         ("  making cells (s)", "seconds_cells", stats.merge),
         ("writing (s)", "seconds_write", report.write_time),
-    ])
+    ]
 }
 
 /// With the times and the share of cells, these are the columns of thesis table 3.4 and the sum in figure
@@ -58,16 +54,4 @@ fn counts(report: &Report) -> [Row<u64>; 16] {
         ("output (bytes)", "output_bytes", *output_bytes),
         ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
     ]
-}
-
-fn text(report: &Report, read: Duration, elapsed: Duration) -> String {
-    let share = report.counts.share_not_simplices();
-    lines(&times(report, read, elapsed), counts(report))
-        + &format!("{:<30} {share:>15.3}\n", "share that are not simplices")
-}
-
-fn json(report: &Report, read: Duration, elapsed: Duration) -> String {
-    let mut object = entries(&times(report, read, elapsed), counts(report));
-    object.insert("share_not_simplices".into(), report.counts.share_not_simplices().into());
-    serde_json::Value::Object(object).to_string()
 }

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use crate::configgen::{DegreeCounts, Flips, FunctionCounts, Made, Options, Report, RuleName};
+use crate::configgen::{self, DegreeCounts, Flips, FunctionCounts, Made, Options, RuleName};
 use spmesh_base::error::Result;
-use spmesh_shell::rows::{Row, entries, lines, seconds};
-use spmesh_shell::{StatsFormat, peak_memory, say};
+use spmesh_shell::stats::Row;
+use spmesh_shell::{Report, StatsFlag, peak_memory};
 
 /// Times of the parts of a run that are not in its report.
 pub(super) struct Times {
@@ -15,9 +15,9 @@ pub(super) struct Times {
 }
 
 /// Notices about knots and flips.
-pub(super) fn notices(report: &Report, options: &Options) -> Vec<String> {
+pub(super) fn notices(report: &configgen::Report, options: &Options) -> Vec<String> {
     let mut notices = Vec::new();
-    let Report { points, repeated, flips, .. } = report;
+    let configgen::Report { points, repeated, flips, .. } = report;
     if *repeated > 0 {
         let verb = if *repeated == 1 { "is a repeated knot" } else { "are repeated knots" };
         notices.push(format!("{repeated} of {points} points {verb}, at the place of an earlier one"));
@@ -32,28 +32,28 @@ pub(super) fn notices(report: &Report, options: &Options) -> Vec<String> {
 
 /// Prints what `--stats` asks for.
 pub(super) fn print(
-    format: Option<StatsFormat>,
+    stats: StatsFlag,
     made: &Made,
     options: &Options,
     times: &Times,
     output_bytes: u64,
 ) -> Result<()> {
-    let Some(format) = format else { return Ok(()) };
+    if !stats.is_given() {
+        return Ok(());
+    }
     // Measured before counting, which needs memory itself.
     let peak = peak_memory();
     let count = |configurations| DegreeCounts::of(&made.knots, configurations);
     let degrees = made.degrees.iter().map(count).collect::<Result<Vec<_>>>()?;
     let functions = (!made.functions.is_empty()).then(|| FunctionCounts::of(&made.functions));
-    let whole: Vec<Row<u64>> = whole_rows(&made.report, output_bytes, peak)
-        .into_iter()
-        .chain(uses_seed(options).then_some(("seed", "seed", options.seed)))
-        .chain(functions.iter().flat_map(function_rows))
-        .collect();
-    let times = time_rows(&made.report, times);
-    match format {
-        StatsFormat::Text => say(&text(&times, &whole, &degrees)),
-        StatsFormat::Json => say(&format!("{}\n", json(&times, &whole, &degrees))),
-    }
+    let seed = uses_seed(options).then_some(("seed", "seed", options.seed));
+    stats.print(|| {
+        let report = Report::of(times.total).times(time_rows(&made.report, times));
+        let report = report.counts(whole_rows(&made.report, output_bytes, peak)).counts(seed);
+        let report = report.counts(functions.iter().flat_map(function_rows));
+        let of_degree = degrees.iter().map(|counts| Report::default().counts(degree_rows(counts)));
+        report.parts("degrees", of_degree)
+    });
     Ok(())
 }
 
@@ -61,17 +61,16 @@ fn uses_seed(options: &Options) -> bool {
     options.rule == RuleName::Random || matches!(options.flips, Some(Flips::Random(_, None)))
 }
 
-fn time_rows(report: &Report, times: &Times) -> Vec<Row<f64>> {
-    seconds([
-        ("time (s)", "seconds", times.total),
+fn time_rows(report: &configgen::Report, times: &Times) -> [Row<Duration>; 4] {
+    [
         ("reading (s)", "seconds_read", times.read),
         ("start triangulation (s)", "seconds_start", report.start_time),
         ("higher degrees (s)", "seconds_degrees", report.degrees_time),
         ("writing (s)", "seconds_write", times.write),
-    ])
+    ]
 }
 
-fn whole_rows(report: &Report, output_bytes: u64, peak: u64) -> [Row<u64>; 7] {
+fn whole_rows(report: &configgen::Report, output_bytes: u64, peak: u64) -> [Row<u64>; 7] {
     [
         ("points", "points", report.points),
         ("repeated points", "repeated", report.repeated),
@@ -105,15 +104,4 @@ fn function_rows(counts: &FunctionCounts) -> [Row<u64>; 5] {
         ("  of smooth creases", "functions_creases", counts.creases),
         ("  box splines", "functions_faces", counts.faces),
     ]
-}
-
-fn text(times: &[Row<f64>], whole: &[Row<u64>], degrees: &[DegreeCounts]) -> String {
-    lines(times, whole.iter().copied().chain(degrees.iter().flat_map(degree_rows)))
-}
-
-fn json(times: &[Row<f64>], whole: &[Row<u64>], degrees: &[DegreeCounts]) -> String {
-    let mut object = entries(times, whole.iter().copied());
-    let of_degree = |counts: &DegreeCounts| serde_json::Value::Object(entries(&[], degree_rows(counts)));
-    object.insert("degrees".into(), degrees.iter().map(of_degree).collect());
-    serde_json::Value::Object(object).to_string()
 }

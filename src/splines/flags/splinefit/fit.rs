@@ -22,7 +22,7 @@ use spmesh_formats::source::{
 use spmesh_shell::compression::Compression;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
-use spmesh_shell::{Common, StatsFormat, named, open_held, parse_box, progress::Progress, refuse_terminal};
+use spmesh_shell::{Common, StatsFlag, named, open_held, parse_box, progress::Progress, refuse_terminal};
 use spmesh_stream::model::bounds::Bounds;
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -53,6 +53,7 @@ the median of magnitudes; for rejecting points it is greater where many residual
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
+#[command(mut_arg("stats", |stats| stats.help("Print what the run did on stderr")))]
 pub(super) struct Flags {
     /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, NPY, vertices of PLY, OBJ and
     /// VTK, point streams); - is stdin
@@ -152,10 +153,8 @@ pub(super) struct Flags {
     #[command(flatten)]
     compression: Compression,
 
-    /// Print what the run did on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1)]
-    #[arg(default_missing_value = "text", require_equals = true)]
-    stats: Option<StatsFormat>,
+    #[command(flatten)]
+    stats: StatsFlag,
 }
 
 impl Flags {
@@ -201,7 +200,8 @@ impl Flags {
         output_bytes: u64,
     ) {
         report::notices(&fitted.report, &fitted.spline, rejected).iter().for_each(|text| say(common, text));
-        report::print(self.stats, fitted, rejected, self.seed, started.elapsed(), output_bytes);
+        let stats = || report::stats(fitted, rejected, self.seed, started.elapsed(), output_bytes);
+        self.stats.print(stats);
     }
 
     fn check_stdin(&self) -> Result<()> {

@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use crate::fitting::{Choice, FailedTrial};
 use crate::splinefit::{EXCESS_MAX, Extent, Fitted, PERCENTILES, Report, Spline, Statistics};
-use spmesh_shell::rows::{Row, entries, lines, seconds};
-use spmesh_shell::{StatsFormat, peak_memory, say};
+use spmesh_shell::peak_memory;
+use spmesh_shell::stats::{self, Row};
 
 /// Notices for the user.
 pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -> Vec<String> {
@@ -109,32 +109,19 @@ pub(super) fn outside(residuals: &Statistics) -> String {
     format!("{} of {all} points are outside of the domain, and do not count", residuals.outside)
 }
 
-/// Prints what `--stats` asks for.
-pub(super) fn print(
-    format: Option<StatsFormat>,
+/// What `--stats` prints.
+pub(super) fn stats(
     fitted: &Fitted,
     rejected: Option<u64>,
     seed: u64,
     time: Duration,
     output_bytes: u64,
-) {
-    let Some(format) = format else { return };
-    let times = seconds([("time (s)", "seconds", time)]);
-    let counts = count_rows(fitted, rejected, seed, output_bytes);
-    let numbers = number_rows(fitted);
-    match format {
-        StatsFormat::Text => {
-            let numbers = numbers.iter().map(|(label, _, number)| format!("{label:<30} {number:>15.6e}\n"));
-            say(&format!("{}{}", lines(&times, counts), numbers.collect::<String>()));
-        }
-        StatsFormat::Json => {
-            let mut object = entries(&times, counts);
-            let numbers = numbers.into_iter().map(|(_, key, number)| (key.to_string(), number.into()));
-            object.extend(numbers);
-            object.extend(details(&fitted.report));
-            say(&format!("{}\n", Value::Object(object)));
-        }
-    }
+) -> stats::Report {
+    let report = stats::Report::of(time).counts(count_rows(fitted, rejected, seed, output_bytes));
+    let report = number_rows(fitted).into_iter().fold(report, |report, (label, key, number)| {
+        report.row(label, format!("{number:.6e}")).entry(key, number)
+    });
+    details(report, &fitted.report)
 }
 
 fn count_rows(fitted: &Fitted, rejected: Option<u64>, seed: u64, output_bytes: u64) -> Vec<Row<u64>> {
@@ -188,9 +175,8 @@ pub(super) fn residual_rows(residuals: &Statistics) -> Vec<Row<f64>> {
     whole.into_iter().chain(parts).collect()
 }
 
-/// Details for JSON only: rounds and trials.
-fn details(report: &Report) -> Map<String, Value> {
-    let mut details = Map::new();
+/// Adds details for JSON only: rounds and trials.
+fn details(mut details: stats::Report, report: &Report) -> stats::Report {
     if let Some(search) = &report.search {
         let round = |round: &crate::fitting::Round| {
             json!({
@@ -198,16 +184,17 @@ fn details(report: &Report) -> Map<String, Value> {
                 "residual_rms": round.root_mean_square, "above": round.above,
             })
         };
-        details.insert("is_replaced".into(), search.is_replaced.into());
-        details.insert("rounds".into(), search.rounds.iter().map(round).collect());
+        let rounds: Value = search.rounds.iter().map(round).collect();
+        details = details.entry("is_replaced", search.is_replaced).entry("rounds", rounds);
     }
-    details.insert("range".into(), json!(report.residuals.range));
-    details.insert("extent".into(), extent_json(report.residuals.extent.as_ref()));
+    let extent = extent_json(report.residuals.extent.as_ref());
+    details = details.entry("range", json!(report.residuals.range)).entry("extent", extent);
     if let Some(choice) = report.chosen.as_ref().and_then(|chosen| chosen.choice.as_ref()) {
         let trial = |trial: &crate::fitting::Trial| json!({"lambda": trial.lambda, "score": trial.score});
-        details.insert("trials".into(), choice.trials.iter().map(trial).collect());
         let failed = |trial: &FailedTrial| json!({"lambda": trial.lambda, "reason": trial.reason});
-        details.insert("failed_trials".into(), choice.failed.iter().map(failed).collect());
+        let [trials, failed]: [Value; 2] =
+            [choice.trials.iter().map(trial).collect(), choice.failed.iter().map(failed).collect()];
+        details = details.entry("trials", trials).entry("failed_trials", failed);
     }
     details
 }

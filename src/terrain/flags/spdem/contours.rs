@@ -11,13 +11,13 @@ use spmesh_base::output::Output;
 use spmesh_shell::open_stream;
 use spmesh_shell::outline::{OutlineFlags, length};
 use spmesh_shell::progress::Progress;
-use spmesh_shell::rows::{self, Row};
-use spmesh_shell::{Common, StatsFormat, peak_memory};
+use spmesh_shell::stats::Row;
+use spmesh_shell::{Common, Report, StatsFlag, peak_memory};
 use spmesh_stream::Crs;
 
-/// The message when memory runs out.
-pub(super) const OUT_OF_MEMORY: &str =
-    "spdem: not enough memory: take a larger distance for --contours, or cut lines with --contour-points\n";
+/// The advice when memory runs out.
+pub(super) const LACK_OF_MEMORY: &str =
+    "take a larger distance for --contours, or cut lines with --contour-points";
 
 /// Flags about contour lines.
 #[derive(Debug, Clone, Args)]
@@ -113,7 +113,7 @@ pub(super) struct Job<'a> {
     pub(super) output: &'a Path,
     pub(super) format: LineFormat,
     pub(super) outline: &'a OutlineFlags,
-    pub(super) stats: Option<StatsFormat>,
+    pub(super) stats: StatsFlag,
     pub(super) common: &'a Common,
 }
 
@@ -138,9 +138,7 @@ pub(super) fn run(
     {
         notice(&message);
     }
-    if let Some(format) = job.stats {
-        rows::print(format, started.elapsed(), counts(&stats, output_bytes));
-    }
+    job.stats.print(|| Report::of(started.elapsed()).counts(counts(&stats, output_bytes)));
     Ok(())
 }
 

@@ -10,11 +10,8 @@ use spmesh_base::error::Result;
 use spmesh_shell::cells::{self, CellFlags};
 use spmesh_shell::open_stream;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::rows::{self, Row};
-use spmesh_shell::{Common, StatsFormat, notice, peak_memory};
-
-/// The message when memory runs out.
-pub(super) const OUT_OF_MEMORY: &str = "spdem: not enough memory: give less --memory\n";
+use spmesh_shell::stats::Row;
+use spmesh_shell::{Common, Report, StatsFlag, notice, peak_memory};
 
 /// A run.
 pub(super) struct Job<'f> {
@@ -22,7 +19,7 @@ pub(super) struct Job<'f> {
     pub(super) output: &'f Path,
     pub(super) cells: &'f CellFlags,
     pub(super) sheets: &'f SheetFlags,
-    pub(super) stats: Option<StatsFormat>,
+    pub(super) stats: StatsFlag,
     pub(super) common: &'f Common,
 }
 
@@ -43,9 +40,7 @@ pub(super) fn run(job: &Job, options: &Options, started: Instant) -> Result<()> 
     stats.notices.iter().for_each(|message| say(message));
     say(&cells::summary(&grid, stats.cells - stats.known));
     committed.notice().iter().for_each(|message| say(message));
-    if let Some(format) = job.stats {
-        rows::print(format, started.elapsed(), counts(&stats, committed.bytes));
-    }
+    job.stats.print(|| Report::of(started.elapsed()).counts(counts(&stats, committed.bytes)));
     Ok(())
 }
 

@@ -22,7 +22,8 @@ pub(super) struct QuantityFlags {
 
     /// What of the surface over a cell its elevation is, also where slopes and the like follow from it: the elevation at
     /// the centre, or the mean, the least or the greatest over the part that the mesh covers [default: centre]
-    #[arg(long, value_name = "WHAT", conflicts_with_all = ["contours", "fill", "interpolation"], value_parser = named(SAMPLES))]
+    #[arg(long, value_name = "WHAT", conflicts_with_all = ["contours", "fill", "interpolation"])]
+    #[arg(value_parser = named(SAMPLES))]
     sample: Option<Sample>,
 
     /// What slopes, aspects and hillshades are those of: the cells around (Horn, or Zevenbergen and Thorne), or the
