@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::parse_numbers;
+use super::{Names, parse_numbers};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_formats::raster::{Cells, Grid, NoData, RasterFormat, RasterOptions, Window};
@@ -150,15 +150,9 @@ pub fn window_of([x0, y0, x1, y1]: [f64; 4]) -> Result<Window> {
     )))
 }
 
-/// The format that the extension of a name implies.
-pub fn format_of(path: &Path) -> Option<RasterFormat> {
-    let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
-    match &ending[..] {
-        "tif" | "tiff" => Some(RasterFormat::GeoTiff),
-        "asc" => Some(RasterFormat::Ascii),
-        _ => None,
-    }
-}
+/// The formats that endings of names stand for.
+pub const ENDINGS: Names<RasterFormat> =
+    &[("tif", RasterFormat::GeoTiff), ("tiff", RasterFormat::GeoTiff), ("asc", RasterFormat::Ascii)];
 
 /// Opens the output of a raster before the work, so that a failure shows at once.
 pub fn create(path: &Path, format: RasterFormat) -> Result<Output> {

@@ -23,7 +23,7 @@ use clap::builder::TypedValueParser;
 use clap::{Args, Parser};
 
 pub use messages::{notice, say};
-pub use named::{Names, named, value_name};
+pub use named::{Names, named, of_ending, value_name};
 pub use spmesh_base::allocator::Allocator;
 use spmesh_base::error::{Error, ErrorKind};
 use spmesh_base::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};

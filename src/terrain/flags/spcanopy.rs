@@ -23,8 +23,8 @@ use spmesh_shell::outline::{OutlineFlags, length};
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
 use spmesh_shell::{
-    Common, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, peak_memory, read_list,
-    threads,
+    Common, Report, StatsFlag, advise_on_memory, notice, of_ending, parse_size, parse_threads, peak_memory,
+    read_list, threads,
 };
 use spmesh_stream::Crs;
 
@@ -149,7 +149,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let files = || files.clone().chain(flags.outline.mask_path());
     check_apart(files(), &[("--output", &flags.output)])?;
     endings::check(&flags.output, &[endings::RASTER])?;
-    let format = cells::format_of(&flags.output).unwrap_or_default();
+    let format = of_ending(cells::ENDINGS, &flags.output).unwrap_or_default();
     let mut output = flags.sheets.create(&flags.output, format, &flags.cells, files())?;
     let input = Input::open(&paths, &flags.source_options()?)?;
     input.notices().iter().for_each(|text| flags.notice(text));

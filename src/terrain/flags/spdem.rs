@@ -8,7 +8,7 @@ use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 
 use super::sheets::SheetFlags;
 use crate::contours::LineFormat;
@@ -26,7 +26,9 @@ use spmesh_shell::open_stream;
 use spmesh_shell::outline::OutlineFlags;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
-use spmesh_shell::{Common, Report, StatsFlag, advise_on_memory, notice, parse_size, peak_memory};
+use spmesh_shell::{
+    Common, Names, Report, StatsFlag, advise_on_memory, named, notice, of_ending, parse_size, peak_memory,
+};
 
 const TOOL: &str = "spdem";
 
@@ -154,8 +156,8 @@ pub struct Flags {
 
     /// GeoTIFF or ESRI ASCII grid; for lines, GeoJSON as one collection, or one feature a line [default: by
     /// the extension of the output, else tif or geojson]
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    format: Option<FormatFlag>,
+    #[arg(long, value_name = "FORMAT", value_parser = named(FORMATS))]
+    format: Option<Format>,
 
     /// Memory for tiles, and for triangles that wait for the outline of --concave; others wait in temporary
     /// files (see --temp-dir) [default: 32M]
@@ -175,14 +177,20 @@ pub struct Flags {
     common: Common,
 }
 
-/// The values of `--format`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum FormatFlag {
-    Tif,
-    Asc,
-    Geojson,
-    Geojsonl,
+/// What is written.
+#[derive(Debug, Clone, Copy)]
+enum Format {
+    Raster(RasterFormat),
+    Lines(LineFormat),
 }
+
+/// The values of `--format`.
+const FORMATS: Names<Format> = &[
+    ("tif", Format::Raster(RasterFormat::GeoTiff)),
+    ("asc", Format::Raster(RasterFormat::Ascii)),
+    ("geojson", Format::Lines(LineFormat::GeoJson)),
+    ("geojsonl", Format::Lines(LineFormat::GeoJsonLines)),
+];
 
 /// Runs the tool.
 ///
@@ -290,25 +298,26 @@ impl Flags {
         })
     }
 
+    /// The format of `--format`, or of the ending of the output.
+    fn named_format(&self) -> Option<Format> {
+        let raster = || of_ending(cells::ENDINGS, &self.output).map(Format::Raster);
+        let lines = || of_ending(contours::ENDINGS, &self.output).map(Format::Lines);
+        self.format.or_else(raster).or_else(lines)
+    }
+
     fn line_format(&self) -> Result<LineFormat, Error> {
-        match self.format {
-            Some(FormatFlag::Geojson) => Ok(LineFormat::GeoJson),
-            Some(FormatFlag::Geojsonl) => Ok(LineFormat::GeoJsonLines),
-            None if cells::format_of(&self.output).is_none() => {
-                Ok(contours::format_of(&self.output).unwrap_or(LineFormat::GeoJson))
-            }
-            _ => Err(Error::usage("lines are no raster: write them to NAME.geojson or NAME.geojsonl")),
+        match self.named_format() {
+            Some(Format::Lines(format)) => Ok(format),
+            Some(_) => Err(Error::usage("lines are no raster: write them to NAME.geojson or NAME.geojsonl")),
+            None => Ok(LineFormat::GeoJson),
         }
     }
 
     fn format(&self) -> Result<RasterFormat, Error> {
-        match self.format {
-            Some(FormatFlag::Tif) => Ok(RasterFormat::GeoTiff),
-            Some(FormatFlag::Asc) => Ok(RasterFormat::Ascii),
-            None if contours::format_of(&self.output).is_none() => {
-                Ok(cells::format_of(&self.output).unwrap_or(RasterFormat::GeoTiff))
-            }
-            _ => Err(Error::usage("GeoJSON holds lines, not rasters: add --contours D")),
+        match self.named_format() {
+            Some(Format::Raster(format)) => Ok(format),
+            Some(_) => Err(Error::usage("GeoJSON holds lines, not rasters: add --contours D")),
+            None => Ok(RasterFormat::GeoTiff),
         }
     }
 }

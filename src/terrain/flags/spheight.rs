@@ -15,8 +15,8 @@ use spmesh_shell::open_stream;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
 use spmesh_shell::{
-    Common, Report, StatsFlag, advise_on_memory, named, notice, parse_size, parse_threads, peak_memory,
-    read_list, threads,
+    Common, Names, Report, StatsFlag, advise_on_memory, named, notice, of_ending, parse_size, parse_threads,
+    peak_memory, read_list, threads,
 };
 
 const TOOL: &str = "spheight";
@@ -201,7 +201,7 @@ impl Flags {
                 let what = "COPC files are not written: give a name that ends in .laz alone";
                 return Err(Error::usage(what).of_input(name));
             }
-            if self.format.is_none() && format_of(output).is_none() {
+            if self.format.is_none() && of_ending(ENDINGS, output).is_none() {
                 let what = "points are written to NAME.las or NAME.laz, or choose with --format";
                 return Err(Error::usage(what).of_input(name));
             }
@@ -261,7 +261,7 @@ impl Flags {
             return Err(Error::usage(format!("--name takes 1 to {NAME_LEN_MAX} bytes of text")));
         }
         let place = if self.replace_z { HeightPlace::Z } else { HeightPlace::Field(self.name.clone()) };
-        let is_named = self.output.is_some().then(|| format_of(output)).flatten();
+        let is_named = self.output.is_some().then(|| of_ending(ENDINGS, output)).flatten();
         if self.replace_z && self.outside() == Outside::NoData {
             return Err(Error::usage(
                 "z cannot be without a value: give --outside nearest, or leave out --replace-z",
@@ -298,14 +298,8 @@ fn stem(name: &str, end: &str) -> Option<String> {
     Some(name[..at].to_string())
 }
 
-/// The format that the extension of a path names.
-fn format_of(path: &Path) -> Option<FormatFlag> {
-    match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-        "las" => Some(FormatFlag::Las),
-        "laz" => Some(FormatFlag::Laz),
-        _ => None,
-    }
-}
+/// The formats that endings of names stand for.
+const ENDINGS: Names<FormatFlag> = &[("las", FormatFlag::Las), ("laz", FormatFlag::Laz)];
 
 fn counts(sums: &Sums, ground: &Ground, ground_bytes: u64) -> [Row<u64>; 7] {
     [

@@ -7,7 +7,7 @@ use clap::Args;
 use super::balls::{BallFlags, parse_positive};
 use crate::tess3::{ColourBy, PictureForm, PictureOptions, Product};
 use spmesh_base::error::{Error, Result};
-use spmesh_shell::{Names, named};
+use spmesh_shell::{Names, named, of_ending};
 
 /// Resolution by default, in Å.
 const RESOLUTION: f64 = 0.5;
@@ -28,6 +28,9 @@ pub(super) struct PictureFlags {
 const COLOURS: Names<ColourBy> =
     &[("element", ColourBy::Element), ("chain", ColourBy::Chain), ("pocket", ColourBy::Pocket)];
 
+/// The forms that endings of names stand for.
+const FORMS: Names<PictureForm> = &[("ply", PictureForm::Ply), ("vtu", PictureForm::Vtu)];
+
 impl PictureFlags {
     /// The mesh that the ending of the output asks for; `None` for a table.
     pub(super) fn of_output(
@@ -37,14 +40,9 @@ impl PictureFlags {
         balls: &BallFlags,
     ) -> Result<Option<PictureOptions>> {
         let is_of_balls = matches!(product, Product::Cells | Product::ContactAreas | Product::Pockets);
-        let ending = output.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
-        let form = match ending.as_deref().filter(|_| is_of_balls) {
-            Some("ply") => PictureForm::Ply,
-            Some("vtu") => PictureForm::Vtu,
-            _ => {
-                let reason = "needs -o FILE.ply or FILE.vtu, and --sasa, --contact-areas or --pockets";
-                return self.refuse(reason).map(|()| None);
-            }
+        let Some(form) = of_ending(FORMS, output).filter(|_| is_of_balls) else {
+            let reason = "needs -o FILE.ply or FILE.vtu, and --sasa, --contact-areas or --pockets";
+            return self.refuse(reason).map(|()| None);
         };
         balls.check_for_mesh()?;
         let colours = self.colour_by.unwrap_or(ColourBy::Element);

@@ -7,7 +7,7 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::places::is_device;
 use spmesh_formats::raster::RasterFormat;
 use spmesh_formats::sink::MatrixFormat;
-use spmesh_shell::{Names, cells, endings};
+use spmesh_shell::{Names, cells, endings, of_ending};
 
 /// Values of `--kind`.
 pub(super) const KINDS: Names<Attribute> = &[
@@ -50,7 +50,7 @@ pub(super) fn format_of(
 ) -> Result<Form> {
     let form = match format {
         Some(form) => form,
-        None => match of_ending(output) {
+        None => match form_of(output) {
             Some(form @ Form::Matrix(_)) => form,
             of_ending if is_collocation => {
                 endings::check(output, &[endings::MATRIX])?;
@@ -74,16 +74,15 @@ pub(super) fn format_of(
     }
 }
 
-fn of_ending(output: &Path) -> Option<Form> {
-    let ending = output.extension()?.to_string_lossy().to_ascii_lowercase();
+fn form_of(output: &Path) -> Option<Form> {
+    const ENDINGS: Names<Form> = &[
+        ("npy", Form::Array),
+        ("npz", Form::Matrix(MatrixFormat::Npz)),
+        ("mtx", Form::Matrix(MatrixFormat::MatrixMarket)),
+    ];
     // A device such as /dev/fd/3.npy has no format.
-    match &ending[..] {
-        _ if is_device(output) => None,
-        "npy" => Some(Form::Array),
-        "npz" => Some(Form::Matrix(MatrixFormat::Npz)),
-        "mtx" => Some(Form::Matrix(MatrixFormat::MatrixMarket)),
-        _ => cells::format_of(output).map(Form::Raster),
-    }
+    let raster = || of_ending(cells::ENDINGS, output).map(Form::Raster);
+    if is_device(output) { None } else { of_ending(ENDINGS, output).or_else(raster) }
 }
 
 fn only_for_collocation(form: Form, output: &Path) -> Error {

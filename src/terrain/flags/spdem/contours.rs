@@ -12,7 +12,7 @@ use spmesh_shell::open_stream;
 use spmesh_shell::outline::{OutlineFlags, length};
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
-use spmesh_shell::{Common, Report, StatsFlag, peak_memory};
+use spmesh_shell::{Common, Names, Report, StatsFlag, peak_memory};
 use spmesh_stream::Crs;
 
 /// The advice when memory runs out.
@@ -97,15 +97,13 @@ impl ContourFlags {
     }
 }
 
-/// The format of lines that the extension of a name implies.
-pub(super) fn format_of(path: &Path) -> Option<LineFormat> {
-    let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
-    match &ending[..] {
-        "geojson" | "json" => Some(LineFormat::GeoJson),
-        "geojsonl" | "ndjson" => Some(LineFormat::GeoJsonLines),
-        _ => None,
-    }
-}
+/// The formats of lines that endings of names stand for.
+pub(super) const ENDINGS: Names<LineFormat> = &[
+    ("geojson", LineFormat::GeoJson),
+    ("json", LineFormat::GeoJson),
+    ("geojsonl", LineFormat::GeoJsonLines),
+    ("ndjson", LineFormat::GeoJsonLines),
+];
 
 /// A run that writes lines instead of a raster.
 pub(super) struct Job<'a> {

@@ -10,7 +10,7 @@ use crate::Picture;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
-use spmesh_shell::endings;
+use spmesh_shell::{endings, of_ending};
 
 /// The values of `--format`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -75,7 +75,7 @@ impl Outputs {
         if format.is_none() {
             endings::check(path, &[endings::PICTURE])?;
         }
-        let format = format.or_else(|| format_of(path)).unwrap_or(Format::Svg);
+        let format = format.or_else(|| of_ending(ENDINGS, path)).unwrap_or(Format::Svg);
         let target = if is_numbered {
             if is_stdout {
                 return Err(Error::usage(
@@ -129,16 +129,9 @@ fn write(format: Format, picture: &Picture, output: &mut Output) -> Result<()> {
     }
 }
 
-/// The format that the extension of a name implies.
-fn format_of(path: &Path) -> Option<Format> {
-    let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
-    match &ending[..] {
-        "svg" => Some(Format::Svg),
-        "png" => Some(Format::Png),
-        "html" | "htm" => Some(Format::Html),
-        _ => None,
-    }
-}
+/// The formats that endings of names stand for.
+const ENDINGS: &[(&str, Format)] =
+    &[("svg", Format::Svg), ("png", Format::Png), ("html", Format::Html), ("htm", Format::Html)];
 
 /// Parses a name with one `%d` or `%04d` in it.
 fn pattern(path: &Path) -> Result<Names> {
