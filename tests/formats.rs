@@ -215,6 +215,7 @@ fn start_of(format: Format) -> Vec<u8> {
         Format::Tiff => b"II*\0",
         Format::Xml => b"<!DOCTYPE html>\n",
         Format::Binary => b"abc\0",
+        Format::Dxf | Format::LandXml | Format::GeoJson => unreachable!("is written only"),
     };
     start.to_vec()
 }

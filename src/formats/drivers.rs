@@ -91,7 +91,7 @@ macro_rules! formats {
         }
 
         /// All formats, in the order of messages. The first one whose test passes is the format of an input.
-        pub(crate) const ROWS: &[Row] = &[$(Row {
+        pub(crate) static ROWS: &[Row] = &[$(Row {
             $($field: $value,)*
             ..row(Format::$format, $name, $listed, $test, $hint)
         },)*];
@@ -129,6 +129,7 @@ const TO_POINTS: &str = "make a point stream of its atoms with spfinalize --octr
 const TO_STREAM: &str = "convert it first with spconvert";
 const TO_PLY: &str = "convert it first with spconvert --to ply";
 
+// Of each: its name with an article, its name in lists, how it is recognized, and a hint for tools that do not read it.
 formats! {
     Las("a LAS, LAZ or COPC file", "LAS, LAZ, COPC", Test::Magic(&[b"LASF"]), "") {
         is_in_parts: true, points: Some(records::open)

@@ -3,7 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use spmesh_base::error::{Error, ErrorKind};
-use spmesh_spacetime::dd4::{Form, Placement, Product};
+use spmesh_formats::drivers::Format;
+use spmesh_spacetime::dd4::{Placement, Product};
 use spmesh_spacetime::slices::{Slice, Surface, isosurface, slice};
 use spmesh_stream::model::cells4::Point4;
 
@@ -168,21 +169,23 @@ fn products_are_written() {
         Ok((String::from_utf8_lossy(&bytes).into_owned(), notices))
     };
     let text = |product_: Product| product(product_).unwrap_or_else(|e: Error| panic!("{e}"));
-    let slice = |form| Product::Slice { time: 0.5, form };
-    let surface = |form| Product::Isosurface { time: 0.5, level: 0.7, form };
+    let slice = |format| Product::Slice { time: 0.5, format };
+    let surface = |format| Product::Isosurface { time: 0.5, level: 0.7, format };
     let (values, notices) = text(Product::Values(vec![[1.0, 0.0, 2.0, 0.5], [9.0, 0.0, 0.0, 0.0]]));
     assert_eq!(values, "x\ty\tz\tt\tvalue\n1\t0\t2\t0.5\t1\n9\t0\t0\t0\tnan\n");
     assert_eq!(notices, ["1 of 2 sites is outside of the convex hull of the points: nan"]);
-    assert!(text(slice(Form::Vtu)).0.contains("Name=\"value\""));
-    let (medit, notices) = text(slice(Form::Medit));
+    assert!(text(slice(Format::VtkXml)).0.contains("Name=\"value\""));
+    let (medit, notices) = text(slice(Format::Medit));
     assert!(medit.contains("Tetrahedra") && notices[0].contains("values"));
-    assert!(text(surface(Form::Ply)).0.starts_with("ply\n"));
-    assert!(text(surface(Form::Obj)).0.contains("\nf "));
-    assert!(text(surface(Form::Vtu)).0.contains("</VTKFile>"));
-    assert!(text(surface(Form::Medit)).0.contains("\nTriangles\n"));
-    let (_, notices) = text(Product::Isosurface { time: 0.5, level: 9.0, form: Form::Ply });
+    assert!(text(surface(Format::Ply)).0.starts_with("ply\n"));
+    assert!(text(surface(Format::Obj)).0.contains("\nf "));
+    assert!(text(surface(Format::VtkXml)).0.contains("</VTKFile>"));
+    assert!(text(surface(Format::Medit)).0.contains("\nTriangles\n"));
+    let (_, notices) = text(Product::Isosurface { time: 0.5, level: 9.0, format: Format::Ply });
     assert_eq!(notices, ["the surface is empty: values in the slice go from 0 to 2, not across 9"]);
-    for wrong in [slice(Form::Ply), slice(Form::Obj), Product::Slice { time: 7.0, form: Form::Vtu }] {
+    for wrong in
+        [slice(Format::Ply), slice(Format::Obj), Product::Slice { time: 7.0, format: Format::VtkXml }]
+    {
         assert_eq!(product(wrong.clone()).unwrap_err().kind(), ErrorKind::Usage, "{wrong:?}");
     }
 }
@@ -192,7 +195,7 @@ fn the_appended_data_of_a_slice_are_as_long_as_they_say() {
     let diagram = with_values(sampled(&mut Random::new(37), [2, 2, 2, 2], 1.0), |p| p[0]);
     let slice = slice(&diagram, 0.5).unwrap();
     let mut bytes = Vec::new();
-    spmesh_spacetime::dd4::write_slice(&slice, Form::Vtu, &mut bytes).unwrap();
+    spmesh_spacetime::dd4::write_slice(&slice, Format::VtkXml, &mut bytes).unwrap();
     let mark = b"encoding=\"raw\">\n_";
     let start = bytes.windows(mark.len()).position(|window| window == mark).unwrap() + mark.len();
     let (points, cells) = (slice.points.len(), slice.tetrahedra.len());

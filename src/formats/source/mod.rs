@@ -51,7 +51,6 @@ pub use crate::text::options::{Column, Separator, TextOptions};
 pub use crate::text::values::{Values, read_values};
 pub use crate::text::words::{finite, for_each_line};
 pub use crate::twin::read::TwinSource;
-pub use checked::Checked;
 pub use events::EventSource;
 pub use filters::{DropReason, Dropped, Filters, Interval};
 pub use gzip::Plain;
