@@ -1,11 +1,12 @@
 //! Counts the content of a stream.
 
-use super::inventory_configurations::ConfigurationInventory;
-use super::inventory_constraints::ConstraintInventory;
-use super::inventory4::Inventory4;
+use std::collections::HashSet;
+
+use super::configurations::{Claim, FARAWAY};
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::{Bounds, Point};
-use spmesh_stream::{Event, Header, MemoryRules, Patch, Totals};
+use spmesh_stream::model::cells4::Point4;
+use spmesh_stream::{ConfigurationBlock, Event, Header, MemoryRules, Patch, Totals};
 
 /// Counts of a stream, gathered event by event. It also verifies the rules that the reader of the container
 /// does not check, because that takes memory.
@@ -181,6 +182,132 @@ impl Inventory {
             self.cells.runs += 1;
             self.cells.points += run;
             self.cells.max = self.cells.max.max(run);
+        }
+    }
+}
+
+/// Counts of segments and of the sides on them.
+#[derive(Debug, Default)]
+pub struct ConstraintInventory {
+    /// Segments.
+    pub segments: u64,
+    /// Sides of triangles that lie on segments. An edge between two triangles has two.
+    pub sides: u64,
+    /// Segments that leave the mesh.
+    pub open_segments: u64,
+    lines: HashSet<u32>,
+}
+
+impl ConstraintInventory {
+    pub(super) fn event(&mut self, event: &Event) {
+        match event {
+            Event::Segments(segments) => {
+                self.segments += segments.len() as u64;
+                self.lines.extend(segments.iter().map(|segment| segment.line));
+            }
+            Event::Patch(patch) => self.sides += patch.sides.len() as u64,
+            Event::OpenSegments(open) => self.open_segments += open.len() as u64,
+            _ => {}
+        }
+    }
+
+    /// Number of different lines that segments belong to.
+    pub fn lines(&self) -> u64 {
+        self.lines.len() as u64
+    }
+}
+
+/// Counts of the configurations of one degree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DegreeInventory {
+    /// The degree.
+    pub degree: u32,
+    /// What they claim to be.
+    pub claim: Claim,
+    /// Interior sets.
+    pub groups: u64,
+    /// Configurations of three knots.
+    pub finite: u64,
+    /// Configurations of two knots and the faraway point.
+    pub infinite: u64,
+}
+
+/// Counts of all degrees, gathered block by block.
+#[derive(Debug, Default)]
+pub struct ConfigurationInventory {
+    degrees: Vec<DegreeInventory>,
+    last: Option<Vec<u32>>,
+}
+
+impl ConfigurationInventory {
+    /// Counts by increasing degree.
+    pub fn degrees(&self) -> &[DegreeInventory] {
+        &self.degrees
+    }
+
+    /// Adds a block.
+    pub(super) fn block(&mut self, block: &ConfigurationBlock) {
+        if self.degrees.last().is_none_or(|last| last.degree != block.degree) {
+            let (degree, claim) = (block.degree, block.claim);
+            self.degrees.push(DegreeInventory { degree, claim, groups: 0, finite: 0, infinite: 0 });
+            self.last = None;
+        }
+        let Some(inventory) = self.degrees.last_mut() else { return };
+        let goes_on = block.groups().next().is_some_and(|(first, _)| self.last.as_deref() == Some(first));
+        let infinite = block.boundaries.iter().filter(|boundary| boundary[2] == FARAWAY).count() as u64;
+        inventory.groups += block.counts.len() as u64 - u64::from(goes_on);
+        inventory.finite += block.boundaries.len() as u64 - infinite;
+        inventory.infinite += infinite;
+        self.last = block.last_interior().map(<[u32]>::to_vec).or(self.last.take());
+    }
+}
+
+/// Counts of a stream of four dimensions, gathered event by event.
+#[derive(Debug, Default)]
+pub struct Inventory4 {
+    /// Smallest and largest x, y, z, t.
+    pub found_bounds: Option<[Point4; 2]>,
+    /// Points whose value is known.
+    pub values_known: u64,
+    /// Finite cells.
+    pub finite: u64,
+    /// Finite cells of five vertices.
+    pub simplices: u64,
+    /// Infinite cells.
+    pub infinite: u64,
+    /// Most vertices of a cell.
+    pub vertices_max: usize,
+    /// Most neighbours of a cell.
+    pub neighbours_max: usize,
+}
+
+impl Inventory4 {
+    /// Adds an event with content of four dimensions.
+    pub(super) fn event(&mut self, event: &Event) {
+        match event {
+            Event::Points4(block) => {
+                block.points.iter().for_each(|&point| self.extend(point));
+                let values = block.values.iter().flatten();
+                self.values_known += values.filter(|value| !value.is_nan()).count() as u64;
+            }
+            Event::Cells4(cells) => {
+                for cell in cells.iter() {
+                    self.finite += u64::from(!cell.is_infinite);
+                    self.simplices += u64::from(!cell.is_infinite && cell.vertices.len() == 5);
+                    self.infinite += u64::from(cell.is_infinite);
+                    self.vertices_max = self.vertices_max.max(cell.vertices.len());
+                    self.neighbours_max = self.neighbours_max.max(cell.neighbours.len());
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn extend(&mut self, point: Point4) {
+        let [min, max] = self.found_bounds.get_or_insert([point; 2]);
+        for axis in 0..4 {
+            min[axis] = min[axis].min(point[axis]);
+            max[axis] = max[axis].max(point[axis]);
         }
     }
 }

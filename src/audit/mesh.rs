@@ -2,9 +2,9 @@
 
 use super::border;
 use super::check::{Check, Ledger, Violation};
-use super::extent::Extent;
+use super::corner::Extent;
 use super::hull::{Hull, Outline};
-use super::totals::check_points;
+use super::points::check_points;
 use super::triangles::{Corner, Fans, Standard, Triangles};
 use super::unused::Unused;
 use super::vertices::Vertex;

@@ -1,8 +1,8 @@
-//! Audit of a points stream: what the tags, the chunks and the header promise.
+//! Audit of a points stream: what the tags, the chunks, the header and END promise.
 
 use super::cells::{CodeSet, code_of, codes_of};
 use super::check::{Check, Ledger, Violation};
-use super::extent::Extent;
+use super::corner::Extent;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::model::cells::{CellCode, CellTree};
 use spmesh_stream::{Header, Totals};
@@ -116,4 +116,17 @@ impl PointsAudit {
         self.check_chunk()?;
         self.extent.check_holds(ledger)
     }
+}
+
+/// Proves that the vertices of a whole mesh and the points merged into them are all points.
+pub(super) fn check_points(vertices: u64, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
+    ledger.add(Check::Counts, 1);
+    if vertices.checked_add(totals.merged) == Some(totals.points) {
+        return Ok(());
+    }
+    let message = format!(
+        "{vertices} vertices and {} merged points are not the {} points of the input",
+        totals.merged, totals.points
+    );
+    Err(Violation::new(Check::Counts, message))
 }

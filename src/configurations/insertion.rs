@@ -146,10 +146,10 @@ impl Ears {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagonals::Diagonals;
     use crate::gathering::for_each_link;
     use crate::knots::Knots;
     use crate::rule::Rule;
+    use crate::special::Diagonals;
     use crate::{Lift, Start, generate};
     use spmesh_delaunay::predicates::FiniteFloatPredicates;
     use spmesh_stream::model::configurations::FARAWAY;

@@ -9,24 +9,20 @@
 //! what the theory states about links.
 //!
 //! `knots` has the symbolic perturbation of repeated knots, `plane` the predicates, and `configurations` the
-//! arrays. `gathering` computes links from configurations; `polygon`, `rule`, `apex`, `pieces` and
+//! arrays. `gathering` computes links from configurations; `polygon`, `rule`, `apex` and
 //! `insertion` triangulate links. [`special`] sets up starts and links for special splines.
 
 mod apex;
 mod border;
 mod centroids;
 mod copies;
-mod diagonals;
 mod gathering;
 mod insertion;
 mod knots;
 mod lift;
-mod merged;
-mod pieces;
 mod plane;
 mod polygon;
 mod rule;
-mod simple;
 pub mod special;
 mod start_check;
 mod surface;
@@ -42,8 +38,8 @@ pub use spmesh_stream::model::configurations::{Claim, Configurations, FARAWAY, G
 pub use surface::{Start, delaunay};
 pub use union_map::{UnionSource, inverse_union_map, union_map};
 
-use diagonals::Diagonals;
 use polygon::Triangulator;
+use special::Diagonals;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::order::{Curve, SpatialOrder};
 use spmesh_delaunay::predicates::{Arithmetic, Extent, PredicateCounts, Predicates2, WithPredicates2};

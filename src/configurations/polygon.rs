@@ -1,16 +1,16 @@
-//! Triangulates one link: infinite triangles first, then each bounded pocket by the rule.
+//! Triangulates one link: infinite triangles first, then each bounded pocket by the rule. Required diagonals
+//! cut it into pieces before.
 
-use super::diagonals::Diagonals;
 use super::gathering::position;
 use super::knots::Knots;
 use super::plane::Plane;
 use super::rule::Rule;
-use super::simple;
+use super::special::Diagonals;
+use super::start_check;
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::limits::LINK_VERTICES_MAX;
 use spmesh_delaunay::predicates::{Predicates2, Sign};
-use spmesh_stream::model::configurations::Claim;
-use spmesh_stream::model::configurations::FARAWAY;
+use spmesh_stream::model::configurations::{Claim, FARAWAY};
 
 /// Triangulates links; its buffers are reused.
 pub(super) struct Triangulator<'a, P> {
@@ -247,7 +247,7 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         if self.set.len() == 1 {
             return Ok(());
         }
-        match simple::crossing(&mut self.plane, &self.polygon, is_closed) {
+        match start_check::crossing(&mut self.plane, &self.polygon, is_closed) {
             None => Ok(()),
             Some([[a, b], [c, d]]) => {
                 Err(self.failure(&format!("it is not simple: edges {a}-{b} and {c}-{d} meet")))
@@ -258,5 +258,46 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
     #[cold]
     pub(super) fn failure(&self, what: &str) -> Error {
         Error::new(ErrorKind::Audit, what).at(position(&self.set))
+    }
+}
+
+impl<P: Predicates2> Triangulator<'_, P> {
+    /// Triangulates the polygon such that the given diagonals are edges.
+    pub(super) fn by_diagonals(&mut self, diagonals: Vec<[u32; 2]>) -> Result<()> {
+        let mut pieces = vec![self.polygon.clone()];
+        for [p, q] in diagonals {
+            let place = |piece: &[u32], v| piece.iter().position(|&other| other == v);
+            let holds = |piece: &Vec<u32>| place(piece, p).is_some() && place(piece, q).is_some();
+            let Some(mut piece) = pieces.iter().position(holds).map(|at| pieces.swap_remove(at)) else {
+                return Err(self.no_diagonal([p, q]));
+            };
+            let start = place(&piece, p).unwrap_or(0);
+            piece.rotate_left(start);
+            let end = place(&piece, q).unwrap_or(0);
+            self.take(&piece);
+            if end < 2 || end + 1 >= piece.len() || !self.sees(0, end) {
+                return Err(self.no_diagonal([p, q]));
+            }
+            pieces.push(piece[..=end].to_vec());
+            pieces.push([&piece[end..], &piece[..1]].concat());
+        }
+        for piece in pieces {
+            self.take(&piece);
+            if piece.len() == 3 { self.emit(0, 1, 2)? } else { self.by_rule()? }
+        }
+        Ok(())
+    }
+
+    /// Makes a piece the polygon.
+    fn take(&mut self, piece: &[u32]) {
+        self.polygon.clear();
+        self.polygon.extend_from_slice(piece);
+        self.sight.clear();
+        self.sight.resize(piece.len() * piece.len(), None);
+    }
+
+    #[cold]
+    fn no_diagonal(&self, [p, q]: [u32; 2]) -> Error {
+        self.failure(&format!("the edge from {p} to {q} that it should have is no diagonal of it"))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::scene::Scene;
+use super::projection::Scene;
 use super::style::Colours;
 use super::svg;
 use spmesh_base::error::Result;

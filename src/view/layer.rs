@@ -3,7 +3,7 @@
 
 use super::canvas::Canvas;
 use super::options::Form;
-use super::scene::Scene;
+use super::projection::Scene;
 use super::style::Style;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::{Bounds, Point};

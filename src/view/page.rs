@@ -4,7 +4,7 @@ use std::io::Write;
 
 use quick_xml::escape::escape;
 
-use super::frame::Frame;
+use super::picture::Frame;
 use spmesh_base::error::{Error, Result};
 
 /// A picture, and the text of its page.

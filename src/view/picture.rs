@@ -1,12 +1,12 @@
-//! A complete picture: SVG, rendered as PNG or wrapped in a page.
+//! A complete picture and its place in the world: SVG, rendered as PNG or wrapped in a page.
 
 use std::io::Write;
 
-use super::element::failed;
-use super::frame::Frame;
 use super::page::{self, Page};
+use super::pen::failed;
 use super::render::render;
 use spmesh_base::error::Result;
+use spmesh_delaunay::predicates::Point2;
 
 /// A picture.
 #[derive(Debug)]
@@ -34,5 +34,28 @@ impl Picture {
     /// If the picture is too large.
     pub fn png(&self) -> Result<Vec<u8>> {
         render(&self.svg)?.encode_png().map_err(failed)
+    }
+}
+
+/// The map from a picture to world coordinates: `x = left + unit * across`, `y = top - unit * down`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// The abscissa of the picture's left side. Units: those of the world.
+    pub left: f64,
+    /// The ordinate of the picture's upper side. Units: those of the world.
+    pub top: f64,
+    /// World units for one length of the picture.
+    pub unit: f64,
+}
+
+impl Frame {
+    /// The place in the picture of a place in the world: across and down.
+    pub fn place(&self, [x, y]: Point2) -> Point2 {
+        [(x - self.left) / self.unit, (self.top - y) / self.unit]
+    }
+
+    /// The place in the world of a place in the picture.
+    pub fn world(&self, [across, down]: Point2) -> Point2 {
+        [self.left + self.unit * across, self.top - self.unit * down]
     }
 }

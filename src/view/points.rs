@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::canvas::Canvas;
 use super::layer::Drawable;
 use super::options::Fill;
-use super::scene::Scene;
+use super::projection::Scene;
 use super::style::{Colours, Style};
 use super::svg;
 use spmesh_formats::raster::colour_map::{Colour, hex};

@@ -3,8 +3,8 @@
 use super::canvas::Paint;
 use super::options::{Fill, Options, When};
 use super::sheet::Legend;
+use super::sheet::Units;
 use super::shown::{self, Shown};
-use super::units::Units;
 use spmesh_formats::raster::Light;
 use spmesh_formats::raster::colour_map::{self, BATLOW, Colour, ColourMap, VIK, VIRIDIS};
 use spmesh_stream::model::bounds::Point;

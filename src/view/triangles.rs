@@ -6,7 +6,7 @@ use super::canvas::Canvas;
 use super::depth_sort::{Turned, back_to_front};
 use super::layer::Drawable;
 use super::options::Fill;
-use super::scene::Scene;
+use super::projection::Scene;
 use super::style::{Colours, Style};
 use super::svg;
 use spmesh_formats::raster::colour_map::hex;

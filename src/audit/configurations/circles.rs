@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use num_bigint::BigInt;
 
 use super::disk::Disk;
-use super::tree::Tree;
+use super::planar::Tree;
 use super::{Configurations, Knots};
 use crate::exact::dyadic::integers;
 use crate::exact::plane::{in_circle, in_raised_circle, orientation};

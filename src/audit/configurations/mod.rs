@@ -10,20 +10,18 @@ mod arrays;
 mod circles;
 mod disk;
 mod facets;
-mod functions;
 mod knots;
 mod planar;
 mod set;
 mod stream;
-mod tree;
 
 pub use arrays::Configurations;
 pub use circles::check_circles;
 pub use facets::{FacetCounts, check_facets, check_start};
-pub use functions::check_functions;
 pub use knots::Knots;
 pub use planar::check_centroids;
 pub use set::ConfigurationSet;
+pub use set::check_functions;
 pub use stream::{DegreeProof, Proof, StreamAudit, Violation, check};
 
 // Two terms of the stream format: data, not code.

@@ -4,9 +4,9 @@
 use std::cmp::Ordering;
 
 use super::Proof;
-use super::count::Distinct;
 use super::covering::Covering;
 use super::faces::{Faces, common, without};
+use super::form::Distinct;
 use super::sites::Sites;
 use super::space::{Facet, Roundness, Separation, Sphere};
 use super::violation::{Claim, Violation};

@@ -1,5 +1,7 @@
-//! Checks without geometry: the order of points and cells, ranges of numbers, mutual neighbours.
+//! Checks without geometry: the order of points and cells, ranges of numbers, mutual neighbours; faces
+//! counted once.
 
+use super::Proof;
 use super::violation::{Claim, Violation};
 use spmesh_stream::model::cells4::{Cell4, Cells4, Point4};
 
@@ -99,4 +101,61 @@ pub(super) fn check_vertices<'a>(
     let Some(unused) = is_used.iter().position(|&is_used| !is_used) else { return Ok(()) };
     let message = format!("no cell has the vertex {unused}");
     Err(Violation::new(Claim::Vertices, message).at(points, &[unused as u32]))
+}
+
+/// Counts distinct keys, in a buffer of twice as many.
+///
+/// Cost: a sort whenever the buffer is full, so that a key is sorted a few times.
+///
+/// Memory: 8 N bytes per distinct key.
+#[derive(Debug, Default)]
+pub(super) struct Distinct<const N: usize> {
+    keys: Vec<[u32; N]>,
+    limit: usize,
+}
+
+/// Least capacity of the buffer, in keys.
+const BUFFER_MIN: usize = 1 << 12;
+
+impl<const N: usize> Distinct<N> {
+    pub(super) fn add(&mut self, key: [u32; N]) {
+        if self.keys.len() >= self.limit.max(BUFFER_MIN) {
+            let distinct = self.count();
+            self.limit = 2 * distinct;
+        }
+        self.keys.push(key);
+    }
+
+    /// Number of distinct keys so far.
+    pub(super) fn count(&mut self) -> usize {
+        self.keys.sort_unstable();
+        self.keys.dedup();
+        self.keys.len()
+    }
+}
+
+/// Proves Euler's relation of a ball.
+pub(super) fn check_euler(proof: &Proof) -> Result<(), Violation> {
+    let Proof { vertices, edges, polygons, facets, cells, .. } = *proof;
+    if vertices + polygons + cells == edges + facets + 1 {
+        return Ok(());
+    }
+    let message = format!(
+        "{vertices} vertices - {edges} edges + {polygons} polygons - {facets} facets + {cells} cells is not 1"
+    );
+    Err(Violation::new(Claim::Euler, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_count_once_across_sorts() {
+        let mut distinct = Distinct::default();
+        (0..3 * BUFFER_MIN as u32).for_each(|i| distinct.add([i % 5_000, i % 2]));
+        assert_eq!(distinct.count(), 5_000);
+        (0..40_000).for_each(|i| distinct.add([i % 20_000, i % 2]));
+        assert_eq!(distinct.count(), 20_000);
+    }
 }

@@ -52,7 +52,6 @@
 //! Euler's relation follows. It is checked as a test of the audit itself.
 
 mod cells;
-mod count;
 mod covering;
 mod faces;
 mod form;
@@ -116,7 +115,7 @@ pub fn check(points: &[Point4], cells: &Cells4) -> Result<Proof, Violation> {
     }
     let proof = CellsAudit::new(points, cells, finite).check()?;
     if finite > 0 {
-        count::check_euler(&proof)?;
+        form::check_euler(&proof)?;
     }
     Ok(proof)
 }

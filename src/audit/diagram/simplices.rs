@@ -4,9 +4,9 @@
 use std::cmp::Ordering;
 
 use super::Proof;
-use super::count::{Distinct, check_euler};
 use super::covering::Covering;
 use super::faces::without;
+use super::form::{Distinct, check_euler};
 use super::form::{check_finite, check_vertices};
 use super::sites::Sites;
 use super::space::{Facet, Roundness, Separation, Sphere};

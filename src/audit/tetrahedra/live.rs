@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::Corner;
-use super::edges::OpenEdges;
+use super::faces::OpenEdges;
 use super::hidden::Hidden;
 use crate::Standard;
 use crate::check::{Check, Ledger, Violation};

@@ -48,7 +48,6 @@
 //! so that something is covered twice, as above. So the audit need not remember it.
 
 mod census;
-mod edges;
 mod faces;
 mod hidden;
 mod hull;
@@ -58,8 +57,8 @@ mod partial;
 use super::Standard;
 use super::check::{Check, Ledger, Violation};
 use super::corner;
-use super::extent::Extent;
-use super::totals::check_points;
+use super::corner::Extent;
+use super::points::check_points;
 use super::unused::Unused;
 use super::vertices::Vertex;
 pub use census::{Census, Counts, Faults};

@@ -14,8 +14,8 @@
 use super::Special;
 use super::basis::Collection;
 use super::constrained::Constrained;
-use crate::diagonals::Diagonals;
 use crate::knots::Knots;
+use crate::special::constrained::Diagonals;
 use crate::surface::Start;
 use foldhash::{HashMap, HashSet};
 use spmesh_base::error::{Error, Result};

@@ -4,6 +4,8 @@
 //! constrained Delaunay triangulations", Computers & Structures 47, 1993). Then new edges are flipped until
 //! they are constrained Delaunay.
 
+use std::collections::VecDeque;
+
 use crate::knots::Knots;
 use crate::plane::Plane;
 use crate::surface::{Around, Corner, Start};
@@ -12,7 +14,6 @@ use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_delaunay::delaunay2::distinct;
 use spmesh_delaunay::predicates::{FiniteFloatPredicates, Sign};
 use spmesh_stream::model::configurations::FARAWAY;
-use std::collections::VecDeque;
 
 /// A triangulation with fixed edges, which are never flipped.
 pub(super) struct Constrained<'a> {
@@ -265,4 +266,37 @@ pub(super) fn through(ends: [u32; 2], knot: u32) -> Error {
 #[cold]
 fn stuck(ends: [u32; 2]) -> Error {
     Error::new(ErrorKind::Audit, "no way leads along it through the triangulation").at(segment(ends))
+}
+
+/// Required diagonals in the links of some knots; the rule triangulates the pieces between them.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Diagonals {
+    /// Each row is a knot and the ends of a diagonal in its link; sorted.
+    rows: Vec<(u32, [u32; 2])>,
+}
+
+impl Diagonals {
+    pub(super) fn new(mut rows: Vec<(u32, [u32; 2])>) -> Diagonals {
+        rows.sort_unstable();
+        Diagonals { rows }
+    }
+
+    /// Whether there are no diagonals.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The ends of the diagonals in the link of a set; there are some only for single knots.
+    ///
+    /// Cost: a binary search.
+    pub fn of(&self, set: &[u32]) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
+        let rows = match *set {
+            [knot] => {
+                let start = self.rows.partition_point(|row| row.0 < knot);
+                &self.rows[start..start + self.rows[start..].partition_point(|row| row.0 == knot)]
+            }
+            _ => &[],
+        };
+        rows.iter().map(|row| row.1)
+    }
 }

@@ -3,8 +3,8 @@
 use super::Special;
 use super::basis::Collection;
 use super::constrained::{Constrained, segment, through};
-use crate::diagonals::Diagonals;
 use crate::knots::Knots;
+use crate::special::constrained::Diagonals;
 use crate::surface::Start;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::delaunay2::distinct;

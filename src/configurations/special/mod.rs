@@ -11,8 +11,8 @@ mod boxes;
 mod constrained;
 mod features;
 
-pub use super::diagonals::Diagonals;
 pub use boxes::{Patch, ZpSplit, patches, zp};
+pub use constrained::Diagonals;
 pub use features::{Crease, Features, features};
 pub use spmesh_stream::model::functions::{Function, FunctionKind};
 

@@ -9,9 +9,7 @@
 //! Source: Chew, "Constrained Delaunay triangulations", 1989; Anglada, "An improved incremental algorithm for
 //! constructing restricted Delaunay triangulations", 1997, for the insertion of a segment.
 
-mod border;
 mod chord;
-mod crossing;
 mod mesh;
 mod vertex;
 mod walk;
@@ -50,7 +48,7 @@ impl Region {
     /// The region of some triangles, which are counterclockwise and overlap nowhere. They are indices of
     /// `points`, of which no two are equal.
     pub fn new(points: &[Point2], triangles: &[[u32; 3]]) -> Region {
-        Region { mesh: border::mesh_of(points, triangles), last: None }
+        Region { mesh: mesh::mesh_of(points, triangles), last: None }
     }
 
     /// Where a place lies that is in the triangle with this number in the order of [`Region::new`]: the
@@ -104,7 +102,7 @@ impl Region {
 
     /// The sides on the border now.
     pub fn border(&self) -> impl Iterator<Item = BorderSide> + '_ {
-        crossing::border(&self.mesh).map(|(side, ends)| BorderSide { side, ends })
+        walk::border(&self.mesh).map(|(side, ends)| BorderSide { side, ends })
     }
 
     /// The triangles, numbered as in [`Region::pieces`], that a segment crosses which enters through a side
@@ -117,7 +115,7 @@ impl Region {
         segment: [Point2; 2],
         predicates: &mut impl Predicates2,
     ) -> Vec<u32> {
-        crossing::from_border(&self.mesh, entry.side, segment, predicates)
+        walk::from_border(&self.mesh, entry.side, segment, predicates)
     }
 
     /// The triangles now.

@@ -1,10 +1,10 @@
 //! Segments bent to the centres of the hot pixels that they pass through, and elevations of their vertices.
 
+use super::collinear::Cover;
 use super::collinear::Segments;
-use super::cover::Cover;
 use super::exact::{Place, minus};
 use super::nodes::Nodes;
-use super::places::{Part, Places};
+use super::nodes::{Part, Places};
 use super::search::Found;
 use super::{LineVertex, Noded, NodingChange, NodingOptions};
 use crate::network::NetworkSegment;
@@ -95,7 +95,7 @@ impl Bends {
         cover.find(&self.nodes, chain, parts);
         for (ends, piece) in chain.windows(2).zip(&cover.pieces) {
             let ends = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-            let &super::cover::Piece { line, is_shared, is_hard } = piece;
+            let &super::collinear::Piece { line, is_shared, is_hard } = piece;
             self.pieces.push(Piece { ends, line, is_shared, is_hard });
         }
         let last = chain.len() - 1;

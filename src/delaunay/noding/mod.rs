@@ -6,7 +6,7 @@
 //! Marimont, prove that no new crossing arises; `docs/theory/noding.md` states the proof for half-open
 //! pixels.
 //!
-//! Steps: vertices at one place become one (`places`); overlapping parts of a line become one segment
+//! Steps: vertices at one place become one (`nodes`); overlapping parts of a line become one segment
 //! (`collinear`); a recursive division of the plane finds crossings, and the segments in each hot pixel
 //! (`search`, with `chords`); segments are bent, and elevations found (`bend`).
 //!
@@ -17,13 +17,10 @@
 
 mod bend;
 mod buckets;
-mod chain;
 mod chords;
 mod collinear;
-mod cover;
 mod exact;
 mod nodes;
-mod places;
 mod search;
 
 use std::borrow::Cow;
@@ -31,9 +28,9 @@ use std::borrow::Cow;
 use crate::error::{Error, Result};
 use crate::network::NetworkSegment;
 
-pub use chain::Chains;
+pub use chords::Chains;
 pub use exact::COORDINATE_MAX;
-use places::{Parts, Places};
+use nodes::{Parts, Places};
 
 /// A vertex of a polyline.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -16,13 +16,9 @@
 //! Source: the cells are those of Edelsbrunner, "The union of balls and its dual shape", 1995; his inclusion
 //! and exclusion gives the same sums, of which the faces are the parts that users ask for.
 
-mod centre;
-mod contacts;
 mod dual;
 mod face;
-mod groups;
 mod molecular;
-mod nearest;
 mod pockets;
 mod shares;
 mod surface;
@@ -31,10 +27,10 @@ mod tests;
 mod tile;
 mod tiles;
 
-pub use contacts::Contacts;
 pub use molecular::molecular_surface;
 pub use pockets::{Mouth, Pocket, pockets};
 pub use surface::{FINEST, Faces, Surface, faces, linings, surface};
+pub use tiles::Contacts;
 
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::parallel;

@@ -1,6 +1,6 @@
 //! The cells of the balls of one tile.
 
-use super::centre::orthocentre;
+use super::dual::orthocentre;
 use super::face::{Face, Pair, Side};
 use super::tiles::Members;
 use super::{Balls, Cell, Contact};

@@ -1,7 +1,7 @@
 //! The cavity of a new point: what is known of it while it is searched for.
 
 use super::mesh::tetrahedron_of;
-use super::wall::Wall;
+use super::star::Wall;
 
 /// Searches that are told apart.
 const SEARCH_MAX: u32 = u32::MAX / 2;

@@ -1,9 +1,10 @@
-//! Exact signs and values, to count the errors of rounded arithmetic with.
+//! Exact signs and values, to count the errors of rounded arithmetic and the tetrahedra that it made wrong.
 
 use super::mesh::{faraway_corner, finite_facet};
-use super::sphere::difference;
-use super::stats::Stats;
-use spmesh_delaunay::delaunay3::Vertex;
+use super::phase_timer::Stats;
+use super::sphere::{difference, orientation};
+use spmesh_delaunay::delaunay3::{Tetrahedralization, Vertex};
+use spmesh_delaunay::order::Insertions;
 use spmesh_delaunay::predicates::{
     FiniteFloatPredicates, FiniteFloatPredicates3, Point3, Predicates2, Predicates3, Sign,
 };
@@ -64,10 +65,52 @@ fn is_rounded([o, a, b, c]: [Point3; 4], p: Point3, value: f64) -> bool {
     value as i128 != exact
 }
 
+/// Four vertices, positively oriented for exact arithmetic and for rounded arithmetic; none if all are in a
+/// plane.
+///
+/// The first to be inserted, the second, the first that is not collinear with them, the first after that that
+/// is not coplanar.
+pub(super) fn first_tetrahedron(vertices: &[Vertex], mut insertions: Insertions) -> Option<[u32; 4]> {
+    let at = |v: u32| vertices[v as usize].at;
+    let (a, b) = (insertions.next()?, insertions.next()?);
+    let c = insertions.find(|&v| !are_collinear(at(a), at(b), at(v)))?;
+    let is_positive = |a, b, c, d| {
+        orient3d(at(a), at(b), at(c), at(d)) == Sign::Positive
+            && orientation(at(a), at(b), at(c), at(d)) > 0.0
+    };
+    insertions.flat_map(|d| [[a, b, c, d], [b, a, c, d]]).find(|&[a, b, c, d]| is_positive(a, b, c, d))
+}
+
+/// The number of tetrahedra that are inverted or flat, or have a vertex of a neighbour inside of their
+/// sphere, by exact arithmetic. Spheres of flat tetrahedra have no inside.
+///
+/// Cost: five exact signs per tetrahedron.
+pub fn violations(mesh: &Tetrahedralization) -> u64 {
+    let is_wrong = |number: &usize| is_inverted_or_flat(mesh, *number) || has_neighbour_inside(mesh, *number);
+    (0..mesh.tetrahedra().len()).filter(is_wrong).count() as u64
+}
+
+fn is_inverted_or_flat(mesh: &Tetrahedralization, number: usize) -> bool {
+    let [a, b, c, d] = mesh.tetrahedra()[number].vertices.map(|v| mesh.vertices()[v as usize].at);
+    orient3d(a, b, c, d) != Sign::Positive
+}
+
+/// For a positive tetrahedron.
+fn has_neighbour_inside(mesh: &Tetrahedralization, number: usize) -> bool {
+    let tetrahedron = &mesh.tetrahedra()[number];
+    let point = |v: u32| mesh.vertices()[v as usize].at;
+    let [a, b, c, d] = tetrahedron.vertices.map(point);
+    (0..4).filter_map(|side| tetrahedron.neighbour(side)).any(|beyond| {
+        let apex = mesh.tetrahedra()[beyond.tetrahedron as usize].vertices[beyond.corner as usize];
+        FiniteFloatPredicates3::default().insphere(a, b, c, d, point(apex)) == Sign::Positive
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::float::sphere::Sphere;
+    use spmesh_delaunay::delaunay3::triangulate;
 
     #[test]
     fn values_of_small_integers_are_not_rounded_and_those_of_great_ones_are() {
@@ -80,5 +123,21 @@ mod tests {
         }
         let [o, a, b, c] = tetrahedron.map(|p| p.map(|x: f64| x * 0.5));
         assert!(!is_rounded([o, a, b, c], [1.0; 3], 1e300), "unknown for coordinates that are not integers");
+    }
+
+    #[test]
+    fn what_is_not_delaunay_is_counted() {
+        let mut points =
+            vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0], [9.0, 9.0, 9.0]];
+        assert_eq!(violations(&triangulate(&points).unwrap()), 0);
+        points
+            .extend((0..50).map(|i| [f64::from(i % 7), f64::from(i * i % 11), f64::from(i * 5 % 13) + 0.5]));
+        let mesh = triangulate(&points).unwrap();
+        assert_eq!(violations(&mesh), 0);
+        // A vertex that moves across its neighbours turns some of them over.
+        let mut vertices = mesh.vertices().to_vec();
+        vertices[5].at = vertices[5].at.map(|x| 12.0 - x);
+        let moved = Tetrahedralization::from_parts(vertices, Vec::new(), mesh.tetrahedra().to_vec());
+        assert!(violations(&moved) > 0);
     }
 }

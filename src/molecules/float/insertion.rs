@@ -1,15 +1,17 @@
 //! Insertion of points: the tetrahedra in conflict with a point give way to a star around it.
 
-use super::cavity::Cavity;
-use super::mesh::{MAX_TETRAHEDRA, Tetrahedron, corner_of, facet, faraway_corner, tetrahedron_of};
-use super::phase_timer::Phase;
-use super::star::Star;
-use super::state::State;
-use super::stats::Stats;
-use spmesh_delaunay::delaunay3;
-use spmesh_delaunay::order::Insertions;
-use spmesh_delaunay::{Error, Result};
 use std::time::Instant;
+
+use super::Options;
+use super::cavity::Cavity;
+use super::mesh::{MAX_TETRAHEDRA, Mesh, Tetrahedron, corner_of, facet, faraway_corner, tetrahedron_of};
+use super::phase_timer::{Phase, PhaseTimer, Stats};
+use super::star::Star;
+use spmesh_base::random::Random;
+use spmesh_delaunay::delaunay3::{self, Vertex};
+use spmesh_delaunay::order::{Insertions, SpatialOrder, Suffixes};
+use spmesh_delaunay::predicates::{Extent, Point3};
+use spmesh_delaunay::{Error, Result};
 
 impl State<'_> {
     /// Inserts the other vertices: the finite tetrahedra, and what was done.
@@ -48,7 +50,7 @@ impl State<'_> {
         slots.extend(tetrahedra.iter().take(walls.len()));
         tetrahedra.iter().skip(walls.len()).for_each(|&t| self.mesh.delete(t));
         while slots.len() < walls.len() {
-            slots.push(self.mesh.slot().ok_or(Error::TooManyTetrahedra(MAX_TETRAHEDRA as usize))?);
+            slots.push(self.mesh.slot().ok_or(Error::TooManyTetrahedra(MAX_TETRAHEDRA))?);
         }
         for ((wall, beside), &slot) in walls.iter().zip(beside).zip(&*slots) {
             let mut neighbours =
@@ -72,4 +74,94 @@ impl State<'_> {
         }
         is_there.iter().filter(|&&is_there| !is_there).count() as u64
     }
+}
+
+/// Work per point, in tetrahedra, after which walks and cavities are kept short: rounding must not make a run
+/// endless.
+const WORK_PER_POINT: u64 = 10_000;
+
+/// Tetrahedra per walk or cavity until then, and from then on.
+const LONG: usize = 1 << 26;
+const SHORT: usize = 1000;
+
+/// The work that walks and cavities may still cost.
+#[derive(Debug)]
+pub(super) struct Patience {
+    left: u64,
+}
+
+impl Patience {
+    /// Greatest number of tetrahedra in a walk or a cavity, if there are `count` in all.
+    #[inline(always)]
+    pub(super) fn limit(&self, count: usize) -> usize {
+        count.min(if self.left > 0 { LONG } else { SHORT })
+    }
+
+    /// Records that this many tetrahedra were visited.
+    #[inline(always)]
+    pub(super) fn spend(&mut self, tetrahedra: usize) {
+        self.left = self.left.saturating_sub(tetrahedra as u64);
+    }
+}
+
+/// The triangulation of the points inserted so far, and the buffers of insertions.
+pub(super) struct State<'a> {
+    pub(super) mesh: Mesh<'a>,
+    pub(super) options: &'a Options,
+    pub(super) stats: Stats,
+    pub(super) random: Random,
+    pub(super) cavity: Cavity,
+    pub(super) patience: Patience,
+    /// A finite tetrahedron made of late: where walks start.
+    pub(super) start: u32,
+    pub(super) star: Star,
+    pub(super) timer: PhaseTimer,
+}
+
+impl<'a> State<'a> {
+    /// Begins with the corners of `first`, which is positively oriented.
+    pub(super) fn new(vertices: &'a [Vertex], options: &'a Options, first: [u32; 4]) -> State<'a> {
+        let mesh = Mesh::new(vertices, first, options.cache_spheres);
+        State {
+            stats: Stats { created: mesh.tetrahedra.len() as u64, ..Stats::default() },
+            mesh,
+            options,
+            random: Random::new(options.seed),
+            cavity: Cavity::default(),
+            patience: Patience { left: WORK_PER_POINT * vertices.len() as u64 },
+            start: 0,
+            star: Star::new(vertices.len()),
+            timer: PhaseTimer::default(),
+        }
+    }
+}
+
+/// Distinct points, and what was found when they were put in order.
+pub(super) struct Sorted {
+    /// In order along the curve.
+    pub(super) vertices: Vec<Vertex>,
+    /// Indices of other points, with those of their equals.
+    pub(super) duplicates: Vec<[u32; 2]>,
+    /// The vertices as they are to be inserted.
+    pub(super) insertions: Insertions,
+}
+
+/// Puts points in order. Domain: finite coordinates, whose extent is `extent`.
+pub(super) fn sort(points: &[Point3], extent: &Extent<3>, options: &Options) -> Sorted {
+    let mut vertices: Vec<Vertex> = Vec::with_capacity(points.len());
+    let mut duplicates = Vec::new();
+    for index in SpatialOrder::default().sort(points, extent, options.curve) {
+        let at = points[index as usize];
+        match vertices.last() {
+            Some(last) if last.at == at => duplicates.push([index, last.index]),
+            _ => vertices.push(Vertex::new(at, index)),
+        }
+    }
+    let insertions = if options.by_bit_levels {
+        let points: Vec<Point3> = vertices.iter().map(|vertex| vertex.at).collect();
+        options.sequence.by_levels(&points, Suffixes::MostCommon)
+    } else {
+        options.sequence.of(vertices.len())
+    };
+    Sorted { vertices, duplicates, insertions }
 }

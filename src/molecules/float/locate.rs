@@ -1,8 +1,8 @@
 //! Where a new point is: a remembering stochastic walk (Devillers, Pion & Teillaud 2002; thesis 3.4.2).
 
 use super::check::check;
+use super::insertion::State;
 use super::mesh::{corner_of, tetrahedron_of};
-use super::state::State;
 use spmesh_delaunay::predicates::Point3;
 
 /// Walks to one point, each from a start of its own.

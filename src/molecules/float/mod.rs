@@ -5,7 +5,7 @@
 //! sphere, so that an in-sphere test is a dot product (`sphere`); the next point is located by a remembering
 //! stochastic walk that takes orientations from the values of spheres (`locate`, thesis 3.4.2); the vertex at
 //! infinity is the only sentinel, and a point on a sphere is taken to be inside (`insertion`, thesis 4.4).
-//! Bit levels and an order along a curve keep walks short and rounding small (`sequence`, thesis 3.4.1).
+//! Bit levels and an order along a curve keep walks short and rounding small (`insertion`, thesis 3.4.1).
 //!
 //! All arithmetic is that of `f64`, except where the first four points are chosen and where signs are
 //! checked. Coordinates that are integers of at most 10 bits are triangulated without error. With others the
@@ -14,32 +14,24 @@
 
 mod cavity;
 mod check;
-mod edges;
-mod first;
 mod insertion;
 mod locate;
 mod mesh;
-mod options;
 mod phase_timer;
 mod search;
-mod sequence;
 mod sphere;
 mod star;
-mod state;
-mod stats;
-mod violations;
-mod wall;
 
-pub use options::Options;
-pub use stats::{Seconds, Stats};
-pub use violations::violations;
+use std::time::Instant;
 
-use sequence::Sorted;
+pub use check::violations;
+use insertion::Sorted;
+use insertion::State;
+pub use phase_timer::{Seconds, Stats};
 use spmesh_delaunay::delaunay3::Tetrahedralization;
+use spmesh_delaunay::order::{Curve, Sequence};
 use spmesh_delaunay::predicates::{Extent, Point3};
 use spmesh_delaunay::{Error, Result};
-use state::State;
-use std::time::Instant;
 
 /// Greatest number of points.
 pub const MAX_POINTS: usize = 60_000_000;
@@ -66,12 +58,46 @@ pub fn triangulate(points: &[Point3], options: &Options) -> Result<(Tetrahedrali
         return Err(Error::not_finite(bad, &points[bad]));
     }
     let begin = Instant::now();
-    let Sorted { vertices, duplicates, insertions } = sequence::sort(points, &extent, options);
+    let Sorted { vertices, duplicates, insertions } = insertion::sort(points, &extent, options);
     let order = begin.elapsed().as_secs_f64();
-    let (tetrahedra, mut stats) = match first::first_tetrahedron(&vertices, insertions.clone()) {
+    let (tetrahedra, mut stats) = match check::first_tetrahedron(&vertices, insertions.clone()) {
         Some(first) => State::new(&vertices, options, first).run(insertions)?,
         None => (Vec::new(), Stats { missing: vertices.len() as u64, ..Stats::default() }),
     };
     stats.seconds.order = order;
     Ok((Tetrahedralization::from_parts(vertices, duplicates, tetrahedra), stats))
+}
+
+/// Options of [`triangulate`](super::triangulate).
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// The curve along which points are stored and inserted.
+    pub curve: Curve,
+    /// In which sequence they are inserted, within each level.
+    pub sequence: Sequence,
+    /// Whether points that have more low bits in common are inserted first.
+    pub by_bit_levels: bool,
+    /// Seed of the choices in walks.
+    pub seed: u64,
+    /// Whether every in-sphere test is compared with the exact sign: many times slower.
+    pub check_signs: bool,
+    /// Whether sphere equations are kept; they are computed for each test if not.
+    pub cache_spheres: bool,
+    /// Whether a walk takes orientations from the values of two spheres, not from determinants.
+    pub orientation_from_spheres: bool,
+}
+
+/// The program of the thesis.
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            curve: Curve::Hilbert,
+            sequence: Sequence::Pass,
+            by_bit_levels: true,
+            seed: 1,
+            check_signs: false,
+            cache_spheres: true,
+            orientation_from_spheres: true,
+        }
+    }
 }

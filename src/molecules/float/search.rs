@@ -1,11 +1,11 @@
 //! The search of a cavity: tetrahedra whose spheres have the new point inside, changed until it sees all
 //! facets around.
 
+use super::insertion::State;
 use super::mesh::{sphere_of, tetrahedron_of};
 use super::phase_timer::Phase;
 use super::sphere::Sphere;
-use super::state::State;
-use super::wall::Wall;
+use super::star::Wall;
 use spmesh_delaunay::predicates::Point3;
 use spmesh_delaunay::simplex::TETRAHEDRON_FACETS;
 

@@ -5,7 +5,7 @@ use std::ops::{Add, Mul, Sub};
 
 use num_bigint::BigInt;
 
-use super::radius::Radius;
+use super::alpha::Radius;
 use spmesh_delaunay::predicates::exact_integers::integers_and_unit;
 use spmesh_delaunay::predicates::{Point3, Sign};
 

@@ -7,7 +7,7 @@ use super::alpha::AlphaComplex;
 use super::balls::{BallOptions, Molecule};
 use super::filtration::Filtration;
 use super::mesh::write_mesh;
-use super::rows::columns;
+use super::tables::columns;
 use super::tables::{CONTACTS, ModelTables, TETRAHEDRA};
 use super::{Arithmetic, Options, Product, Report, selection};
 use spmesh_base::error::{Error, Result};

@@ -11,20 +11,17 @@ pub mod heap;
 mod job;
 mod mesh;
 mod method;
-mod names;
-mod radius;
-mod rows;
 mod selection;
 mod spheres;
 pub mod sweep;
 mod tables;
 
 pub use alpha::AlphaComplex;
+pub use alpha::Radius;
 pub use balls::{BallOptions, ColourBy, ContactFilter, Level, NamedRadii, PictureForm, PictureOptions};
 pub use job::{ModelName, run};
 pub use mesh::write_mesh;
 pub use method::{Arithmetic, Method, NO_EXPERIMENTS};
-pub use radius::Radius;
 pub use spheres::{Measure, measure};
 
 use std::time::Duration;

@@ -6,11 +6,11 @@
 
 use num_bigint::BigInt;
 
+use super::alpha::Radius;
 use super::exact::{
     Approximate, Number, Polynomial, Vector, cross, difference, dot, root_of_quotient, sign, square, sum,
     times,
 };
-use super::radius::Radius;
 use spmesh_delaunay::predicates::exact_integers::integers_and_unit;
 use spmesh_delaunay::predicates::{Point3, Sign};
 

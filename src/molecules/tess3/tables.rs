@@ -3,15 +3,15 @@
 //! Rows do not depend on how the triangulation was made: the atoms of a row, and the rows, are in the order
 //! of the input.
 
+use std::fmt::Write;
+
 use super::alpha::AlphaComplex;
-use super::names::AtomNames;
-use super::rows::distance;
 use super::spheres::measure;
 use spmesh_base::error::Result;
 use spmesh_delaunay::delaunay3::Tetrahedralization;
 use spmesh_delaunay::predicates::Point3;
-use spmesh_formats::molecules::Selected;
-use spmesh_formats::sink::TableSink;
+use spmesh_formats::molecules::{AtomView, Selected};
+use spmesh_formats::sink::{Column, ColumnKind, TableSink};
 
 /// Columns of the table of tetrahedra.
 pub(super) const TETRAHEDRA: &str = "model\tatom1\tatom2\tatom3\tatom4\tserial1\tserial2\tserial3\tserial4\t\
@@ -112,4 +112,75 @@ impl<'t> Table<'t> {
         atoms.iter().for_each(|&index| self.rows.field(self.names.name(index as usize)));
         atoms.iter().try_for_each(|&index| self.rows.integer(self.selected.label(index as usize)))
     }
+}
+
+/// The names of all selected atoms, one behind the other.
+#[derive(Debug, Default)]
+pub(super) struct AtomNames {
+    text: String,
+    ends: Vec<usize>,
+}
+
+impl AtomNames {
+    /// The names of the atoms: `chain/residue/number/atom`. The number includes its insertion code.
+    /// `/location` follows if an atom has alternate locations. Points without names have their numbers.
+    pub(super) fn new(selected: &Selected<'_>) -> Self {
+        let mut names = AtomNames::default();
+        for index in 0..selected.points().len() {
+            names.push(selected.atom(index), selected.label(index));
+        }
+        names
+    }
+
+    /// The name of the atom at `index` of the selection.
+    pub(super) fn name(&self, index: usize) -> &str {
+        let start = index.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.text[start..self.ends[index]]
+    }
+
+    fn push(&mut self, atom: Option<AtomView<'_>>, label: u64) {
+        let text = &mut self.text;
+        match atom {
+            None => write!(text, "{label}").expect("a string takes all"),
+            Some(atom) => {
+                text.push_str(atom.chain());
+                text.push('/');
+                text.push_str(atom.residue_name());
+                text.push('/');
+                if let Some(number) = atom.residue_number() {
+                    write!(text, "{number}").expect("a string takes all");
+                }
+                text.push_str(atom.insertion_code());
+                text.push('/');
+                text.push_str(atom.name());
+                if !atom.altloc().is_empty() {
+                    text.push('/');
+                    text.push_str(atom.altloc());
+                }
+            }
+        }
+        self.ends.push(text.len());
+    }
+}
+
+/// The columns that a line names, with tabs between them. Names have the same type in all tables.
+pub(super) fn columns(line: &str) -> Vec<Column> {
+    let column = |name: &str| Column { name: name.to_string(), kind: kind(name) };
+    line.trim_end().split('\t').map(column).collect()
+}
+
+/// The type of the column of a name; numbers unless it is listed.
+fn kind(name: &str) -> ColumnKind {
+    match name.trim_end_matches(|c: char| c.is_ascii_digit()) {
+        "model" | "serial" | "tetrahedra" | "atoms" | "contacts" | "pocket" | "mouth" | "mouths" => {
+            ColumnKind::Integer
+        }
+        "kind" | "atom" | "residue" | "chain" | "molecule" => ColumnKind::Text,
+        _ => ColumnKind::Number,
+    }
+}
+
+/// Distance of two points.
+pub(super) fn distance([p, q]: [Point3; 2]) -> f64 {
+    (0..3).map(|axis| (p[axis] - q[axis]).powi(2)).sum::<f64>().sqrt()
 }

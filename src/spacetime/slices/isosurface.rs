@@ -1,8 +1,8 @@
 //! Surfaces of equal value in a slice (marching tetrahedra).
 
 use super::NO_VALUES;
-use super::prism::{Cuts, between};
 use super::slice::Slice;
+use super::slice::{Cuts, between};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 

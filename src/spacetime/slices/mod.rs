@@ -9,15 +9,13 @@
 mod faces;
 mod interpolate;
 mod isosurface;
-mod locate;
-mod prism;
 mod slice;
 mod subdivide;
 
 pub use faces::Faces;
 pub use interpolate::Interpolator;
+pub use interpolate::Locator;
 pub use isosurface::{Surface, isosurface};
-pub use locate::Locator;
 pub use slice::first_time;
 pub use slice::{Slice, slice};
 pub use subdivide::{Rule, Subdivision, subdivide};

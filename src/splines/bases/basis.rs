@@ -6,12 +6,12 @@ pub(crate) use bends::Bend;
 
 use super::directional_limit::DirectionalLimit;
 use super::domain::Domain;
+use super::elements::FunctionSets;
 use super::elements::{Elements, Share};
-use super::factors::Factors;
-use super::function_sets::FunctionSets;
-use super::jet::Jet;
+use super::linear_simplex::Factors;
 use super::linear_simplex::{self, Found, Line, LinearSimplex};
 use super::simplex;
+use super::simplex::Jet;
 use super::tree::Tree;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::prefetch::prefetch;

@@ -2,9 +2,9 @@
 
 use super::basis::Basis;
 use super::domain::Domain;
+use super::elements::FunctionSets;
 use super::elements::{Elements, hull_area, hull_edges};
-use super::factors::Factors;
-use super::function_sets::FunctionSets;
+use super::linear_simplex::Factors;
 use super::linear_simplex::LinearSimplex;
 use super::simplex::MAX_DEGREE;
 use super::tree::{Hull, Tree};

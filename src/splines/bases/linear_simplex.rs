@@ -1,4 +1,4 @@
-//! Simplex splines of degrees 0 and 1 in closed form.
+//! Simplex splines of degrees 0 and 1 in closed form, and the linear factors of functions in them.
 //!
 //! A simplex spline of degree 1 is the length of the vertical chords of a tetrahedron, a concave function on
 //! its support. It is the least of linear functions, one for each edge ab of the hull of its four knots,
@@ -13,7 +13,7 @@
 //! spline of degree 0 has three walls and a constant value.
 
 use super::directional_limit::DirectionalLimit;
-use super::elements::hull_edges;
+use super::elements::{Elements, hull_edges};
 use spmesh_delaunay::predicates::{Extent, Point2, Sign, area, exact_area};
 
 /// The error relative to the greatest value from which on closed forms are not accurate enough. It is a
@@ -212,4 +212,41 @@ pub(super) fn scaled(line: Line, factor: f64) -> Line {
 /// A bound of the sum of the magnitudes of terms in a box around the origin.
 fn magnitude(line: &Line, reach: Point2) -> f64 {
     line[0].abs() + line[1].abs() * reach[0] + line[2].abs() * reach[1]
+}
+
+/// Linear factors of functions in elements, as functions of the offset from the origin of the closed form.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Factors {
+    pub(super) offsets: Vec<u32>,
+    pub(super) all: Vec<(u32, Line)>,
+}
+
+impl Factors {
+    /// The factors of elements that have closed forms; `sizes` are the areas of their supports.
+    pub(super) fn of(
+        elements: &Elements,
+        linear_simplices: &[LinearSimplex],
+        sizes: &[f64],
+        points: &[Point2],
+    ) -> Factors {
+        let mut factors = Factors { offsets: vec![0], all: Vec::new() };
+        for (at, (linear_simplex, size)) in linear_simplices.iter().zip(sizes).enumerate() {
+            for shares in elements.shares(at).chunk_by(|a, b| a.function == b.function) {
+                let mut sum = [0.0; 3];
+                for share in shares {
+                    let edge = share.edge.map(|id| points[id as usize]);
+                    let line = scaled(line_of(edge, linear_simplex.origin), share.factor / size);
+                    sum = [0, 1, 2].map(|place| sum[place] + line[place]);
+                }
+                factors.all.push((shares[0].function, sum));
+            }
+            factors.offsets.push(factors.all.len() as u32);
+        }
+        factors
+    }
+
+    #[inline(always)]
+    pub(super) fn of_element(&self, element: usize) -> &[(u32, Line)] {
+        &self.all[self.offsets[element] as usize..self.offsets[element + 1] as usize]
+    }
 }

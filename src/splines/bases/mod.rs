@@ -8,8 +8,7 @@
 //! |---|---|
 //! | `directional_limit` | decides the side of a line for points on the line |
 //! | `simplex` | evaluates simplex splines by the recurrence |
-//! | `linear_simplex` | closed forms of simplex splines of degrees 0 and 1 |
-//! | `factors` | the linear factors of closed forms |
+//! | `linear_simplex` | closed forms of simplex splines of degrees 0 and 1, and their linear factors |
 //! | `elements` | turns configurations into simplex splines with shares of functions |
 //! | `build` | builds a basis from elements |
 //! | `domain` | the region where functions sum to one |
@@ -22,9 +21,6 @@ mod build;
 mod directional_limit;
 mod domain;
 mod elements;
-mod factors;
-mod function_sets;
-mod jet;
 mod linear_simplex;
 mod narrow;
 mod raster;
@@ -34,6 +30,6 @@ mod tree;
 pub(crate) use basis::Bend;
 pub use basis::{Basis, Scratch};
 pub use directional_limit::DirectionalLimit;
-pub use jet::Jet;
 pub use raster::{Raster, Row};
+pub use simplex::Jet;
 pub use simplex::{MAX_DEGREE, simplex_spline, simplex_spline_jet};

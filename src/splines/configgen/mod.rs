@@ -2,12 +2,11 @@
 //!
 //! `sites` reads knots and the triangulation over them, if there is one. `options` holds the options of a
 //! run. `start` turns both into the input of [`spmesh_configurations`]. `special` sets up special
-//! configurations, which `parts` reads from text. `mesh` writes centroid triangulations.
+//! configurations, also from text. `mesh` writes centroid triangulations.
 
 mod counts;
 mod mesh;
 mod options;
-mod parts;
 mod sites;
 mod special;
 mod start;
@@ -15,9 +14,9 @@ mod start;
 pub use counts::{DegreeCounts, FunctionCounts};
 pub use mesh::write_centroids;
 pub use options::{Border, Flips, Options, Places, RuleName};
-pub use parts::{read_features, read_patches};
 pub use sites::{Frame, Sites, read_sites};
 pub use special::{BoxName, SpecialKind};
+pub use special::{read_features, read_patches};
 
 use std::io::Write;
 use std::time::{Duration, Instant};

@@ -1,11 +1,13 @@
-//! Kinds of special configurations, and the coordinates they need.
+//! Kinds of special configurations, the coordinates they need, and their form as text: one part per line.
 
+use std::io::Read;
 use std::str::FromStr;
 
 use super::sites::Sites;
-use spmesh_base::error::Result;
+use spmesh_base::error::{Error, Result};
 use spmesh_configurations::Knots;
-use spmesh_configurations::special::{self, Features, Patch, Special, ZpSplit};
+use spmesh_configurations::special::{self, Crease, Features, Patch, Special, ZpSplit};
+use spmesh_formats::source::{finite, for_each_line, quote};
 use spmesh_stream::Coordinates;
 
 /// Special configurations for splines with sharp or box-spline parts (thesis, chapter 8).
@@ -101,6 +103,68 @@ impl Sites {
     }
 }
 
+/// Reads features: lines of a word, `corner`, `crease`, `smooth-crease` or `linear`, and ids of knots.
+///
+/// A line of corners has any number of them, every other line is a polyline. Blank lines and comments are
+/// ignored.
+///
+/// # Errors
+/// If reading fails, a line is malformed, or there is no line.
+pub fn read_features(input: impl Read) -> Result<Features> {
+    let mut features = Features::default();
+    let count = for_each_line(input, |words| {
+        let (word, ids) = (words[0], words[1..].iter().map(|word| id(word)).collect::<Result<Vec<u32>>>()?);
+        if ids.is_empty() {
+            return Err(Error::malformed(format!("no knots behind {}", quote(word))));
+        }
+        match word {
+            b"corner" => features.corners.extend(ids),
+            b"crease" => features.creases.push(Crease { knots: ids, has_sharp_ends: true }),
+            b"smooth-crease" => features.creases.push(Crease { knots: ids, has_sharp_ends: false }),
+            b"linear" => features.lines.push(ids),
+            other => {
+                let expected = "expected corner, crease, smooth-crease or linear";
+                return Err(Error::malformed(format!("found {}, {expected}", quote(other))));
+            }
+        }
+        Ok(())
+    })?;
+    if count == 0 { Err(Error::malformed("found no feature")) } else { Ok(features) }
+}
+
+/// Reads grids: lines of eight numbers, x and y of the first knot, the step along rows, the step along
+/// columns, and how many cells a row and a column have. Blank lines and comments are ignored.
+///
+/// # Errors
+/// If reading fails, a line is malformed, or there is no line.
+pub fn read_patches(input: impl Read) -> Result<Vec<Patch>> {
+    let mut patches = Vec::new();
+    for_each_line(input, |words| {
+        let &[x, y, ux, uy, vx, vy, columns, rows] = words else {
+            let expected = "expected 8: X Y, the step along rows, the step along columns, cells in a row, cells in a column";
+            return Err(Error::malformed(format!("found {} numbers, {expected}", words.len())));
+        };
+        let pair = |x, y| Ok([finite(x)?, finite(y)?]);
+        let steps = [pair(ux, uy)?, pair(vx, vy)?];
+        patches.push(Patch { origin: pair(x, y)?, steps, cells: [whole(columns)?, whole(rows)?] });
+        Ok(())
+    })?;
+    if patches.is_empty() { Err(Error::malformed("found no grid")) } else { Ok(patches) }
+}
+
+fn id(word: &[u8]) -> Result<u32> {
+    parsed(word, "the number of a knot, counted from 0")
+}
+
+fn whole(word: &[u8]) -> Result<u32> {
+    parsed(word, "an integer")
+}
+
+fn parsed(word: &[u8], what: &str) -> Result<u32> {
+    let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+    number.ok_or_else(|| Error::malformed(format!("found {}, expected {what}", quote(word))))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,6 +176,47 @@ mod tests {
         assert_eq!("zp:falling:upright".parse(), Ok(BoxName(both)));
         for word in ["", "zp:", "zp:upright:falling", "bezier"] {
             assert!(word.parse::<BoxName>().is_err(), "{word}");
+        }
+    }
+
+    #[test]
+    fn features_are_lines_of_ids() {
+        let text = "# mountain\ncorner 3, 17\n\ncrease 1 2 3\nsmooth-crease: 4;5\nlinear 6 7 8 6\ncorner 9\n";
+        let creases = vec![
+            Crease { knots: vec![1, 2, 3], has_sharp_ends: true },
+            Crease { knots: vec![4, 5], has_sharp_ends: false },
+        ];
+        let expected = Features { corners: vec![3, 17, 9], creases, lines: vec![vec![6, 7, 8, 6]] };
+        assert_eq!(read_features(text.as_bytes()).unwrap(), expected);
+        for (text, part) in [
+            ("corner 1\nedge 1 2\n", "line 2: found \"edge\""),
+            ("corner\n", "line 1: no knots"),
+            ("crease 1 -2\n", "found \"-2\""),
+            ("crease 1 4294967296\n", "found \"4294967296\""),
+            ("# nothing\n", "no feature"),
+        ] {
+            let message = read_features(text.as_bytes()).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        }
+    }
+
+    #[test]
+    fn grids_are_lines_of_eight_numbers() {
+        let patches =
+            read_patches("0 0  1 0  0 1  4 5\n-2.5,0,.5,0,0,1e1,1,2 # narrow\n".as_bytes()).unwrap();
+        assert_eq!(patches[0], Patch { origin: [0.0; 2], steps: [[1.0, 0.0], [0.0, 1.0]], cells: [4, 5] });
+        assert_eq!(
+            patches[1],
+            Patch { origin: [-2.5, 0.0], steps: [[0.5, 0.0], [0.0, 10.0]], cells: [1, 2] }
+        );
+        for (text, part) in [
+            ("0 0 1 0 0 1 4\n", "line 1: found 7 numbers"),
+            ("0 0 1 0 0 1 4 5\n0 0 1 0 0 inf 4 5\n", "line 2: found \"inf\""),
+            ("0 0 1 0 0 1 4 -5\n", "found \"-5\""),
+            ("\n", "no grid"),
+        ] {
+            let message = read_patches(text.as_bytes()).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
         }
     }
 }

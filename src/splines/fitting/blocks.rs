@@ -1,12 +1,13 @@
-//! A pass over observations in blocks of a fixed size, several at a time.
+//! Scattered observations, read as often as a fit needs them, in blocks of a fixed size, several at a time.
 //!
 //! Blocks are cut by the numbers of observations, independently of the batches of the source, and their
 //! results return in order. So no result depends on the number of threads.
 
-use super::observations::{Observation, Observations};
-use spmesh_base::error::Result;
-use spmesh_delaunay::parallel;
 use std::num::NonZeroUsize;
+
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::parallel;
+use spmesh_delaunay::predicates::Point2;
 
 /// Observations in a block.
 const BLOCK: usize = 1 << 13;
@@ -74,6 +75,81 @@ fn fill<T>(
         }
     }
     Ok(false)
+}
+
+/// Observations per batch of a list in memory.
+const BATCH: usize = 1 << 13;
+
+/// A value at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observation {
+    /// The place of the observation.
+    pub point: Point2,
+    /// The measured value.
+    pub value: f64,
+    /// How much the observation counts: the reciprocal of a variance, or a number of equal observations. Not
+    /// negative.
+    pub weight: f64,
+}
+
+impl Observation {
+    /// An observation of weight one.
+    pub fn new(point: Point2, value: f64) -> Observation {
+        Observation { point, value, weight: 1.0 }
+    }
+
+    /// Refuses invalid observations; `index` is the number of this one.
+    pub(super) fn check(&self, index: u64) -> Result<()> {
+        let refuse = |what: String| Err(Error::malformed(what).at(format!("observation {index}")));
+        if !self.point.iter().all(|coordinate| coordinate.is_finite()) {
+            return refuse(format!("coordinate is not finite: {:?}", self.point));
+        }
+        if !self.value.is_finite() {
+            return refuse(format!("value is not finite: {}", self.value));
+        }
+        if !(self.weight >= 0.0 && self.weight.is_finite()) {
+            return refuse(format!("weight {}: expected a finite number, not negative", self.weight));
+        }
+        Ok(())
+    }
+}
+
+/// Observations that can be read several times, always in the same order.
+pub trait Observations {
+    /// Starts a pass over all of them.
+    fn read(&self) -> Result<Box<dyn ObservationReader + '_>>;
+}
+
+/// One pass over observations.
+pub trait ObservationReader {
+    /// Appends the next observations; appends none at the end.
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()>;
+}
+
+impl Observations for [Observation] {
+    fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
+        Ok(Box::new(Listed { rest: self }))
+    }
+}
+
+impl Observations for Vec<Observation> {
+    fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
+        self.as_slice().read()
+    }
+}
+
+/// The unread rest of a list.
+struct Listed<'a> {
+    rest: &'a [Observation],
+}
+
+impl ObservationReader for Listed<'_> {
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
+        let (next, rest) = self.rest.split_at(self.rest.len().min(BATCH));
+        observations.extend_from_slice(next);
+        self.rest = rest;
+        Ok(())
+    }
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@
 //! direction, and its curvature v'Mv / v'Dv decides. The diagonal D has what observations add to that of the
 //! matrix, not all of it: the energy of some functions may be so great that everything is small against it.
 
-use super::factor_blocks::Blocks;
+use super::selected_inverse::Blocks;
 use super::symmetric::Symmetric;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::cholesky::{
@@ -210,7 +210,7 @@ fn too_large(functions: usize) -> Error {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rows::Rows;
+    use super::super::normal_equations::Rows;
     use super::*;
 
     /// A chain with a strong diagonal, long enough for supernodes, or a full matrix.

@@ -6,8 +6,8 @@
 //! for linear functions.
 
 use super::energy::thin_plate;
+use super::normal_equations::Rows;
 use super::polygon;
-use super::rows::Rows;
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
 use spmesh_base::error::{Error, Result};

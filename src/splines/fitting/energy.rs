@@ -15,9 +15,9 @@
 //! exact, because functions have other borders than these triangles.
 
 use super::cells;
+use super::normal_equations::Rows;
 use super::overlaps::{self, Rectangle};
 use super::polygon::{self, Clipper, Polygon};
-use super::rows::Rows;
 use super::symmetric::Symmetric;
 use crate::bases::{Basis, Bend, Scratch};
 use spmesh_base::error::{Error, Result};

@@ -71,7 +71,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::fitting::cholesky::Elimination;
-    use crate::fitting::rows::Rows;
+    use crate::fitting::normal_equations::Rows;
 
     const COUNT: usize = 400;
 

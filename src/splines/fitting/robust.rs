@@ -1,10 +1,10 @@
 //! Robust fits: iteratively reweighted least squares, so that gross errors count little or not at all.
 
+use super::blocks::Observations;
 use super::cholesky::Elimination;
 use super::local_scale::{Cells, LocalScales, LocalSketch};
 use super::normal_equations::{NormalEquations, Parts, Weighed};
-use super::observations::Observations;
-use super::quantile_sketch::QuantileSketch;
+use super::residuals::QuantileSketch;
 use super::residuals::{self, Residual};
 use super::solve::{Equations, Solution};
 use super::symmetric::Symmetric;

@@ -1,12 +1,12 @@
 //! Coefficients from normal equations, with or without smoothing.
 
+use super::blocks::Observations;
 use super::cholesky::{Elimination, Factor};
 use super::control_energy::bending;
 use super::energy::check_domain;
 use super::least_energy;
-use super::linear_part::{Correction, LinearPart, corners};
+use super::membrane::{Correction, LinearPart, corners};
 use super::normal_equations::NormalEquations;
-use super::observations::Observations;
 use super::symmetric::Symmetric;
 use super::trend::{Trend, trend};
 use crate::bases::Basis;

@@ -1,6 +1,6 @@
 //! Symmetric sparse matrices: their upper triangles, row by row.
 
-use super::rows::Rows;
+use super::normal_equations::Rows;
 
 /// A symmetric sparse matrix. Shape: 16 bytes per entry of the upper triangle.
 #[derive(Debug, Clone, PartialEq)]

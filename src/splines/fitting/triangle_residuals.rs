@@ -3,12 +3,12 @@
 //! Gross errors would attract knots. So with a loss, fits are robust, and rejected observations cause no knot
 //! unless they are a large part of their triangle.
 
-use super::goal::{Goal, Round};
+use super::blocks::Observations;
 use super::knot_placement::knot_for_residual;
 use super::mesh::Mesh;
-use super::observations::Observations;
+use super::mesh::SplineSpace;
+use super::refine::{Goal, Round};
 use super::residuals::{self, Residual};
-use super::spline_space::SplineSpace;
 use spmesh_base::error::Result;
 use spmesh_base::random::Random;
 use spmesh_delaunay::predicates::Point2;

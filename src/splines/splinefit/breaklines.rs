@@ -1,7 +1,7 @@
 //! Breaklines and corners: turns polylines in world coordinates into knots with features between them.
 
-use super::distinct_points::without_copies;
 use super::fit::KNOTS_MAX;
+use super::given_knots::without_copies;
 use super::options::Options;
 use crate::fitting::SplineSpace;
 use spmesh_base::error::{Error, Result};

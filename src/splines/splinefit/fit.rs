@@ -8,7 +8,7 @@ use super::options::{Options, Smoothing};
 use super::points::{Points, PointsInFrame};
 use super::smoothing_choice::{Problem, SmoothingChoice, choose_smoothing};
 use super::statistics::Statistics;
-use super::{breaklines, given_knots, residual_lists};
+use super::{breaklines, given_knots, statistics};
 use crate::fitting::{
     self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, Residual, RobustFit, Round,
     Solution, Spacing, SplineSpace,
@@ -153,7 +153,7 @@ impl Fitted {
     /// If points cannot be read, or the list cannot be written.
     pub fn write_rejected(&self, points: &Points, options: &Options, output: &mut impl Write) -> Result<u64> {
         let Some(robust) = &self.robust else { return Ok(0) };
-        residual_lists::write_rejected(robust, &self.spline, points, options.threads, output)
+        statistics::write_rejected(robust, &self.spline, points, options.threads, output)
     }
 }
 

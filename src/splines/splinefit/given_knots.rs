@@ -1,12 +1,12 @@
 //! Knots from files: points, streams of configurations, or splines.
 
 use super::breaklines;
-use super::distinct_points::without_copies;
 use super::frame::Frame;
 use super::layout::Layout;
 use super::options::Options;
 use crate::fitting::SplineSpace;
 use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::delaunay2::distinct;
 use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::source::{Input, Opened};
 
@@ -51,4 +51,11 @@ fn of_points(input: &Input, options: &Options) -> Result<Layout> {
     // Vertices of polylines are not on a grid, so coordinates of the world are used.
     let places: Vec<Point2> = places.into_iter().map(|stored| frame.to_world(stored)).collect();
     Ok(Layout::of_space(breaklines::space(&places, options)?, Frame::world(frame.crs)))
+}
+
+/// The first point at each place.
+pub(super) fn without_copies(places: &[Point2]) -> Vec<Point2> {
+    let firsts = distinct(places);
+    let own = places.iter().zip(0..).zip(firsts).filter(|((_, id), first)| id == first);
+    own.map(|((&place, _), _)| place).collect()
 }

@@ -1,16 +1,16 @@
-//! Splines at sites: a table of x, y and an attribute, or an array of the attribute.
+//! Splines at sites: a table of x, y and an attribute, an array of the attribute, or all functions of the
+//! basis as a sparse matrix.
 
 use std::io::Write;
 use std::path::Path;
 
 use super::attributes::Attribute;
-use super::layout::Spline;
-use super::sites::for_each_site;
+use super::layout::{Layout, Spline};
 use super::table;
 use crate::bases::{Jet, Scratch};
 use spmesh_base::error::Result;
 use spmesh_delaunay::predicates::Point2;
-use spmesh_formats::sink::NpyRows;
+use spmesh_formats::sink::{MatrixFormat, NpyRows, SparseRows};
 use spmesh_formats::source::Input;
 
 /// Writes a table with a line for each site, in their order. Outside of the domain, where a spline is not
@@ -100,4 +100,81 @@ impl Spline {
             _ => frame.jet_in_one_unit(basis.jet(&self.coefficients, at, scratch)),
         })
     }
+}
+
+/// A site in world coordinates.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Site {
+    /// For computations.
+    pub(super) world: Point2,
+    /// As users read it.
+    pub(super) decimal: Point2,
+}
+
+/// Calls `take` with each site, in their order. `take` returns whether the site is in the domain. Returns the
+/// number of sites, and the number of sites outside. `done` gets the number of sites so far.
+pub(super) fn for_each_site(
+    sites: &Input,
+    mut done: impl FnMut(u64),
+    mut take: impl FnMut(Site) -> Result<bool>,
+) -> Result<[u64; 2]> {
+    let (mut count, mut outside) = (0, 0);
+    let (mut reader, mut batch) = (sites.read()?, Vec::new());
+    let coordinates = sites.description().coordinates;
+    loop {
+        reader.next_batch(&mut batch)?;
+        if batch.is_empty() {
+            return Ok([count, outside]);
+        }
+        for &stored in &batch {
+            let [world, decimal] = [coordinates.to_world(stored), coordinates.to_decimal(stored)];
+            let [world, decimal] = [world, decimal].map(|[x, y, _]| [x, y]);
+            outside += u64::from(!take(Site { world, decimal })?);
+        }
+        count += batch.len() as u64;
+        done(count);
+    }
+}
+
+/// What a collocation matrix has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CollocationCounts {
+    /// Rows: the number of sites.
+    pub sites: u64,
+    /// Rows without entries: the number of sites outside of the domain.
+    pub outside: u64,
+    /// Columns: the number of functions.
+    pub functions: usize,
+    /// Entries that are not zero.
+    pub entries: u64,
+}
+
+/// Writes the matrix with a row for each site, in their order, and a column for each function: the values of
+/// functions at sites. Times the coefficients of a spline it is the values of the spline. Rows of sites
+/// outside of the domain are empty.
+///
+/// Cost: one pass over the sites; the entries wait in temporary files in `temp_dir`, see
+/// [`SparseRows`].
+///
+/// # Errors
+/// If sites cannot be read, or the matrix cannot be written.
+pub fn write_collocation(
+    layout: &Layout,
+    sites: &Input,
+    format: MatrixFormat,
+    temp_dir: Option<&Path>,
+    output: &mut impl Write,
+    done: impl FnMut(u64),
+) -> Result<CollocationCounts> {
+    let (basis, mut scratch) = (&layout.basis, Scratch::default());
+    let mut matrix = SparseRows::new(basis.len() as u64, temp_dir)?;
+    let [sites, outside] = for_each_site(sites, done, |site| {
+        let at = layout.frame.to_stored(site.world);
+        let is_inside = basis.is_in_domain(at);
+        matrix.push(if is_inside { basis.at(at, &mut scratch) } else { &[] })?;
+        Ok(is_inside)
+    })?;
+    let entries = matrix.entries();
+    matrix.finish(format, output)?;
+    Ok(CollocationCounts { sites, outside, functions: basis.len(), entries })
 }

@@ -1,6 +1,5 @@
 //! `spview`: flags.
 
-mod moment;
 mod outputs;
 mod solid;
 mod tee;
@@ -11,7 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 
 use crate::{Extent, Fill, Form, Moments, Options, Picture, When};
-use moment::{Every, Moment};
+use outputs::{Every, Moment};
 use outputs::{Format, Outputs};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::places::check_apart;
@@ -163,11 +162,11 @@ pub struct Flags {
 
     /// Draw this moment instead of the end: a part of the stream, such as 0.4, or a number of triangles or
     /// points
-    #[arg(long, value_name = "MOMENT", value_parser = moment::parse_moment)]
+    #[arg(long, value_name = "MOMENT", value_parser = outputs::parse_moment)]
     at: Option<Moment>,
 
     /// Draw further pictures, one after every N triangles or points
-    #[arg(long, value_name = "every=N", value_parser = moment::parse_every)]
+    #[arg(long, value_name = "every=N", value_parser = outputs::parse_every)]
     snapshot: Option<Every>,
 
     /// Copy the stream to stdout, byte for byte

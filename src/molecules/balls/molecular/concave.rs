@@ -7,8 +7,8 @@
 //! follow from the areas and solid angles of these faces.
 
 use super::cone::Cone;
-use super::neighbours::Neighbours;
 use super::polygon::{HalfPlane, Polygon};
+use super::probe::Neighbours;
 use super::probe::Probe;
 use crate::balls::face::{Face, Pair};
 use crate::balls::shares::Measure;

@@ -4,17 +4,15 @@
 //! balls does not cover, and the *excluded* body is what is at least the probe's radius away from there. So
 //! it is the union without a *layer* along its boundary. Each point of the layer belongs to the nearest point
 //! of the boundary: on a sphere, on an arc of two spheres, or at a corner of three. The layers next to these
-//! are bounded by convex patches, saddles and concave patches; `saddle` and `concave` have their measures.
+//! are bounded by convex patches, saddles and concave patches; `cone` and `concave` have their measures.
 //!
 //! Source: Connolly, "Analytical molecular surface calculation", 1983. That other probes at rest are all that
 //! cuts a concave patch: Quan and Stamm, "Mathematical analysis and calculation of molecular surfaces", 2016.
 
 mod concave;
 mod cone;
-mod neighbours;
 mod polygon;
 mod probe;
-mod saddle;
 #[cfg(test)]
 mod tests;
 
@@ -24,7 +22,7 @@ use super::shares::Measure;
 use super::tile::Tile;
 use super::tiles::{self, Members, TILE_MAX};
 use super::{Balls, Cell};
-use neighbours::Neighbours;
+use probe::Neighbours;
 use probe::{Probe, probes};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::parallel;
@@ -96,7 +94,7 @@ fn without_probes(tile: &Tile<'_>, balls: Balls<'_>, members: &Members, probe: f
         if face.arc == 0.0 || probe == 0.0 {
             return;
         }
-        for (v, layer) in ends.into_iter().zip(saddle::layer(pair.heights, pair.disk(), probe)) {
+        for (v, layer) in ends.into_iter().zip(cone::layer(pair.heights, pair.disk(), probe)) {
             if let Some(place) = tile.place_in_core(v) {
                 saddles[place].add(face.arc, layer);
             }

@@ -1,16 +1,14 @@
 //! Meshes of the surface of a union of balls, and of the faces between its cells.
 //!
 //! Both share the vertices on the circles where spheres meet ([`nodes`]), so neither has cracks. Which arcs
-//! of a circle are on the surface follows from the [`outline`] of the face there.
+//! of a circle are on the surface follows from the outline (`faces`) of the face there.
 
 mod faces;
-mod linings;
 mod nodes;
-mod outline;
 mod patch;
 
 pub use faces::{Faces, faces};
-pub use linings::linings;
+pub use patch::linings;
 
 use super::Balls;
 use super::dual::Dual;

@@ -2,9 +2,9 @@
 
 use super::super::dual::Dual;
 use super::super::face::Pair;
-use super::super::groups::root;
+use super::super::pockets::root;
 use super::super::shares::length;
-use super::outline::{Crossing, Step, outline};
+use super::faces::{Crossing, Step, outline};
 use spmesh_delaunay::delaunay3::Ring;
 use spmesh_delaunay::predicates::Point3;
 use spmesh_delaunay::vector::{cross, difference, dot};

@@ -1,10 +1,14 @@
-//! Atoms that share a row of a table.
+//! Balls as a user names them: radii by a table or a file, and atoms that share a row.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::Level;
-use crate::tess3::names::AtomNames;
-use spmesh_formats::molecules::{AtomView, Name, Residue, Selected};
+use crate::tess3::tables::AtomNames;
+use data_encoding::HEXLOWER;
+use sha2::{Digest, Sha256};
+use spmesh_base::error::Result;
+use spmesh_formats::molecules::{AtomView, Name, Radii, Residue, Selected};
 
 /// The groups of the selected atoms, numbered as they first appear.
 pub(super) struct Groups {
@@ -80,5 +84,29 @@ fn name(atom: &AtomView<'_>, level: Level) -> String {
             let number = atom.residue_number().map_or(String::new(), |number| number.to_string());
             format!("{}/{}/{number}{}", atom.chain(), atom.residue_name(), atom.insertion_code())
         }
+    }
+}
+
+/// Radii, and what they were called.
+#[derive(Debug, Clone)]
+pub struct NamedRadii {
+    /// The radii.
+    pub radii: Arc<Radii>,
+    /// The name of the table; for a file also its SHA-256, so that a changed file has another text.
+    pub text: String,
+}
+
+impl NamedRadii {
+    /// The table of this name, or the radii in the file of this name, which is read once.
+    ///
+    /// # Errors
+    /// Those of [`Radii::load`].
+    pub fn load(name: &str) -> Result<NamedRadii> {
+        let loaded = Radii::load(name)?;
+        let text = match loaded.file {
+            Some(content) => format!("{name} ({})", HEXLOWER.encode(&Sha256::digest(&content))),
+            None => name.to_string(),
+        };
+        Ok(NamedRadii { radii: Arc::new(loaded.radii), text })
     }
 }

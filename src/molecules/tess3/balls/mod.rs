@@ -1,14 +1,12 @@
 //! Atoms as balls: exposed areas, volumes and contacts of their cells, as tables.
 
-mod colours;
 mod groups;
 mod pictures;
 mod pockets;
-mod radii;
 mod tables;
 
+pub use groups::NamedRadii;
 pub use pictures::{ColourBy, PictureForm, PictureOptions};
-pub use radii::NamedRadii;
 
 use std::io::Write;
 use std::num::NonZeroUsize;

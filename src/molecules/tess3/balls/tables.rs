@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::groups::{Groups, Key, key};
 use super::{BallOptions, ContactFilter, Level, Molecule};
 use crate::balls::{Cell, Contact, Contacts};
-use crate::tess3::rows::distance;
+use crate::tess3::tables::distance;
 use spmesh_base::error::Result;
 use spmesh_formats::sink::TableSink;
 

@@ -7,7 +7,7 @@ use num_bigint::{BigInt, BigUint, Sign};
 use super::double::Double;
 use super::orthosphere::Fraction;
 use super::value::{ERROR, Value};
-use crate::tess3::radius::Radius;
+use crate::tess3::alpha::Radius;
 
 /// Digits of values that are no shorter decimal numbers. Fewer would not tell all `f64` apart.
 const DIGITS: i32 = 17;

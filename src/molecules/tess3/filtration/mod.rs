@@ -14,8 +14,6 @@
 mod complex;
 mod decimal;
 mod double;
-mod flat;
-mod order;
 mod orthosphere;
 mod sites;
 mod value;
@@ -24,11 +22,11 @@ use std::io::Write;
 
 use complex::Table;
 use decimal::Decimals;
-use order::Order;
 use sites::{Sites, dimension, vertices};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::delaunay3::Tetrahedralization;
 use spmesh_delaunay::predicates::Point3;
+use value::Order;
 
 /// Bytes of text that are buffered before they are written.
 const TEXT_LEN: usize = 1 << 16;
@@ -56,11 +54,11 @@ impl<'p> Filtration<'p> {
         let sites = Sites::new(points, weights);
         let is_flat = mesh.tetrahedra().is_empty() && !points.is_empty();
         let table = if is_flat {
-            complex::simplices(&sites, &flat::tetrahedralize(points, weights)?)
+            complex::simplices(&sites, &sites::tetrahedralize(points, weights)?)
         } else {
             complex::simplices(&sites, mesh)
         };
-        let order = order::order(&sites, &table);
+        let order = value::order(&sites, &table);
         Ok(Filtration { sites, table, order })
     }
 

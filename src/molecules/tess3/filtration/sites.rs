@@ -1,13 +1,21 @@
 //! The weighted points, and what is decided about simplices of them.
+//!
+//! Points in a plane, on a line or at one place have no tetrahedra. As few points are added as it takes to span
+//! the space. The flat of the given
+//! points then touches the convex hull of all in a face. So the regular tetrahedralization of all contains
+//! that of the given points, in which none is hidden that was not before, whatever the weights of the others
+//! are.
 
+use std::borrow::Cow;
 use std::cmp::Ordering;
-
-use num_bigint::BigInt;
 
 use super::double::Double;
 use super::orthosphere::{Fraction, Site, conflict, power};
 use super::value::Value;
 use crate::tess3::exact::{Approximate, Number};
+use num_bigint::BigInt;
+use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
 use spmesh_delaunay::predicates::Point3;
 use spmesh_delaunay::predicates::exact_integers::decompose;
 
@@ -141,4 +149,36 @@ fn multiple(number: f64, exponent: i32) -> BigInt {
         Ok(shift) => BigInt::from(significand) << shift,
         Err(_) => BigInt::from(significand >> exponent.abs_diff(own)),
     }
+}
+
+/// The tetrahedralization of the points and of as few others as possible, which come after them.
+pub(super) fn tetrahedralize(points: &[Point3], weights: Option<&[f64]>) -> Result<Tetrahedralization> {
+    let mut kernel = Kernel::new();
+    let mut mesh = Tetrahedralization::default();
+    for axes in AXES {
+        let mut all = points.to_vec();
+        all.extend(axes.iter().map(|&axis| aside(points[0], axis)));
+        let done = match weights {
+            None => kernel.triangulate(Cow::Owned(all), &mut mesh),
+            Some(weights) => {
+                let weights: Vec<f64> = weights.iter().copied().chain(axes.iter().map(|_| 0.0)).collect();
+                kernel.triangulate_weighted(Cow::Owned(all), &weights, &mut mesh)
+            }
+        };
+        done.map_err(Error::of_computation)?;
+        if !mesh.tetrahedra().is_empty() {
+            break;
+        }
+    }
+    Ok(mesh)
+}
+
+/// Axes along which points are added: first one point, then two, then three.
+const AXES: [&[usize]; 7] = [&[0], &[1], &[2], &[0, 1], &[1, 2], &[0, 2], &[0, 1, 2]];
+
+/// Another point on a line along an axis, exactly.
+fn aside(mut point: Point3, axis: usize) -> Point3 {
+    let coordinate = &mut point[axis];
+    *coordinate = if *coordinate == 0.0 { 1.0 } else { -*coordinate };
+    point
 }

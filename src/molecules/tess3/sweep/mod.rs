@@ -4,8 +4,6 @@
 mod done;
 mod file;
 mod input;
-mod lock;
-mod names;
 mod row;
 mod summary;
 
@@ -98,18 +96,18 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     let summaries = std::iter::once(&sweep.summary).chain(&sweep.parquet).map(|path| ("--summary", &**path));
     check_apart(inputs.iter().copied(), &summaries.collect::<Vec<_>>())?;
     create_folder(folder)?;
-    let _folder_lock = lock::lock(folder)?;
+    let _folder_lock = done::lock(folder)?;
     let summary_file = file_of(&sweep.summary);
     // Devices and pipes have nothing of an earlier sweep.
     let existing = summary_file.filter(|path| path.is_file());
-    let mut summary_lock = existing.map_or(Ok(None), lock::lock)?;
+    let mut summary_lock = existing.map_or(Ok(None), done::lock)?;
     let found = existing.map_or_else(|| Ok(Done::default()), Done::read);
     // Without --resume, an earlier summary only says what is there, and any other file may be in its place.
     let (mut done, mut earlier) =
         if sweep.resume { (found?, Done::default()) } else { (Done::default(), found.unwrap_or_default()) };
     let mut outcome = Outcome::default();
     listener(News::Files(files.len() as u64));
-    let names = names::stems(&files, &HashSet::new());
+    let names = file::stems(&files, &HashSet::new());
     let names: HashMap<&Path, PathBuf> = files.iter().copied().zip(names).collect();
     let files = left_to_do(files, &mut done, sweep, &mut || {
         outcome.skipped += 1;
@@ -122,7 +120,7 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     jobs.iter().try_for_each(|job| file::check(job, sweep, &taken))?;
     check_folder(folder)?;
     if summary_lock.is_none() {
-        summary_lock = summary_file.map_or(Ok(None), lock::lock_or_create)?;
+        summary_lock = summary_file.map_or(Ok(None), done::lock_or_create)?;
     }
     let parquet = sweep.parquet.as_ref().map(|path| Output::create(path, true)).transpose()?;
     // Before the summary forgets them.
@@ -243,7 +241,7 @@ fn stems(
     taken.extend(stems.iter().flatten().cloned());
     let others: Vec<&Path> =
         files.iter().zip(&stems).filter(|(_, stem)| stem.is_none()).map(|((file, _), _)| *file).collect();
-    let mut others = names::stems(&others, &taken).into_iter();
+    let mut others = file::stems(&others, &taken).into_iter();
     stems.into_iter().map(|stem| stem.or_else(|| others.next()).unwrap_or_default()).collect()
 }
 

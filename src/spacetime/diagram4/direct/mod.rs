@@ -8,22 +8,20 @@
 //!
 //! A check of the other way, with which it shares little: no perturbation, no simplices, no rounded numbers.
 
-mod horizon;
-mod tuple;
+use std::time::Instant;
 
 use super::Stats;
 use super::canonical::canonical;
 use super::exact::Exactness;
 use super::simplices::insertions;
 use super::sites::Sites;
+use crate::diagram4::determinant::{Number, difference, dot, lift, normal, sphere};
 use foldhash::{HashMap, HashSet};
-use horizon::{Facet, in_common};
+use num_traits::Signed;
 use spmesh_base::error::Result;
 use spmesh_delaunay::predicates::Extent;
 use spmesh_delaunay::predicates::exact_integers::integers_of;
 use spmesh_stream::model::cells4::{Cell4, Cells4, Point4};
-use std::time::Instant;
-use tuple::{Integer, Tuple};
 
 /// The faraway point.
 const INFINITE: u32 = u32::MAX;
@@ -249,7 +247,7 @@ impl<T: Integer> Direct<T> {
         let around = |number: u32| {
             cells[number as usize].neighbours.iter().map(|&other| &cells[other as usize].vertices[..])
         };
-        for [a, b] in horizon::neighbours(facets, around) {
+        for [a, b] in neighbours(facets, around) {
             if !self.cell(a).neighbours.contains(&b) {
                 self.cells[a as usize].neighbours.push(b);
                 self.cells[b as usize].neighbours.push(a);
@@ -274,5 +272,112 @@ impl<T: Integer> Direct<T> {
             cells.push(Cell4 { is_infinite, vertices, neighbours: &neighbours });
         }
         cells
+    }
+}
+
+/// A facet between a red cell and a green or blue one.
+#[derive(Debug)]
+pub(super) struct Facet {
+    pub(super) red: u32,
+    /// Its vertices, increasing.
+    pub(super) vertices: Vec<u32>,
+    /// The cell that holds it when the point is inserted.
+    pub(super) cell: u32,
+}
+
+/// Least number of vertices of a ridge: three or more points of a face, being cospherical, span two
+/// dimensions (thesis, lemma 3.6.2). The faraway point is one like others here.
+const RIDGE_MIN: usize = 3;
+
+/// Numbers that two increasing lists have in common.
+pub(super) fn in_common(a: &[u32], b: &[u32]) -> Vec<u32> {
+    a.iter().copied().filter(|number| b.binary_search(number).is_ok()).collect()
+}
+
+/// Pairs of cells on both sides of a ridge of the horizon.
+///
+/// `around` gives the vertices of the neighbours of a red cell.
+pub(super) fn neighbours<'a, I: Iterator<Item = &'a [u32]>>(
+    facets: &[Facet],
+    around: impl Fn(u32) -> I,
+) -> Vec<[u32; 2]> {
+    let mut open: HashMap<Vec<u32>, u32> = HashMap::default();
+    let mut pairs = Vec::new();
+    for facet in facets {
+        for vertices in around(facet.red) {
+            let ridge = in_common(&facet.vertices, vertices);
+            // The neighbour across the facet itself has all of it.
+            if ridge.len() < RIDGE_MIN || ridge.len() == facet.vertices.len() {
+                continue;
+            }
+            match open.remove(&ridge) {
+                None => {
+                    open.insert(ridge, facet.cell);
+                }
+                Some(other) if other != facet.cell => pairs.push([other, facet.cell]),
+                Some(_) => {}
+            }
+        }
+    }
+    debug_assert!(open.is_empty(), "each ridge of the horizon is between two facets");
+    pairs
+}
+
+/// Integers that are wide enough.
+pub(super) trait Integer: Number + num_integer::Integer + Signed {}
+
+impl<T: Number + num_integer::Integer + Signed> Integer for T {}
+
+/// The integers (n, m, s): the value of a point x is n . x + m |x|^2 + s, negative inside of a sphere, or
+/// beyond a hyperplane of the hull, whose m is 0. They have no divisor in common.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tuple<T> {
+    n: [T; 4],
+    pub(super) m: T,
+    s: T,
+}
+
+impl<T: Integer> Tuple<T> {
+    /// The sphere through five points that span space.
+    pub(super) fn sphere([o, a, b, c, d]: [&[T; 4]; 5]) -> Tuple<T> {
+        let (n, m) = sphere([a, b, c, d].map(|p| difference(p.clone(), o)));
+        let two = T::one() + T::one();
+        let shifted = std::array::from_fn(|axis| n[axis].clone() - two.clone() * m.clone() * o[axis].clone());
+        let s = m.clone() * lift(o) - dot(&n, o);
+        let is_negative = m.is_negative();
+        Tuple { n: shifted, m, s }.with_sign(is_negative).reduced()
+    }
+
+    /// The hyperplane through four points, with a fifth on the side that is not beyond.
+    pub(super) fn hyperplane([o, a, b, c]: [&[T; 4]; 4], inside: &[T; 4]) -> Tuple<T> {
+        let n = normal([a, b, c].map(|p| difference(p.clone(), o)).each_ref());
+        let s = T::zero() - dot(&n, o);
+        let tuple = Tuple { n, m: T::zero(), s };
+        let is_negative = tuple.value(inside).is_negative();
+        tuple.with_sign(is_negative).reduced()
+    }
+
+    /// The value of a point.
+    pub(super) fn value(&self, point: &[T; 4]) -> T {
+        dot(&self.n, point) + self.m.clone() * lift(point) + self.s.clone()
+    }
+
+    /// `a * self + b * other`: one of their pencil (eq. 3.1).
+    pub(super) fn combined(&self, a: &T, other: &Tuple<T>, b: &T) -> Tuple<T> {
+        let of = |x: &T, y: &T| a.clone() * x.clone() + b.clone() * y.clone();
+        let n = std::array::from_fn(|axis| of(&self.n[axis], &other.n[axis]));
+        Tuple { n, m: of(&self.m, &other.m), s: of(&self.s, &other.s) }.reduced()
+    }
+
+    fn with_sign(self, is_negative: bool) -> Tuple<T> {
+        let turn = |x: T| if is_negative { T::zero() - x } else { x };
+        Tuple { n: self.n.map(turn), m: turn(self.m), s: turn(self.s) }
+    }
+
+    /// Divided by the greatest common divisor.
+    fn reduced(self) -> Tuple<T> {
+        let divisor = self.n.iter().fold(self.m.gcd(&self.s), |divisor, x| divisor.gcd(x));
+        let over = |x: T| if divisor.is_one() { x } else { x / divisor.clone() };
+        Tuple { n: self.n.map(over), m: over(self.m), s: over(self.s) }
     }
 }

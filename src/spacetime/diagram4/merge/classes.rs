@@ -1,9 +1,9 @@
 //! Finds the simplices of each cell.
 
 use super::AHEAD;
-use super::borders::Borders;
-use super::marks::Marks;
+use super::Borders;
 use super::numbers::{Joined, Numbers, Section};
+use super::search::Marks;
 use super::search::{BLOCK, Search};
 use crate::diagram4::simplices::{FACETS, Facet, Simplex, simplex_of};
 use spmesh_base::prefetch::prefetch;

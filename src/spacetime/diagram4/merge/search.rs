@@ -1,15 +1,15 @@
 //! The search for the simplices of each cell.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use super::AHEAD;
-use super::borders::Borders;
+use super::Borders;
 use super::classes::Part;
-use super::marks::Marks;
 use super::numbers::Numbers;
-use super::ranks::sort_distinct;
+use super::order::sort_distinct;
 use crate::diagram4::simplices::{FACETS, Simplex, facet, facet_of, simplex_of, without};
 use spmesh_base::prefetch::prefetch;
 use spmesh_stream::model::cells4::Lists4;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Simplices in a row that one part of the search begins at. Parts alternate, so that each has its share of
 /// simplices of all ages.
@@ -161,5 +161,32 @@ impl<'a> Search<'a> {
         let list = vertices.end();
         list.iter_mut().for_each(|vertex| *vertex = self.sites[*vertex as usize]);
         sort_distinct(list);
+    }
+}
+
+pub(super) struct Marks {
+    round: u32,
+    rounds: Vec<u32>,
+}
+
+impl Marks {
+    /// An empty set of numbers below a limit.
+    pub(super) fn new(numbers: usize) -> Marks {
+        Marks { round: 1, rounds: vec![0; numbers] }
+    }
+
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.round = self.round.wrapping_add(1);
+        if self.round == 0 {
+            self.rounds.fill(0);
+            self.round = 1;
+        }
+    }
+
+    /// Whether the number had no mark before.
+    #[inline(always)]
+    pub(super) fn mark(&mut self, number: u32) -> bool {
+        std::mem::replace(&mut self.rounds[number as usize], self.round) != self.round
     }
 }

@@ -7,7 +7,6 @@
 //! the open ones by walls fill the place of closed ones, and are *spurious*. Walls are facets of cells, whose
 //! vertices do not depend on how cells are triangulated. docs/theory/four-dimensions.md proves that.
 
-mod rest;
 mod slabs;
 mod stage;
 mod walls;
@@ -16,7 +15,7 @@ use super::exact::Exactness;
 use super::simplices::{Coefficient, Simplex, Sphere, triangulate_part};
 use super::sites::Sites;
 use super::{Stats, merge};
-use rest::Rest;
+use slabs::Rest;
 use slabs::Slabs;
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_stream::model::cells4::Cell4;

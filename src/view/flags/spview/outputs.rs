@@ -1,12 +1,11 @@
-//! The outputs of pictures: one file, or numbered files.
+//! The outputs of pictures: one file, or numbered files at moments of the stream.
 
 use std::io::Write;
 use std::iter;
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
-
 use crate::Picture;
+use clap::ValueEnum;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
@@ -153,4 +152,34 @@ fn pattern(path: &Path) -> Result<Names> {
         return Err(unfit());
     }
     Ok(Names { before: before.to_string(), digits, after: after.to_string() })
+}
+
+/// A moment of a stream.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Moment {
+    /// After this part of it, from 0 to 1.
+    Part(f64),
+    /// After this number of triangles or points.
+    Count(u64),
+}
+
+/// A number of triangles or points between pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Every(pub(super) u64);
+
+/// Parses a moment: an integer is a count, any other number a part.
+pub(super) fn parse_moment(text: &str) -> std::result::Result<Moment, String> {
+    if let Ok(count) = text.parse() {
+        return Ok(Moment::Count(count));
+    }
+    match text.parse::<f64>() {
+        Ok(part) if (0.0..=1.0).contains(&part) => Ok(Moment::Part(part)),
+        _ => Err(format!("{text:?} is neither a part between 0.0 and 1.0 nor an integer")),
+    }
+}
+
+/// Parses `every=N` with N above zero.
+pub(super) fn parse_every(text: &str) -> std::result::Result<Every, String> {
+    let count = text.strip_prefix("every=").and_then(|count| count.parse().ok());
+    count.filter(|&count| count > 0).map(Every).ok_or_else(|| format!("{text:?} is not like every=1000000"))
 }
