@@ -78,7 +78,6 @@ impl<const N: usize, T: Copy> OpenFacets<N, T> {
         self.iter().map(|(facet, _)| facet).min_by_key(|&facet| increasing(facet).0)
     }
 
-    /// Number of open facets.
     pub(super) fn len(&self) -> usize {
         self.open.len()
     }

@@ -84,7 +84,6 @@ impl<S: Copy + Default> Vertices<S> {
         Ok(())
     }
 
-    /// The vertex, if it is live.
     pub(super) fn live(&self, id: u64) -> Option<&Vertex<S>> {
         self.live.get(id)
     }

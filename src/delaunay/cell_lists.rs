@@ -66,23 +66,3 @@ impl CellLists {
         &mut self.numbers[range]
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lists_are_in_order() {
-        let of = |most| {
-            CellLists::of(4, 10, most, |number, visit| {
-                (0..4).filter(|cell| number % (cell + 2) == 0).for_each(|cell| visit(cell as usize));
-            })
-        };
-        let mut lists = of(14).expect("14 entries");
-        let expected: [&[u32]; 4] = [&[0, 2, 4, 6, 8], &[0, 3, 6, 9], &[0, 4, 8], &[0, 5]];
-        assert_eq!([0, 1, 2, 3].map(|cell| lists.get(cell)), expected);
-        lists.get_mut(1).reverse();
-        assert_eq!(lists.get(1), [9, 6, 3, 0]);
-        assert!(of(13).is_none());
-    }
-}

@@ -20,18 +20,3 @@ const fn reversed(mut facets: [[usize; 3]; 4]) -> [[usize; 3]; 4] {
     }
     facets
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn facets_face_outwards() {
-        let corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
-        for (opposite, facet) in TETRAHEDRON_FACETS.into_iter().enumerate() {
-            let [p, q, r] = facet.map(|corner| [0, 1, 2].map(|i| corners[corner][i] - corners[opposite][i]));
-            let minor = |i: usize, j: usize| q[i] * r[j] - q[j] * r[i];
-            assert_eq!(p[0] * minor(1, 2) + p[1] * minor(2, 0) + p[2] * minor(0, 1), 1, "facet {opposite}");
-        }
-    }
-}

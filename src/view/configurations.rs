@@ -198,7 +198,6 @@ impl Diagram<'_> {
         text + "</g>\n"
     }
 
-    /// Triangles of one colour.
     fn rings(&self, id: &str, colour: Colour, triangles: impl Iterator<Item = [Point; 3]>) -> String {
         let (mut path, mut count) = (String::new(), 0);
         for corners in triangles.filter(|corners| self.scene.may_show(corners)) {

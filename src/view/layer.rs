@@ -16,7 +16,6 @@ pub(super) trait Drawable {
     /// Its corners, in world coordinates.
     fn corners(&self) -> &[Point];
 
-    /// Paints it.
     fn paint(&self, canvas: &mut Canvas, scene: &Scene, style: &Style);
 }
 

@@ -7,7 +7,7 @@
 //! A `layer` keeps `triangles` or `points` as long as they are few, to be drawn one by one, and paints more
 //! of them on the pixels of a `canvas`. `depth_sort` orders triangles that are seen obliquely. `front` holds
 //! the live vertices, `cells` the cells of a finalization. `configurations` draws knots and centroid
-//! triangulations. A [`Picture`] is SVG; `page` wraps it in an HTML page that pans and zooms.
+//! triangulations. A [`Picture`] is SVG, also on an HTML page that pans and zooms.
 //!
 //! `render` turns the SVG of pictures alone into pixels, and clips: `pen` is what elements inherit, and refuses
 //! what it does not know; `outlines` are the shapes, and text in the `font`.
@@ -34,7 +34,6 @@ mod front;
 mod layer;
 mod options;
 mod outlines;
-mod page;
 mod pen;
 mod picture;
 mod points;
@@ -52,5 +51,5 @@ mod triangles;
 pub use drawing::{Take, draw};
 pub use extent::Extent;
 pub use options::{Fill, Form, Moments, Options, When};
-pub use picture::Picture;
+pub use picture::{Frame, Picture};
 pub use solid::{SolidOptions, draw_solid};

@@ -46,7 +46,6 @@ impl Pen {
         }
     }
 
-    /// The pen of an element within one that has this pen.
     pub(super) fn within(self, element: &mut Element) -> Result<Pen> {
         Ok(Pen {
             current: element.meaning("color", colour)?.unwrap_or(self.current),

@@ -2,10 +2,11 @@
 
 use std::io::Write;
 
-use super::page::{self, Page};
+use quick_xml::escape::escape;
+
 use super::pen::failed;
 use super::render::render;
-use spmesh_base::error::Result;
+use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point2;
 
 /// A picture.
@@ -20,12 +21,28 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// The picture on a page that pans and zooms, as one file of HTML.
+    /// The picture on a page that pans and zooms, as one file of HTML that needs nothing else. Its content policy
+    /// blocks everything outside of the file, and all scripts but its own.
+    ///
+    /// The view box begins at zero. The page zooms the group `map`, which has no transform. A path in the group
+    /// `scale` is the scale bar; a text there is its length in world units, a blank, and the name of the unit.
     ///
     /// # Errors
     /// If writing fails.
     pub fn html(&self, output: &mut impl Write) -> Result<()> {
-        page::write(output, &Page { title: &self.title, svg: &self.svg, frame: self.frame.as_ref() })
+        let frame = self.frame.map_or_else(String::new, |Frame { left, top, unit }| {
+            format!(" data-left=\"{left:?}\" data-top=\"{top:?}\" data-unit=\"{unit:?}\"")
+        });
+        write!(
+            output,
+            include_str!("page.html"),
+            title = escape(&self.title),
+            frame = frame,
+            style = include_str!("page.css"),
+            svg = self.svg,
+            script = include_str!("page.js"),
+        )
+        .map_err(|error| Error::io("writing the page", error))
     }
 
     /// The picture as PNG.

@@ -170,7 +170,6 @@ impl Sheet {
         svg::text([MARGIN, 28.0], TITLE, Anchor::Start, &shown)
     }
 
-    /// A colour bar with its numbers.
     fn colour_bar(&self, below: f64, legend: &Legend) -> String {
         let across = (0.5 * (self.width - 3.0 * MARGIN)).min(360.0).floor();
         let (top, step) = (below + 24.0, across / STEPS as f64);

@@ -6,4 +6,5 @@ mod float;
 mod pockets;
 mod surface;
 mod surfaces;
+mod tiles;
 mod vectors;

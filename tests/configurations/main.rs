@@ -11,6 +11,7 @@ mod rules;
 mod special_boxes;
 mod special_features;
 mod spline;
+mod union_map;
 
 use spmesh_audit::configurations::{self as audit, FacetCounts};
 use spmesh_base::error::Result;

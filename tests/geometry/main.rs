@@ -1,7 +1,9 @@
 //! Predicates, orders and kernels against slow and plain references.
 
+mod arrays;
 mod circle;
 mod constrained;
+mod curves;
 mod grids;
 mod kernel;
 mod kernel3;
@@ -9,5 +11,6 @@ mod kernel_predicates;
 mod kernel_predicates3;
 mod noding;
 mod order;
+mod parallel;
 mod queries;
 mod sphere;

@@ -1,4 +1,6 @@
 //! Bases of splines, and spline fits.
 
 mod bases;
+mod configgen;
 mod fitting;
+mod splinefit;

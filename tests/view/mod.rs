@@ -5,7 +5,9 @@ mod failures;
 mod kinds;
 mod moments;
 mod outline;
+mod page;
 mod pixels;
+mod render;
 mod shapes;
 mod svg;
 

@@ -62,7 +62,6 @@ impl Configurations {
         self.degree
     }
 
-    /// What the configurations claim to be.
     pub(super) fn claim(&self) -> Claim {
         self.claim
     }

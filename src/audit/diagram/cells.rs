@@ -16,7 +16,6 @@ use spmesh_stream::model::cells4::{Cell4, Cells4, Point4};
 pub(super) struct CellsAudit<'a> {
     points: &'a [Point4],
     cells: &'a Cells4,
-    /// Number of finite cells.
     finite: usize,
     sites: Sites<'a>,
     covering: Covering,

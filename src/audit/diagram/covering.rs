@@ -19,7 +19,6 @@ pub(super) struct Covering {
 }
 
 impl Covering {
-    /// The point in the cell of this number, which has these vertices.
     pub(super) fn new(
         cells: usize,
         sites: &mut Sites,

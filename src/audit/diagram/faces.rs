@@ -59,7 +59,6 @@ pub(super) fn without<'a>(one: &'a [u32], other: &'a [u32]) -> impl Iterator<Ite
 /// Pairs of sets with enough numbers in common, with these numbers.
 #[derive(Debug, Default)]
 struct Meetings {
-    /// The sets that each number is in.
     sets_of: Vec<Vec<u32>>,
     /// How many numbers the current set shares with each.
     shared: Vec<u32>,
@@ -190,7 +189,6 @@ pub(super) struct Fault {
 }
 
 impl Fault {
-    /// The fault of a cell with these neighbours.
     pub(super) fn violation(&self, cell: usize, neighbours: &[u32]) -> Violation {
         let beyond: Vec<usize> = self.facets.iter().map(|&facet| neighbours[facet] as usize).collect();
         let message = format!(

@@ -81,7 +81,6 @@ struct SimplicesAudit<'a> {
     covering: Covering,
 }
 
-/// Numbers of facets.
 struct FacetCounts {
     inner: usize,
     boundary: usize,

@@ -52,7 +52,6 @@ impl<'a> Sites<'a> {
         Sites { points, integers, unit, asked: 0, exactly: 0 }
     }
 
-    /// The point of this number.
     pub(super) fn at(&self, number: u32) -> Point4 {
         self.points[number as usize]
     }

@@ -149,7 +149,6 @@ impl TetrahedraAudit {
         self.extent.check_holds(ledger)
     }
 
-    /// Number of open facets.
     pub(super) fn open_facets(&self) -> usize {
         self.tetrahedra.facets.len()
     }

@@ -21,9 +21,7 @@ pub(super) struct Triangle {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
     pub(super) place: Point2,
-    /// Number of the point.
     pub(super) point: u32,
-    /// One of its triangles.
     pub(super) triangle: u32,
 }
 

@@ -22,7 +22,6 @@ pub(super) fn triangles_of(v: u32) -> [HalfEdge; 2] {
     [first, first + WORDS as u32]
 }
 
-/// The triangle of a half-edge.
 #[inline(always)]
 pub(super) fn triangle_of(h: HalfEdge) -> HalfEdge {
     h & !(WORDS as u32 - 1)

@@ -103,7 +103,6 @@ impl Triangles {
 #[derive(Debug, Default)]
 pub(super) struct TriangleMemory {
     words: Vec<u32>,
-    /// Number of triangles.
     count: usize,
 }
 

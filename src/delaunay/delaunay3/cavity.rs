@@ -137,7 +137,6 @@ impl Cavity {
         &self.entered[..self.found]
     }
 
-    /// The vertices, by number.
     #[inline(always)]
     pub(super) fn vertices(&self) -> &[u32] {
         &self.vertices[..self.count]

@@ -77,7 +77,6 @@ fn places(corners: [u32; 4], vertex: u32) -> usize {
     (0..4).fold(0, |places, i| places | usize::from(corners[i] == vertex) << i)
 }
 
-/// The tetrahedron of a facet.
 #[inline(always)]
 pub(super) fn tetrahedron_of(facet: Facet) -> u32 {
     facet & !(WORDS as u32 - 1)

@@ -307,7 +307,6 @@ pub fn triangulate_weighted(points: &[Point3], weights: &[f64]) -> Result<Tetrah
     Ok(mesh)
 }
 
-/// The extent of the points.
 fn checked_extent(points: &[Point3], threads: NonZeroUsize) -> Result<Extent<3>> {
     if points.len() > MAX_POINTS {
         return Err(Error::TooManyPoints { count: points.len(), most: MAX_POINTS });

@@ -55,7 +55,6 @@ unsafe impl Zeroable for Tetrahedron {}
 // SAFETY: all fields are numbers, and they fill it: nothing is padding.
 unsafe impl Pod for Tetrahedron {}
 
-/// Words of a tetrahedron.
 pub(super) const WORDS: usize = size_of::<Tetrahedron>() / size_of::<u32>();
 
 impl Tetrahedron {

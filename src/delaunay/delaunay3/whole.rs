@@ -81,7 +81,6 @@ impl Whole {
         whole
     }
 
-    /// Changes the complex.
     fn change(&mut self, change: impl FnOnce(&mut Complex<'_>)) {
         let fresh = self.tetrahedra.len()..self.room;
         let finite = self.vertices.len() as u32 - 1;

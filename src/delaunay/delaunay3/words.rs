@@ -40,7 +40,6 @@ impl<'s> Words<'s> {
         Words { ..*self }
     }
 
-    /// The word at this index.
     #[inline(always)]
     pub(super) fn get(&self, index: usize) -> u32 {
         debug_assert!(index < self.len);

@@ -22,7 +22,6 @@ pub(super) struct Segments {
 }
 
 impl Segments {
-    /// The parts of a segment.
     pub(super) fn parts(&self, segment: usize) -> &[Part] {
         let end = self.starts.get(segment + 1).map_or(self.parts.len(), |&next| next as usize);
         &self.parts[self.starts[segment] as usize..end]

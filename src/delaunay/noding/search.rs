@@ -21,7 +21,6 @@ const SAMPLE: usize = 32;
 /// A bound of the rounding error of coordinates computed in f64: they are below 2^43, with three roundings.
 const MARGIN: f64 = 1.0 / 64.0;
 
-/// What was found.
 pub(super) struct Found {
     /// Pixels of crossings that have no vertex, all different.
     pub(super) crossings: Vec<Place>,

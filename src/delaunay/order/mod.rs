@@ -93,7 +93,6 @@ pub(crate) fn sort_in<'m, const D: usize>(
     Places(sorted.iter())
 }
 
-/// Makes the item of each point, with its key.
 fn fill_keys<P: Copy + Sync>(
     threads: NonZeroUsize,
     items: &mut [Keyed],

@@ -22,12 +22,10 @@ mod molecular;
 mod pockets;
 mod shares;
 mod surface;
-#[cfg(test)]
-mod tests;
 mod tile;
 mod tiles;
 
-pub use molecular::molecular_surface;
+pub use molecular::{molecular_surface, molecular_surface_in_tiles};
 pub use pockets::{Mouth, Pocket, pockets};
 pub use surface::{FINEST, Faces, Surface, faces, linings, surface};
 pub use tiles::Contacts;
@@ -103,7 +101,7 @@ pub struct Cells {
 /// ```
 pub fn measure(balls: Balls<'_>, contacts_above: Option<f64>, threads: NonZeroUsize) -> Result<Cells> {
     check(balls)?;
-    in_tiles(balls, contacts_above, threads, TILE_MAX)
+    measure_in_tiles(balls, contacts_above, threads, TILE_MAX)
 }
 
 /// Greatest magnitude of coordinates and radii: squares and products of squares stay finite.
@@ -119,7 +117,11 @@ fn check(balls: Balls<'_>) -> Result<()> {
     }
 }
 
-fn in_tiles(
+/// [`measure`] with at most `tile_max` balls in a tile, for those around it. This changes no more than rounding.
+///
+/// # Errors
+/// As [`measure`]; too large numbers give infinite results.
+pub fn measure_in_tiles(
     balls: Balls<'_>,
     contacts_above: Option<f64>,
     threads: NonZeroUsize,

@@ -18,7 +18,6 @@ pub(super) struct Members {
 }
 
 impl Members {
-    /// All balls as one tile.
     pub(super) fn all(balls: Balls<'_>) -> Members {
         Members { core: (0..balls.centres.len() as u32).collect(), around: Vec::new() }
     }

@@ -133,7 +133,6 @@ impl<'a> Mesh<'a> {
         Some(self.tetrahedra.len() as u32 - 1)
     }
 
-    /// Writes a tetrahedron with its sphere.
     #[inline(always)]
     pub(super) fn write(&mut self, slot: u32, tetrahedron: Tetrahedron, sphere: &Sphere) {
         self.tetrahedra[slot as usize] = tetrahedron;

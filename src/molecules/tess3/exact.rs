@@ -21,11 +21,9 @@ pub(super) type Vector<T> = [T; 3];
 /// A polynomial in the coordinates of `N` points and a radius in the same unit. The radius is given as the
 /// squares of its numerator and its denominator. All terms have the same degree in the unit of length.
 pub(super) trait Polynomial<const N: usize> {
-    /// Its value.
     fn value<T: Number>(points: [Vector<T>; N], radius: &[T; 2]) -> T;
 }
 
-/// Sign of a polynomial.
 pub(super) fn sign<P: Polynomial<N>, const N: usize>(points: [Point3; N], radius: &Radius) -> Sign {
     let value = P::value(points.map(|point| point.map(Approximate::exactly)), &radius.approximate_squares());
     if value.value.abs() > value.error {

@@ -86,7 +86,6 @@ impl CellSink for Shelves {
     }
 }
 
-/// What is on one shelf.
 struct Shelf {
     words: Vec<u32>,
     /// Where the cells begin, in the order of their numbers.

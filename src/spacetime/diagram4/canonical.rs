@@ -23,7 +23,6 @@ pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
     cells
 }
 
-/// The numbers of the cells in canonical order.
 fn order(cells: &Cells4) -> Vec<u32> {
     // Keys hold the kind and the first vertices, which decide most comparisons without access to the cells:
     // three vertices if 21 bits suffice, otherwise two of 31 bits. The comparison of whole cells makes up for

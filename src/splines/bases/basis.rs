@@ -174,7 +174,6 @@ impl Basis {
         }
     }
 
-    /// Adds the values of an element at a point.
     #[inline]
     fn add_values(&self, element: usize, x: Point2, scratch: &mut Scratch) {
         let values = &mut scratch.values;

@@ -184,25 +184,3 @@ fn parse_angle(text: &str) -> Result<f64, String> {
 fn parse_whole<T: FromStr>(text: &str) -> Result<T, String> {
     text.trim().parse().map_err(|_| format!("{text:?} is not an integer, or too large"))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_are_what_the_help_says() {
-        assert_eq!("aligned:-30".parse(), Ok(RuleName::Aligned(-30.0)));
-        assert_eq!("random:5".parse(), Ok(Flips::Random(5, None)));
-        assert_eq!("random:5:18446744073709551615".parse(), Ok(Flips::Random(5, Some(u64::MAX))));
-        assert_eq!("3, 7".parse(), Ok(Places::List(vec![3, 7])));
-        for word in ["", "aligned", "aligned:", "aligned:nan", "lifted", "delaunay:1"] {
-            assert!(word.parse::<RuleName>().is_err(), "{word}");
-        }
-        for word in ["", "random", "random:-1", "random:1:2:3", "random:1:x", "aligned:inf", "5"] {
-            assert!(word.parse::<Flips>().is_err(), "{word}");
-        }
-        for word in ["", "3,", "-1", "corner", "4294967296"] {
-            assert!(word.parse::<Places>().is_err(), "{word}");
-        }
-    }
-}

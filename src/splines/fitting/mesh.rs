@@ -52,7 +52,6 @@ impl Mesh {
         self.vertices(triangle).map(|vertex| self.points[vertex as usize])
     }
 
-    /// The edges of a triangle on the border.
     pub(super) fn border_edges(&self, triangle: u32) -> impl Iterator<Item = [Point2; 2]> {
         let corners = self.corners(triangle);
         self.sides(triangle, false).map(move |ends| ends.map(|end| corners[end]))

@@ -11,7 +11,6 @@ pub(super) fn twice_area(a: Point2, b: Point2, c: Point2) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Area of a polygon.
 pub(super) fn area(polygon: &[Point2]) -> f64 {
     let Some((&first, rest)) = polygon.split_first() else { return 0.0 };
     0.5 * rest.windows(2).map(|edge| twice_area(first, edge[0], edge[1])).sum::<f64>()

@@ -192,7 +192,6 @@ pub(super) struct Rounds<'a, O: ?Sized> {
 }
 
 impl<O: Observations + ?Sized> Rounds<'_, O> {
-    /// Fits with a loss, from the normal equations of all observations.
     pub(super) fn fit(&self, loss: Loss, plain: &NormalEquations) -> Result<RobustFit> {
         let mut start = self.start(plain)?;
         if loss == Loss::Tukey {

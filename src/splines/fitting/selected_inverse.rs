@@ -124,7 +124,6 @@ impl<'a> Blocks<'a> {
         Blocks { symbolic, values }
     }
 
-    /// Number of blocks.
     pub(super) fn len(&self) -> usize {
         match self.symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(raw) => raw.ncols(),
@@ -132,7 +131,6 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The values of all blocks.
     pub(super) fn values(&self) -> &'a [f64] {
         self.values
     }
@@ -147,7 +145,6 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The columns of a block.
     pub(super) fn columns(&self, block: usize) -> Range<usize> {
         match self.symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(_) => block..block + 1,
@@ -164,7 +161,6 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The block of a column.
     pub(super) fn of_column(&self, column: usize) -> usize {
         match self.symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(_) => column,

@@ -104,7 +104,6 @@ pub fn with_tension(
     Ok(tensed(&bending, &membrane(basis)?, tension, normal.area_per_observation(basis)))
 }
 
-/// The equations with an energy of this tension.
 fn equations<'a>(
     basis: &'a Basis,
     normal: &'a NormalEquations,

@@ -16,7 +16,6 @@ const PIVOT_ROUNDING: f64 = 1e-13;
 /// The least-squares linear function.
 #[derive(Debug)]
 pub(super) struct Trend {
-    /// Its coefficients.
     pub(super) coefficients: Vec<f64>,
     /// Whether observations are not all on one line, except for rounding errors. No energy depends on linear
     /// functions, so with an energy, this decides whether all functions are determined.

@@ -229,7 +229,6 @@ fn chosen_over(
     Ok(problem.map_err(|error| error.of_input(points.name()))?.chosen)
 }
 
-/// The options of a fit whose smoothing is chosen.
 fn settled_by(chosen: &SmoothingChoice, options: &Options) -> Options {
     let smoothing = Some(Smoothing::Lambda(chosen.lambda));
     Options { smoothing, tension: Some(chosen.tension), ..options.clone() }

@@ -69,7 +69,6 @@ pub enum Smoothing {
     Folds(usize),
 }
 
-/// The default number of folds.
 const FOLDS: usize = 5;
 
 /// Folds at most: each of them takes the time and memory of a fit.
@@ -91,28 +90,6 @@ impl FromStr for Smoothing {
                 Ok(lambda) if (0.0..f64::INFINITY).contains(&lambda) => Ok(Smoothing::Lambda(lambda)),
                 _ => Err("expected a number that is not negative, reml, gcv, cv or cv:FOLDS".into()),
             },
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn smoothing_is_a_number_or_a_method() {
-        for (text, expected) in [
-            ("0", Smoothing::Lambda(0.0)),
-            ("2.5e-3", Smoothing::Lambda(0.0025)),
-            ("reml", Smoothing::Likelihood),
-            ("gcv", Smoothing::Generalised),
-            ("cv", Smoothing::Folds(FOLDS)),
-            ("cv:10", Smoothing::Folds(10)),
-        ] {
-            assert_eq!(text.parse(), Ok(expected));
-        }
-        for text in ["", "-1", "nan", "inf", "cv:", "cv:1", "gcv:3", "ml"] {
-            assert!(text.parse::<Smoothing>().is_err(), "{text}");
         }
     }
 }

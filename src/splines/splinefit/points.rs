@@ -168,7 +168,6 @@ impl Sample {
     }
 }
 
-/// Points that are held.
 struct Held<'a>(&'a [Observation]);
 
 impl ObservationReader for Held<'_> {

@@ -163,7 +163,6 @@ impl<'a> Bands<'a> {
         Bands { spline, attribute, grid, threads, width, first: 0, values: Vec::new() }
     }
 
-    /// Numbers of a row.
     fn row_len(&self) -> usize {
         self.grid.columns as usize * self.width
     }

@@ -2,6 +2,7 @@
 
 mod alive;
 mod derivatives;
+mod directional_limit;
 mod domain;
 mod raster;
 mod rational;

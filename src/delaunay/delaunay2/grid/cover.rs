@@ -60,13 +60,11 @@ impl Cover {
         self.width..self.points.len() - self.width
     }
 
-    /// The corners of a cell.
     #[inline(always)]
     fn corners(&self, cell: usize) -> [usize; 4] {
         [cell, cell + 1, cell + self.width + 1, cell + self.width]
     }
 
-    /// The neighbours of a node.
     #[inline(always)]
     pub(super) fn neighbours(&self, node: usize) -> [usize; 4] {
         [node + 1, node + self.width, node - 1, node - self.width]

@@ -13,8 +13,6 @@ mod concave;
 mod cone;
 mod polygon;
 mod probe;
-#[cfg(test)]
-mod tests;
 
 use std::num::NonZeroUsize;
 
@@ -64,10 +62,20 @@ pub fn molecular_surface(balls: Balls<'_>, probe: f64, threads: NonZeroUsize) ->
             format!("{probe} is no radius of a probe: expected 0 to {least}, the least of the balls");
         return Err(Error::usage(message));
     }
-    in_tiles(balls, probe, threads, TILE_MAX)
+    molecular_surface_in_tiles(balls, probe, threads, TILE_MAX)
 }
 
-fn in_tiles(balls: Balls<'_>, probe: f64, threads: NonZeroUsize, tile_max: usize) -> Result<Vec<Cell>> {
+/// [`molecular_surface`] with at most `tile_max` balls in a tile, for a `probe` in its domain. This changes no more
+/// than rounding.
+///
+/// # Errors
+/// As [`super::measure_in_tiles`].
+pub fn molecular_surface_in_tiles(
+    balls: Balls<'_>,
+    probe: f64,
+    threads: NonZeroUsize,
+    tile_max: usize,
+) -> Result<Vec<Cell>> {
     let tiles = tiles::cut(balls, tile_max);
     let parts = parallel::map(threads, tiles.iter(), |members| {
         let tile = Tile::new(balls, members)?;

@@ -85,7 +85,6 @@ pub fn surface(balls: Balls<'_>, step: f64, threads: NonZeroUsize) -> Result<Sur
     with_all(balls, |tile| of_tile(tile, balls, step, threads))
 }
 
-/// The surface of the balls of a tile, which are all.
 fn of_tile(tile: &Tile<'_>, balls: Balls<'_>, step: f64, threads: NonZeroUsize) -> Result<Surface> {
     let borders = Borders::new(&Dual::new(tile), step);
     let exposed = borders.exposed();

@@ -47,7 +47,6 @@ impl Groups {
         groups
     }
 
-    /// The group of an atom.
     pub(super) fn of(&self, atom: u32) -> u32 {
         self.of_atoms.get(atom as usize).copied().unwrap_or(atom)
     }

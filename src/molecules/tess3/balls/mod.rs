@@ -113,7 +113,6 @@ impl Molecule<'_> {
         atoms.map(|found| found.map(&mut radius)).collect()
     }
 
-    /// Radii for a report that is of the cells of balls.
     fn radii_of_cells(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
         report.is_of_cells = true;
         report.vertices = report.atoms;

@@ -24,7 +24,6 @@ pub(super) fn contact_columns(options: &BallOptions) -> String {
     format!("model\t{name}1\t{name}2\t{rest}\n")
 }
 
-/// The table of cells.
 pub(super) struct CellTable<'t> {
     pub(super) molecule: &'t Molecule<'t>,
     pub(super) options: &'t BallOptions,
@@ -67,7 +66,6 @@ impl CellTable<'_> {
     }
 }
 
-/// The table of contacts.
 pub(super) struct ContactTable<'t> {
     pub(super) molecule: &'t Molecule<'t>,
     pub(super) options: &'t BallOptions,

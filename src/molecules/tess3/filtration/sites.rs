@@ -25,12 +25,10 @@ pub(super) const NONE: u32 = u32::MAX;
 /// The vertices of a simplex: increasing, then [`NONE`].
 pub(super) type Simplex = [u32; 4];
 
-/// The dimension of a simplex.
 pub(super) fn dimension(simplex: &Simplex) -> usize {
     vertices(simplex).len() - 1
 }
 
-/// The vertices of a simplex.
 pub(super) fn vertices(simplex: &Simplex) -> &[u32] {
     &simplex[..simplex.iter().position(|&vertex| vertex == NONE).unwrap_or(4)]
 }

@@ -17,7 +17,6 @@ pub(super) struct Done {
     by_file: HashMap<String, DoneFile>,
 }
 
-/// A file that is done.
 #[derive(Debug, Default)]
 pub(super) struct DoneFile {
     rows: Vec<Row>,

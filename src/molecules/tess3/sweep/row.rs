@@ -104,7 +104,6 @@ impl Format {
         }
     }
 
-    /// A row as a line.
     pub(super) fn line(self, row: &Row) -> String {
         match self {
             Format::Tsv => row.0.each_ref().map(|field| escaped(field)).join("\t") + "\n",

@@ -357,7 +357,6 @@ impl<T: Integer> Tuple<T> {
         tuple.with_sign(is_negative).reduced()
     }
 
-    /// The value of a point.
     pub(super) fn value(&self, point: &[T; 4]) -> T {
         dot(&self.n, point) + self.m.clone() * lift(point) + self.s.clone()
     }

@@ -102,24 +102,3 @@ fn by_ranks<const N: usize>(numbers: &mut [u32]) {
     }
     numbers.copy_from_slice(&sorted[..numbers.len()]);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use spmesh_base::random::Random;
-
-    #[test]
-    fn lists_of_all_lengths_are_sorted() {
-        let mut random = Random::new(1);
-        for length in 0..40 {
-            for _ in 0..20 {
-                let mut numbers: Vec<u32> =
-                    (0..length).map(|i| i * 50_000_000 + random.below(1 << 20) as u32).collect();
-                let expected = numbers.clone();
-                random.shuffle(&mut numbers);
-                sort_distinct(&mut numbers);
-                assert_eq!(numbers, expected);
-            }
-        }
-    }
-}

@@ -52,7 +52,6 @@ impl<'s, C: Coefficient> Arrays<'s, C> {
         unsafe { (*self.simplices.add(simplex_of(facet))).neighbours[facet_of(facet)] = neighbour }
     }
 
-    /// Sets the vertices and the sphere of a simplex.
     #[inline(always)]
     pub(super) fn set(&mut self, simplex: usize, vertices: [u32; FACETS], sphere: Sphere<C>) {
         debug_assert!(simplex < self.len);

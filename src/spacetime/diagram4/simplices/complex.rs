@@ -124,7 +124,6 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         }
     }
 
-    /// The point of a vertex, as given.
     pub(super) fn point(&self, vertex: u32) -> Point4 {
         self.sites.points[self.order[vertex as usize] as usize]
     }
@@ -326,7 +325,6 @@ impl Simplex {
     }
 }
 
-/// The vertices of a facet.
 #[inline(always)]
 pub(in crate::diagram4) fn without(vertices: [u32; FACETS], side: usize) -> [u32; 4] {
     std::array::from_fn(|i| vertices[i + usize::from(i >= side)])

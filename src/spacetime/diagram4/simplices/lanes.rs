@@ -3,7 +3,6 @@
 use crate::diagram4::determinant::Number;
 use std::ops::{Add, Mul, Sub};
 
-/// Number of lanes.
 pub(super) const LANES: usize = 4;
 
 /// Four numbers. Every vector is made from a token or from other vectors, so that a vector exists only where

@@ -55,7 +55,6 @@ impl Slabs {
         self.numbers_after(slab).is_empty()
     }
 
-    /// Takes a slab.
     pub(super) fn take(&mut self, slab: usize) {
         self.taken += slab;
     }
