@@ -27,16 +27,15 @@ pub mod special;
 mod start_check;
 mod surface;
 mod symbolic;
-mod union_map;
 
 pub use centroids::{CentroidMesh, centroid};
+pub use centroids::{UnionSource, inverse_union_map, union_map};
 pub use gathering::links;
 pub use knots::Knots;
 pub use lift::Lift;
 pub use rule::Rule;
 pub use spmesh_stream::model::configurations::{Claim, Configurations, FARAWAY, Group, Link, Links};
 pub use surface::{Start, delaunay};
-pub use union_map::{UnionSource, inverse_union_map, union_map};
 
 use polygon::Triangulator;
 use special::Diagonals;

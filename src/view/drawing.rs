@@ -5,12 +5,12 @@ use std::io::Read;
 use super::cells::Cells;
 use super::front::Front;
 use super::layer::Layer;
+use super::options;
 use super::options::{Fill, Moments, Options};
 use super::picture::Picture;
 use super::points::{self, DrawnPoint};
 use super::projection::PAD;
 use super::projection::Scene;
-use super::request;
 use super::sheet::Units;
 use super::sheet::{Furniture, Legend, Mark, Shape};
 use super::shown::Shown;
@@ -70,7 +70,7 @@ pub fn draw<R: Read>(
     mut progress: impl FnMut(u64),
 ) -> Result<()> {
     let header = reader.header().clone();
-    request::check(&header, options, &moments).map_err(|error| error.of_input(reader.name()))?;
+    options::check(&header, options, &moments).map_err(|error| error.of_input(reader.name()))?;
     if header.kind.has_knots() {
         let mut set = ConfigurationSet::read(reader)?;
         let knots = Knots::new(std::mem::take(&mut set.points)).map_err(|e| e.of_input(reader.name()))?;

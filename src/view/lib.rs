@@ -1,6 +1,6 @@
 //! `spview`: pictures of streams.
 //!
-//! [`draw()`] goes from events to pictures. `request` checks that a stream can be drawn as the options ask.
+//! [`draw()`] goes from events to pictures. `options` are checked to suit the stream.
 //! `projection` maps the world to the `sheet` of paper, with its title, legend and scale. `style` says what
 //! triangles and points look like, with the colours of `colour_map`; `shown` finds the range that they span.
 //!
@@ -39,7 +39,6 @@ mod picture;
 mod points;
 mod projection;
 mod render;
-mod request;
 mod sheet;
 mod shown;
 mod solid;

@@ -8,7 +8,6 @@
 
 mod arrays;
 mod circles;
-mod disk;
 mod facets;
 mod knots;
 mod planar;

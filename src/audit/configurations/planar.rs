@@ -11,8 +11,8 @@
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
+use super::circles::Disk;
 use super::circles::{moved, turn};
-use super::disk::Disk;
 use super::{Configurations, Knots};
 use crate::exact::plane::Xy;
 use num_bigint::BigInt;

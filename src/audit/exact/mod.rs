@@ -10,7 +10,6 @@ pub(super) mod dyadic;
 pub(super) mod plane;
 pub(super) mod power;
 pub(super) mod space;
-mod wide;
 
 use std::cmp::Ordering;
 

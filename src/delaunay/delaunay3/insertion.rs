@@ -4,13 +4,13 @@
 use super::cavity::{Cavity, Face, Finding};
 use super::complex::{Complex, VERTEX, tetrahedron_of};
 use super::exact::Exact;
+use super::exact::{EXACT, is_inside};
 use super::insphere3::Frame;
 use super::lanes::Lanes;
 use super::locate::{Site, is_in_conflict, walk, walk_exactly};
 use super::search::{Stop, search};
 use super::star::Star;
 use super::stats::{PhaseTimer, Stats};
-use super::tie::{EXACT, is_inside};
 use super::translated::{InSphere, TranslatedVertex};
 use super::weights::Weights;
 

@@ -16,8 +16,8 @@ use super::complex::{
 use super::insphere3::{Frame, Signs};
 use super::lanes::Lanes;
 use super::tetrahedralization::Vertex;
-use super::trusted::Trusted;
 use super::weights::Weights;
+use super::words::Trusted;
 use super::words::Words;
 use std::ops::Range;
 

@@ -2,7 +2,7 @@
 
 use super::cavity::Cavity;
 use super::complex::{Complex, Facet, tetrahedron_of};
-use super::trusted::Trusted;
+use super::words::Trusted;
 
 /// Up to this number of vertices, edges are found in a table that stays in the first-level cache.
 const STRIDE: usize = 64;

@@ -4,9 +4,11 @@
 //! whole array would claim more than that, so the words are behind a pointer. Indices come from the kernel's
 //! own arrays, so only debug builds, which tests are, check them: checks of bounds took 8 % of all time.
 
+use std::marker::PhantomData;
+use std::ops::{Deref, DerefMut, Index, IndexMut};
+
 use super::tetrahedralization::{Tetrahedron, WORDS};
 use crate::prefetch::prefetch_at;
-use std::marker::PhantomData;
 
 /// The words of an array of tetrahedra and of the room behind them.
 #[derive(Debug)]
@@ -74,5 +76,38 @@ impl<'s> Words<'s> {
     #[inline(always)]
     pub(super) fn prefetch(&self, index: usize) {
         prefetch_at(self.first.wrapping_add(index));
+    }
+}
+
+/// A reference to an array that is used at indices in bounds only. Debug builds, as tests are, check that.
+#[derive(Debug)]
+pub(super) struct Trusted<A>(A);
+
+impl<A> Trusted<A> {
+    /// # Safety
+    /// As long as this exists, it is used at indices in bounds only.
+    #[inline(always)]
+    pub(super) unsafe fn new(array: A) -> Trusted<A> {
+        Trusted(array)
+    }
+}
+
+impl<T, A: Deref<Target = [T]>> Index<usize> for Trusted<A> {
+    type Output = T;
+
+    #[inline(always)]
+    fn index(&self, index: usize) -> &T {
+        debug_assert!(index < self.0.len());
+        // SAFETY: the promise made to `new`.
+        unsafe { self.0.get_unchecked(index) }
+    }
+}
+
+impl<T, A: DerefMut<Target = [T]>> IndexMut<usize> for Trusted<A> {
+    #[inline(always)]
+    fn index_mut(&mut self, index: usize) -> &mut T {
+        debug_assert!(index < self.0.len());
+        // SAFETY: the promise made to `new`.
+        unsafe { self.0.get_unchecked_mut(index) }
     }
 }

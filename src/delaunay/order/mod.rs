@@ -4,7 +4,6 @@
 //! inserts them in a [`Sequence`] of their places in that order.
 
 mod cells;
-mod counting;
 mod curve;
 mod hilbert;
 mod levels;
@@ -12,9 +11,9 @@ mod radix;
 mod rounds;
 mod sequence;
 
-pub use counting::sizes_to_starts;
 pub use curve::Curve;
 pub use levels::{BIT_LEVEL_MAX, BitLevels, Suffixes};
+pub use radix::sizes_to_starts;
 pub use rounds::Rounds;
 pub use sequence::{Insertions, Sequence};
 

@@ -1,6 +1,7 @@
 //! Radix sort of keys with an index, packed in one word.
 
-use super::counting::sizes_to_starts;
+use std::ops::AddAssign;
+
 use bytemuck::{Pod, Zeroable};
 
 const DIGIT_BITS_MAX: u32 = 11;
@@ -56,6 +57,15 @@ pub(super) fn sort<'m>(items: &'m mut [Keyed], scratch: &'m mut [Keyed], key_bit
         std::mem::swap(&mut from, &mut to);
     }
     from
+}
+
+/// Replaces the size of each group by the place where the group starts, if the groups follow each other.
+#[inline]
+pub fn sizes_to_starts<T: Copy + Default + AddAssign>(groups: &mut [T]) {
+    let mut next = T::default();
+    for group in groups {
+        next += std::mem::replace(group, next);
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The sequence in which points along a curve are inserted.
 
-use super::counting::sizes_to_starts;
 use super::levels::{BIT_LEVEL_MAX, BitLevels, Suffixes};
+use super::radix::sizes_to_starts;
 use super::rounds::Rounds;
 use crate::random::Random;
 use std::ops::Range;

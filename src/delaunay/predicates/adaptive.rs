@@ -121,13 +121,7 @@ impl Predicates2 for BoundedFloatPredicates {
         }
     }
 
-    fn counts(&self) -> &PredicateCounts {
-        &self.counts
-    }
-
-    fn counts_mut(&mut self) -> &mut PredicateCounts {
-        &mut self.counts
-    }
+    counting!();
 }
 
 /// Predicates that are right for all finite coordinates, from 5e-324 to 1.7e308, with no look at a chunk
@@ -180,11 +174,5 @@ impl Predicates2 for FiniteFloatPredicates {
         }
     }
 
-    fn counts(&self) -> &PredicateCounts {
-        &self.counts
-    }
-
-    fn counts_mut(&mut self) -> &mut PredicateCounts {
-        &mut self.counts
-    }
+    counting!();
 }

@@ -44,13 +44,7 @@ impl Predicates2 for SmallIntegerPredicates {
         Sign::of(Estimate::incircle(difference(a, d), difference(b, d), difference(c, d)).value)
     }
 
-    fn counts(&self) -> &PredicateCounts {
-        &self.counts
-    }
-
-    fn counts_mut(&mut self) -> &mut PredicateCounts {
-        &mut self.counts
-    }
+    counting!();
 }
 
 /// Integers of a fixed width, exact for differences of coordinates up to a limit.
@@ -167,11 +161,5 @@ impl<W: Width> Predicates2 for IntegerPredicates<W> {
         self.decide(Estimate::incircle(ad, bd, cd), || W::incircle(ad, bd, cd))
     }
 
-    fn counts(&self) -> &PredicateCounts {
-        &self.counts
-    }
-
-    fn counts_mut(&mut self) -> &mut PredicateCounts {
-        &mut self.counts
-    }
+    counting!();
 }

@@ -14,6 +14,19 @@
 //! assert_eq!(sign, Sign::Positive);
 //! ```
 
+/// What all predicates with a field `counts` say of it.
+macro_rules! counting {
+    () => {
+        fn counts(&self) -> &PredicateCounts {
+            &self.counts
+        }
+
+        fn counts_mut(&mut self) -> &mut PredicateCounts {
+            &mut self.counts
+        }
+    };
+}
+
 mod adaptive;
 mod area;
 mod big;

@@ -11,8 +11,7 @@
 //! | `linear_simplex` | closed forms of simplex splines of degrees 0 and 1, and their linear factors |
 //! | `elements` | turns configurations into simplex splines with shares of functions |
 //! | `build` | builds a basis from elements |
-//! | `domain` | the region where functions sum to one |
-//! | `narrow` | finds functions whose knots are on one line except for rounding |
+//! | `domain` | the region where functions sum to one, and functions with knots on one line |
 //! | `tree` | finds the elements near a point |
 //! | `raster` | evaluates splines row by row |
 
@@ -22,7 +21,6 @@ mod directional_limit;
 mod domain;
 mod elements;
 mod linear_simplex;
-mod narrow;
 mod raster;
 mod simplex;
 mod tree;

@@ -25,18 +25,14 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::random::Random;
 
 /// Chooses by generalised cross-validation: the least (S / n) / (1 - t / n)^2, for n observations, the
-/// weighted sum S of squared residuals, and the trace t of the smoothing matrix, which is exact.
+/// weighted sum S of squared residuals, and the trace t of the smoothing matrix, which is exact. `near` is a
+/// `lambda` that is nearly the best one, if one is known.
 ///
 /// Cost: about six trials of a factorisation and a selected inverse each. Source: Craven and Wahba 1979.
 ///
 /// # Errors
 /// Those of [`Equations::solve`], if it fails for every `lambda`.
-pub fn generalised_cross_validation(equations: &Equations) -> Result<Choice> {
-    cross_validation_near(equations, None)
-}
-
-/// [`generalised_cross_validation`], for a `lambda` that is nearly the best one.
-pub(super) fn cross_validation_near(equations: &Equations, near: Option<f64>) -> Result<Choice> {
+pub fn generalised_cross_validation(equations: &Equations, near: Option<f64>) -> Result<Choice> {
     let normal = equations.normal();
     let count = normal.count as f64;
     search(Limits::of(equations).near(near), |lambda| {
@@ -163,16 +159,11 @@ const LINEAR: f64 = 3.0;
 /// the score is D / (n - 3) times |F lambda^-(p - 3)|^(1 / (n - 3)): except for a constant factor, minus the
 /// logarithm of the likelihood is half of (n - 3) times the logarithm of the score.
 ///
-/// Cost: about six factorisations.
+/// `near` is as in [`generalised_cross_validation`]. Cost: about six factorisations.
 ///
 /// # Errors
 /// Those of [`Equations::solve`], if it fails for every `lambda`.
-pub fn restricted_likelihood(equations: &Equations) -> Result<Choice> {
-    likelihood_near(equations, None)
-}
-
-/// [`restricted_likelihood`], for a `lambda` that is nearly the best one.
-pub(super) fn likelihood_near(equations: &Equations, near: Option<f64>) -> Result<Choice> {
+pub fn restricted_likelihood(equations: &Equations, near: Option<f64>) -> Result<Choice> {
     Likelihood::default().of_one(equations, Limits::of(equations).near(near))
 }
 

@@ -13,8 +13,7 @@
 //! | `least_energy` | functions that observations leave undetermined |
 //! | `selected_inverse` | entries of inverses, for traces |
 //! | `trend` | the linear part of a fit, which is solved on its own |
-//! | `energy`, `cells`, `overlaps`, `polygon` | the thin-plate energy for smoothing |
-//! | `control_energy` | the energy of control meshes |
+//! | `energy`, `cells`, `overlaps`, `polygon` | the thin-plate energy for smoothing, and that of control meshes |
 //! | `membrane` | the membrane energy, and energies less those of planes |
 //! | `choice`, `cross_validation`, `tension` | the choice of the smoothing parameters |
 //! | `residuals`, `local_scale`, `robust` | residuals, their scales, and robust weights |
@@ -27,7 +26,6 @@ mod blocks;
 mod cells;
 mod choice;
 mod cholesky;
-mod control_energy;
 mod cross_validation;
 mod energy;
 mod interpolation;
@@ -51,10 +49,10 @@ mod triangle_residuals;
 
 pub use blocks::{Observation, ObservationReader, Observations};
 pub use choice::{Choice, FailedTrial, Method, Trial};
-pub use control_energy::{bending, control_bending};
 pub use cross_validation::restricted_likelihood;
 pub use cross_validation::{Folds, degrees_of_freedom, generalised_cross_validation};
 pub use energy::thin_plate;
+pub use energy::{bending, control_bending};
 pub use interpolation::{Interpolation, interpolate};
 pub use knot_placement::{KNOTS_MIN, bounds, grid_knots};
 pub use knot_placement::{Spacing, spacing};
@@ -65,9 +63,9 @@ pub use normal_equations::NormalEquations;
 pub use refine::{Goal, Round};
 pub use refine::{Refined, refine};
 pub use residuals::QuantileSketch;
-pub use residuals::{Residual, Summary, for_each_residual, summarise};
-pub use robust::{Loss, RobustFit, RobustStart, robust, robust_from, robust_on};
-pub use solve::{Equations, Solution, Undetermined, least_squares};
+pub use residuals::{Residual, for_each_residual};
+pub use robust::{Loss, RobustFit, RobustStart, robust, robust_on};
+pub use solve::{Equations, Solution, Undetermined};
 pub use symmetric::Symmetric;
 pub use tension::{TENSIONS, Tense, choose_tension, with_tension};
 pub use tension::{choose, choose_robustly};

@@ -9,7 +9,7 @@
 use std::num::NonZeroUsize;
 
 use super::blocks::Observations;
-use super::control_energy::bending;
+use super::energy::bending;
 use super::knot_placement::{KNOTS_MIN, bounds, break_border_chords, first_grid};
 use super::mesh::SplineSpace;
 use super::normal_equations::NormalEquations;

@@ -23,21 +23,6 @@ pub struct Residual {
     pub weight: f64,
 }
 
-/// Summary of the residuals of all observations in the domain.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Summary {
-    /// Number of observations in the domain.
-    pub count: u64,
-    /// Number of observations outside of the domain.
-    pub outside: u64,
-    /// The residual of greatest magnitude; the first one if there are several.
-    pub worst: Option<Residual>,
-    /// Root of the mean square, not weighted.
-    pub root_mean_square: f64,
-    /// Mean.
-    pub mean: f64,
-}
-
 /// The value of a spline, given the functions alive.
 #[inline]
 pub(super) fn value(coefficients: &[f64], alive: &[(u32, f64)]) -> f64 {
@@ -78,31 +63,6 @@ pub fn for_each_residual<O: Observations + ?Sized>(
         Ok(())
     })?;
     Ok(outside)
-}
-
-/// Summarises residuals in one pass.
-///
-/// # Errors
-/// Those of [`for_each_residual`].
-pub fn summarise<O: Observations + ?Sized>(
-    basis: &Basis,
-    coefficients: &[f64],
-    observations: &O,
-    threads: NonZeroUsize,
-) -> Result<Summary> {
-    let (mut summary, mut sum, mut square) = (Summary::default(), 0.0, 0.0);
-    summary.outside = for_each_residual(basis, coefficients, observations, threads, |found| {
-        summary.count += 1;
-        sum += found.residual;
-        square += found.residual * found.residual;
-        if summary.worst.is_none_or(|worst| found.residual.abs() > worst.residual.abs()) {
-            summary.worst = Some(found);
-        }
-    })?;
-    let count = summary.count.max(1) as f64;
-    summary.mean = sum / count;
-    summary.root_mean_square = (square / count).sqrt();
-    Ok(summary)
 }
 
 pub(super) fn check_count(basis: &Basis, coefficients: &[f64]) -> Result<()> {

@@ -87,30 +87,14 @@ pub struct RobustStart {
     pub(super) elimination: Arc<Elimination>,
 }
 
-/// Fits with a loss; `energy` is multiplied by `lambda`.
+/// Fits with a loss, from the normal equations of all observations; `energy` is multiplied by `lambda`.
 ///
 /// Cost: a pass and a factorisation per round, about 10 rounds per loss. Source: Holland and Welsch 1977.
 ///
 /// # Errors
-/// Those of [`NormalEquations::of`] and [`Equations::solve`]. Without smoothing, functions whose observations
-/// are all rejected are not determined.
+/// Those of [`Equations::solve`]. Without smoothing, functions whose observations are all rejected are not
+/// determined.
 pub fn robust<O: Observations + ?Sized>(
-    basis: &Basis,
-    observations: &O,
-    loss: Loss,
-    energy: Option<&Symmetric>,
-    lambda: f64,
-    threads: NonZeroUsize,
-) -> Result<RobustFit> {
-    let plain = NormalEquations::of(basis, observations, threads)?;
-    robust_from(&plain, basis, observations, loss, energy, lambda, threads)
-}
-
-/// [`robust()`] from known normal equations of all observations, which saves a pass.
-///
-/// # Errors
-/// Those of [`robust()`].
-pub fn robust_from<O: Observations + ?Sized>(
     plain: &NormalEquations,
     basis: &Basis,
     observations: &O,

@@ -1,8 +1,6 @@
 //! Coefficients from normal equations, with or without smoothing.
 
-use super::blocks::Observations;
 use super::cholesky::{Elimination, Factor};
-use super::control_energy::bending;
 use super::energy::check_domain;
 use super::least_energy;
 use super::membrane::{Correction, LinearPart, corners};
@@ -12,7 +10,6 @@ use super::trend::{Trend, trend};
 use crate::bases::Basis;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point2;
-use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 /// Coefficients that solve equations.
@@ -304,19 +301,4 @@ impl<'a> Equations<'a> {
     fn is_empty_at(&self, function: usize) -> bool {
         self.normal.matrix.at(function, function) == 0.0
     }
-}
-
-/// Coefficients of the least-squares spline, smoothed by `lambda`, in one pass.
-///
-/// # Errors
-/// Those of [`NormalEquations::of`], [`bending`] and [`Equations::solve`].
-pub fn least_squares<O: Observations + ?Sized>(
-    basis: &Basis,
-    observations: &O,
-    lambda: f64,
-    threads: NonZeroUsize,
-) -> Result<Vec<f64>> {
-    let normal = NormalEquations::of(basis, observations, threads)?;
-    let energy = if lambda > 0.0 { Some(bending(basis)?) } else { None };
-    Equations::new(basis, &normal, energy.as_ref())?.solve(lambda)
 }

@@ -16,7 +16,9 @@ use std::sync::Arc;
 use super::blocks::Observations;
 use super::choice::{Choice, Limits, Method};
 use super::cholesky::Elimination;
-use super::cross_validation::{Folds, Likelihood, cross_validation_near, fold_of, likelihood_near};
+use super::cross_validation::{
+    Folds, Likelihood, fold_of, generalised_cross_validation, restricted_likelihood,
+};
 use super::membrane::membrane;
 use super::normal_equations::{NormalEquations, Parts};
 use super::robust::{LEFT_OUT, Loss, RobustStart, Rounds};
@@ -48,7 +50,7 @@ pub struct Tense {
 ///
 /// # Errors
 /// No tension, or one that is negative or not finite; those of
-/// [`restricted_likelihood`](super::restricted_likelihood) and [`membrane`].
+/// [`restricted_likelihood`] and [`membrane`].
 pub fn choose_tension(
     basis: &Basis,
     normal: &NormalEquations,
@@ -219,7 +221,7 @@ fn of_parts(
 
 fn of_equations(equations: &Equations, method: Method, near: Option<f64>) -> Result<Choice> {
     match method {
-        Method::Generalised => cross_validation_near(equations, near),
-        _ => likelihood_near(equations, near),
+        Method::Generalised => generalised_cross_validation(equations, near),
+        _ => restricted_likelihood(equations, near),
     }
 }

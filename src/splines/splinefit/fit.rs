@@ -272,7 +272,7 @@ fn approximate(
     let (basis, energy, threads) = (&layout.basis, energy.as_ref(), options.threads);
     let robust = match start {
         Some(start) => fitting::robust_on(start, basis, all, loss, energy, lambda, threads)?,
-        None => fitting::robust_from(&normal, basis, all, loss, energy, lambda, threads)?,
+        None => fitting::robust(&normal, basis, all, loss, energy, lambda, threads)?,
     };
     let chosen = SmoothingChoice { is_solved: robust.is_solved, ..chosen };
     Ok((robust.coefficients.clone(), chosen, Some(robust)))

@@ -1,10 +1,9 @@
 //! Choosing the amount of smoothing.
 
 use super::bases::{ONE, dense, grid, pulled_apart, scattered, solve_dense, value};
+use super::fits::least_squares;
 use spmesh_reference::sets::Random;
-use spmesh_splines::fitting::{
-    self, Equations, Folds, NormalEquations, Observation, least_squares, thin_plate,
-};
+use spmesh_splines::fitting::{self, Equations, Folds, NormalEquations, Observation, thin_plate};
 
 /// A function with normally distributed noise of the given size.
 fn noisy(count: usize, noise: f64) -> Vec<Observation> {
@@ -63,7 +62,7 @@ fn both_ways_choose_nearly_the_best() {
     let at = |lambda: f64| distance(&basis, &equations.solve(lambda).expect("coefficients"));
     let best = (-40..20).map(|tenth| at(equations.unit() * 10f64.powf(f64::from(tenth) / 5.0)));
     let best = best.fold(f64::INFINITY, f64::min);
-    let generalised = fitting::generalised_cross_validation(&equations).expect("a choice");
+    let generalised = fitting::generalised_cross_validation(&equations, None).expect("a choice");
     let folds = Folds::of(&basis, &all, 5, 7, ONE).expect("folds").choose(&basis, &energy).expect("a choice");
     for choice in [&generalised, &folds] {
         let found = at(choice.best.lambda);

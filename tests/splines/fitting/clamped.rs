@@ -1,10 +1,11 @@
 //! Quadratic splines over grids with clamped corners: functions of knots on a straight border.
 
 use super::bases::{ONE, dense, deviation, scattered, value};
+use super::fits::least_squares;
 use spmesh_configurations::special::functions;
 use spmesh_configurations::{self as configurations, Knots, Rule};
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{Equations, NormalEquations, Observation, bending, interpolate, least_squares};
+use spmesh_splines::fitting::{Equations, NormalEquations, Observation, bending, interpolate};
 
 /// Functions over a square grid of knots in the unit square, those of knots at one place collected.
 fn clamped(side: usize) -> Basis {

@@ -1,8 +1,9 @@
 //! Observations from files.
 
 use super::bases::{ONE, deviation, pulled_apart};
+use super::fits::least_squares;
 use spmesh_formats::source::{Input, SourceOptions};
-use spmesh_splines::fitting::{NormalEquations, least_squares};
+use spmesh_splines::fitting::NormalEquations;
 use spmesh_splines::splinefit::Elevations;
 use std::fmt::Write;
 

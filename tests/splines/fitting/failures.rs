@@ -1,13 +1,14 @@
 //! Fits that are impossible: the error says why and where.
 
 use super::bases::{ONE, cubic, grid, pulled_apart, scattered};
+use super::fits::{least_squares, robust};
 use super::random_knots::{Border, over};
 use spmesh_configurations::special::{Features, features};
 use spmesh_configurations::{self as configurations, Knots};
 use spmesh_splines::bases::Basis;
 use spmesh_splines::fitting::{
     Equations, Interpolation, Loss, Mesh, NormalEquations, Observation, bending, for_each_residual,
-    generalised_cross_validation, interpolate, least_squares, restricted_likelihood, robust, thin_plate,
+    generalised_cross_validation, interpolate, restricted_likelihood, thin_plate,
 };
 
 fn message<T>(result: spmesh_base::error::Result<T>) -> String {
@@ -73,8 +74,8 @@ fn observations_on_a_line_are_refused_whatever_lambda() {
                 let said = message(equations.solve(lambda));
                 assert!(said.contains("50 observations in the domain are on one line"), "{lambda}: {said}");
             }
-            assert!(message(restricted_likelihood(&equations)).contains("on one line"));
-            assert!(message(generalised_cross_validation(&equations)).contains("on one line"));
+            assert!(message(restricted_likelihood(&equations, None)).contains("on one line"));
+            assert!(message(generalised_cross_validation(&equations, None)).contains("on one line"));
         }
         // A thousandth of the domain aside is enough.
         let mut near: Vec<_> = (0..50).map(|i| Observation::new([at(i), 0.5], at(i))).collect();

@@ -111,7 +111,7 @@ fn scores_are_likelihoods_of_observations() {
     let (normal, energy) =
         (NormalEquations::of(&basis, &all, ONE).expect("equations"), thin_plate(&basis).expect("an energy"));
     let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
-    let choice = fitting::restricted_likelihood(&equations).expect("a choice");
+    let choice = fitting::restricted_likelihood(&equations, None).expect("a choice");
     let known = |lambda| known_score(&basis, &all, &energy, lambda);
     let (first, at_first) = (choice.trials[0], known(choice.trials[0].lambda));
     assert!(choice.trials.len() > 3, "{choice:?}");
@@ -160,7 +160,7 @@ fn scores_in_tension_are_likelihoods_of_observations() {
     let bending = fitting::bending(&basis).expect("an energy");
     let energy = fitting::with_tension(&basis, &normal, bending, 2.0).expect("an energy");
     let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations").in_tension();
-    let choice = fitting::restricted_likelihood(&equations).expect("a choice");
+    let choice = fitting::restricted_likelihood(&equations, None).expect("a choice");
     let known = |lambda| known_score(&basis, &all, &energy, lambda);
     let (first, at_first) = (choice.trials[0], known(choice.trials[0].lambda));
     for trial in &choice.trials {

@@ -7,6 +7,7 @@ mod elevations;
 mod energies;
 mod failures;
 mod figure;
+mod fits;
 mod interpolation;
 mod likelihood;
 mod membranes;

@@ -1,10 +1,9 @@
 //! Normal equations against dense ones.
 
 use super::bases::{ONE, dense, deviation, grid, pulled_apart, scattered, solve_dense};
+use super::fits::{least_squares, summarise};
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{
-    Equations, NormalEquations, Observation, for_each_residual, least_squares, summarise,
-};
+use spmesh_splines::fitting::{Equations, NormalEquations, Observation, for_each_residual};
 use std::num::NonZeroUsize;
 
 fn weighted(count: usize) -> Vec<Observation> {

@@ -71,7 +71,7 @@ fn failure(degree: usize, knots: usize, border: Border, seed: u64) -> Option<Str
             return Some(format!("set {seed}, lambda {lambda}: {error}"));
         }
     }
-    match restricted_likelihood(&equations) {
+    match restricted_likelihood(&equations, None) {
         Ok(choice) if choice.failed.is_empty() => None,
         Ok(choice) => Some(format!("set {seed}: {:?}", choice.failed)),
         Err(error) => Some(format!("set {seed}: {error}")),

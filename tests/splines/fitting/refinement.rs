@@ -1,8 +1,9 @@
 //! Adding knots where they are needed.
 
 use super::bases::{ONE, pulled_apart, scattered};
+use super::fits::{least_squares, summarise};
 use spmesh_reference::sets::Random;
-use spmesh_splines::fitting::{Goal, Observation, least_squares, refine, summarise};
+use spmesh_splines::fitting::{Goal, Observation, refine};
 use std::num::NonZeroUsize;
 
 /// A ridge along a diagonal line.

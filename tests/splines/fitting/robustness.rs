@@ -1,11 +1,12 @@
 //! Fits that resist gross errors.
 
 use super::bases::{ONE, deviation, grid, pulled_apart, scattered};
+use super::fits::{least_squares, robust};
 use spmesh_base::error::Result;
 use spmesh_reference::sets::Random;
 use spmesh_splines::fitting::{
     Loss, Method, NormalEquations, Observation, ObservationReader, Observations, bending, choose_robustly,
-    least_squares, robust, robust_on,
+    robust_on,
 };
 use std::cell::Cell;
 use std::num::NonZeroUsize;

@@ -1,7 +1,8 @@
 //! Smoothing: between a plane and plain least squares.
 
 use super::bases::{ONE, deviation, grid, pulled_apart, scattered, solve_dense};
-use spmesh_splines::fitting::{Equations, NormalEquations, Observation, least_squares, thin_plate};
+use super::fits::least_squares;
+use spmesh_splines::fitting::{Equations, NormalEquations, Observation, thin_plate};
 
 fn f([x, y]: [f64; 2]) -> f64 {
     (7.0 * x).sin() * (5.0 * y).cos() + 2.0 * x

@@ -1,8 +1,9 @@
 //! Functions that observations leave undetermined take the least energy; all others are least squares.
 
 use super::bases::{ONE, dense, deviation, grid, pulled_apart, scattered, solve_dense};
+use super::fits::robust;
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{Equations, Loss, NormalEquations, Observation, bending, robust};
+use spmesh_splines::fitting::{Equations, Loss, NormalEquations, Observation, bending};
 
 fn f([x, y]: [f64; 2]) -> f64 {
     (7.0 * x).sin() * (5.0 * y).cos() + 2.0 * x

@@ -75,13 +75,7 @@ impl Predicates3 for BoundedFloatPredicates3 {
         }
     }
 
-    fn counts(&self) -> &PredicateCounts {
-        &self.counts
-    }
-
-    fn counts_mut(&mut self) -> &mut PredicateCounts {
-        &mut self.counts
-    }
+    counting!();
 }
 
 /// Predicates that are right for all finite coordinates, from 5e-324 to 1.7e308, with no look at a chunk
@@ -126,11 +120,5 @@ impl Predicates3 for FiniteFloatPredicates3 {
         }
     }
 
-    fn counts(&self) -> &PredicateCounts {
-        &self.counts
-    }
-
-    fn counts_mut(&mut self) -> &mut PredicateCounts {
-        &mut self.counts
-    }
+    counting!();
 }

@@ -47,13 +47,7 @@ impl Predicates3 for SmallIntegerPredicates3 {
         Sign::of(Estimate::insphere(differences_from(e, [a, b, c, d])).value)
     }
 
-    fn counts(&self) -> &PredicateCounts {
-        &self.counts
-    }
-
-    fn counts_mut(&mut self) -> &mut PredicateCounts {
-        &mut self.counts
-    }
+    counting!();
 }
 
 /// Integers of a fixed width, exact in space for differences of coordinates up to a limit.
@@ -143,11 +137,5 @@ impl<W: Width3> Predicates3 for IntegerPredicates3<W> {
         self.decide(Estimate::insphere(differences), || W::insphere(differences))
     }
 
-    fn counts(&self) -> &PredicateCounts {
-        &self.counts
-    }
-
-    fn counts_mut(&mut self) -> &mut PredicateCounts {
-        &mut self.counts
-    }
+    counting!();
 }

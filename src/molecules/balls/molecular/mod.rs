@@ -11,7 +11,6 @@
 
 mod concave;
 mod cone;
-mod polygon;
 mod probe;
 
 use std::num::NonZeroUsize;

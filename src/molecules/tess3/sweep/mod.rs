@@ -3,7 +3,6 @@
 
 mod done;
 mod file;
-mod input;
 mod row;
 mod summary;
 

@@ -7,8 +7,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::done::Done;
+use super::done::Input;
 use super::done::{Lock, lock};
-use super::input::Input;
 use super::row::{Format, Row, columns};
 use crate::tess3::Report;
 use spmesh_base::error::{Error, Result};

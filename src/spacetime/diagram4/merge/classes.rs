@@ -1,17 +1,16 @@
-//! Finds the simplices of each cell.
+//! Finds the simplices of each cell, with numbers that several parts of the search give out at once.
 
-use super::AHEAD;
-use super::Borders;
-use super::numbers::{Joined, Numbers, Section};
-use super::search::Marks;
-use super::search::{BLOCK, Search};
+use std::convert::Infallible;
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use super::search::{BLOCK, Marks, Search};
+use super::{AHEAD, Borders};
 use crate::diagram4::simplices::{FACETS, Facet, Simplex, simplex_of};
 use spmesh_base::prefetch::prefetch;
 use spmesh_delaunay::parallel::{for_each, map};
 use spmesh_stream::model::cells4::Lists4;
-use std::convert::Infallible;
-use std::num::NonZeroUsize;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The simplices of each cell: a class.
 pub(super) struct Classes<'a> {
@@ -142,5 +141,63 @@ impl<'a> Classes<'a> {
             lists.end();
         }
         lists
+    }
+}
+
+/// The numbers that one part gives out: every `parts`-th.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Numbers {
+    pub(super) part: usize,
+    pub(super) parts: usize,
+}
+
+impl Numbers {
+    /// The number of a class of the part.
+    #[inline(always)]
+    pub(super) fn of(self, class: usize) -> u32 {
+        (self.part + self.parts * class) as u32
+    }
+}
+
+/// The classes of one part among those of all parts, one part after the other.
+pub(super) struct Section {
+    pub(super) start: usize,
+    /// Number of classes, and of the finite ones, which come first.
+    pub(super) count: usize,
+    pub(super) finite: usize,
+    pub(super) numbers: Numbers,
+}
+
+/// The classes of all parts.
+pub(in crate::diagram4) struct Joined(pub(super) Vec<Section>);
+
+impl Joined {
+    /// The places of the finite classes of each part.
+    pub(in crate::diagram4) fn finite(&self) -> Vec<Range<usize>> {
+        self.0.iter().map(|part| part.start..part.start + part.finite).collect()
+    }
+
+    /// The places of the infinite classes of each part.
+    pub(super) fn infinite(&self) -> Vec<Range<usize>> {
+        self.0.iter().map(|part| part.start + part.finite..part.start + part.count).collect()
+    }
+
+    /// The number of the class at a place.
+    #[inline(always)]
+    pub(super) fn number(&self, place: usize) -> u32 {
+        let mut parts = self.0.iter().rev();
+        parts.find(|part| part.start <= place).map_or(0, |part| part.numbers.of(place - part.start))
+    }
+
+    /// The place of the class of a number.
+    #[inline(always)]
+    pub(in crate::diagram4) fn place(&self, number: u32) -> u32 {
+        let parts = self.0.len();
+        (self.0[number as usize % parts].start + number as usize / parts) as u32
+    }
+
+    /// A number above those of all classes.
+    pub(super) fn numbers_end(&self) -> usize {
+        self.0.iter().map(|part| part.numbers.of(part.count) as usize).max().unwrap_or(0)
     }
 }

@@ -1,7 +1,6 @@
 //! Joins cospherical neighbouring simplices to cells, in an order that depends on the diagram only.
 
 mod classes;
-mod numbers;
 mod order;
 mod search;
 
@@ -11,7 +10,7 @@ use super::Stats;
 use super::simplices::{Coefficient, Complex};
 use crate::diagram4::simplices::FACETS;
 use classes::Classes;
-pub(super) use numbers::Joined;
+pub(super) use classes::Joined;
 pub use order::sort_distinct;
 use spmesh_base::prefetch::prefetch;
 use spmesh_delaunay::parallel::for_each;

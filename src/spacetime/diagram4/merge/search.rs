@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::AHEAD;
 use super::Borders;
+use super::classes::Numbers;
 use super::classes::Part;
-use super::numbers::Numbers;
 use super::order::sort_distinct;
 use crate::diagram4::simplices::{FACETS, Simplex, facet, facet_of, simplex_of, without};
 use spmesh_base::prefetch::prefetch;

@@ -1,14 +1,14 @@
 //! Inserts points: a star around the new point replaces the simplices in conflict.
 
-use super::arrays::Arrays;
 use super::cavity::Cavity;
 use super::coefficient::Coefficient;
+use super::complex::Arrays;
 use super::complex::{Complex, FACETS, Facet, INFINITE, Simplex, facet, simplex_of, spheres_of};
 #[cfg(target_arch = "x86_64")]
 use super::lanes::Avx2;
 use super::lanes::{LANES, Lanes, Portable};
-use super::links::Links;
-use super::star;
+use super::links::{self, Links};
+
 use crate::diagram4::exact::orientation;
 use spmesh_base::error::Result;
 #[cfg(target_arch = "x86_64")]
@@ -113,7 +113,7 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         // SAFETY: the cavity and what is beyond its border are in the arrays, and the star is in reserved
         // places, which are read when they have been written.
         let mut arrays = unsafe { Arrays::of(&mut complex.simplices, &mut complex.spheres) };
-        star::make::<C, L>(token, &mut arrays, &complex.near, q, cavity, star, links);
+        links::make::<C, L>(token, &mut arrays, &complex.near, q, cavity, star, links);
         // SAFETY: the star has all places that were taken.
         unsafe { complex.extend(len) };
         free.extend(cavity.dead().iter().map(|&dead| simplex_of(dead) as u32));

@@ -9,13 +9,12 @@
 //!
 //! Simplices and their spheres are in flat arrays. Points are inserted by the algorithm of Bowyer (1981) and
 //! Watson (1981), along a Hilbert curve; an in-sphere test is the product of two vectors of length six.
-//! `locate` walks to a simplex in conflict, `cavity` finds the others, `star` replaces them by simplices
+//! `locate` walks to a simplex in conflict, `cavity` finds the others, `links` replaces them by simplices
 //! around the point, and `links` links these.
 //!
 //! Unpredictable branches are avoided: both outcomes are written, and one is kept. On the full 16^4 grid that
 //! saves a quarter of the time.
 
-mod arrays;
 mod cavity;
 mod coefficient;
 mod complex;
@@ -25,7 +24,6 @@ mod lanes;
 mod links;
 mod locate;
 mod order;
-mod star;
 
 pub(super) use coefficient::Coefficient;
 pub(super) use complex::{
