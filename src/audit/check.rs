@@ -4,132 +4,37 @@ use spmesh_base::error::{Error, ErrorKind};
 use spmesh_stream::Header;
 use spmesh_stream::model::bounds::Point;
 
-/// One kind of claim that an audit proves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Check {
-    /// Every simplex is strictly positively oriented: triangles are counterclockwise.
-    Orientation,
-    /// Every directed edge belongs to one triangle.
-    Edges,
-    /// Every oriented facet belongs to one tetrahedron.
-    Facets,
-    /// Every interior edge of a triangle mesh, or facet of a tetrahedral mesh, is locally Delaunay.
-    Delaunay,
-    /// The same of every interior edge of a constrained triangle mesh that is on no segment.
-    ConstrainedDelaunay,
-    /// Ties between cocircular or cospherical points are resolved canonically.
-    Canonical,
-    /// Every vertex of no tetrahedron, in a mesh with weights, has an empty cell in the power diagram.
-    Hidden,
-    /// Every vertex is used, and its simplices close around it or go from boundary to boundary.
-    Vertices,
-    /// No vertex is used after it was finalized, and all are finalized at the end.
-    Finalization,
-    /// The boundary is one convex cycle or surface that goes around once; or all vertices lie on a line, in
-    /// space in a plane.
-    Hull,
-    /// The boundary of a mesh that was cut does not meet itself, and its edges are those that cutting leaves.
-    Border,
-    /// Segments are chains of edges, unless they leave the mesh, and meet at their ends only.
-    Constraints,
-    /// Simplices of all dimensions are as many as in a disk or ball.
-    Euler,
-    /// Counts of points add up.
-    Counts,
-    /// The bounding box of the header holds all points.
-    Bounds,
-    /// The positions of the vertices are those of the given points.
-    Points,
-    /// Labels follow their vertices, and all have one or none has.
-    Labels,
-    /// Points lie in the region, or in the cube of the finalization tree.
-    Region,
-    /// No point follows the tag of its cell, and no tag repeats another.
-    Cells,
-    /// The points between two runs of tags lie in one cell, which the second run tags.
-    Chunks,
-    /// Residual points are the vertices that are not final, and points not written before, each once.
-    Residual,
-    /// Walls are the open edges of final triangles, or the open facets of final tetrahedra.
-    Walls,
+claims! {
+    /// One kind of claim that an audit proves.
+    Check:
+    Orientation "orientation" "every simplex is positively oriented, none is flat"
+    Edges "edges" "every directed edge belongs to one triangle"
+    Facets "facets" "every oriented facet belongs to one tetrahedron"
+    Delaunay "delaunay" "every interior edge or facet is locally Delaunay"
+    ConstrainedDelaunay "constrained" "every interior edge that is on no segment is locally Delaunay"
+    Canonical "canonical" "cocircular or cospherical points are triangulated canonically"
+    Hidden "hidden" "vertices of no tetrahedron have an empty cell: others around them are heavier"
+    Vertices "vertices" "the simplices of every vertex close around it, or up to the hull"
+    Finalization "finalization" "no vertex is used after its finalization"
+    Hull "hull" "the boundary is convex, closed, and goes around once"
+    Border "border" "the boundary does not meet itself, and its edges are those that cutting leaves"
+    Constraints "segments" "segments are chains of edges, or named as open, and meet at ends only"
+    Euler "euler" "simplices of all dimensions are as many as in a disk or ball"
+    Counts "counts" "vertices, merged and unwritten points are all points"
+    Bounds "bounds" "the bounding box holds all points"
+    Points "points" "the vertices are where the given points are"
+    Labels "labels" "all vertices have a label or none has, and it follows its vertex"
+    Region "region" "every point lies in the region of the stream"
+    Cells "cells" "no point follows the tag of its cell, every tag is news"
+    Chunks "chunks" "the points between two runs of tags lie in one cell, which the second run tags"
+    Residual "residual" "the residual is what is not final, each point once"
+    Walls "walls" "the walls are the open edges or facets of the final simplices"
 }
 
 impl Check {
-    /// All checks, in the order of reports.
-    pub const ALL: [Check; 22] = [
-        Check::Orientation,
-        Check::Edges,
-        Check::Facets,
-        Check::Delaunay,
-        Check::ConstrainedDelaunay,
-        Check::Canonical,
-        Check::Hidden,
-        Check::Vertices,
-        Check::Finalization,
-        Check::Hull,
-        Check::Border,
-        Check::Constraints,
-        Check::Euler,
-        Check::Counts,
-        Check::Bounds,
-        Check::Points,
-        Check::Labels,
-        Check::Region,
-        Check::Cells,
-        Check::Chunks,
-        Check::Residual,
-        Check::Walls,
-    ];
-
-    /// Name for people and for JSON.
-    pub fn name(self) -> &'static str {
-        self.row().0
-    }
-
     /// The claim that the check proves.
     pub fn claim(self) -> &'static str {
         self.row().1
-    }
-
-    fn row(self) -> (&'static str, &'static str) {
-        match self {
-            Check::Orientation => ("orientation", "every simplex is positively oriented, none is flat"),
-            Check::Edges => ("edges", "every directed edge belongs to one triangle"),
-            Check::Facets => ("facets", "every oriented facet belongs to one tetrahedron"),
-            Check::Delaunay => ("delaunay", "every interior edge or facet is locally Delaunay"),
-            Check::ConstrainedDelaunay => {
-                ("constrained", "every interior edge that is on no segment is locally Delaunay")
-            }
-            Check::Canonical => {
-                ("canonical", "cocircular or cospherical points are triangulated canonically")
-            }
-            Check::Hidden => {
-                ("hidden", "vertices of no tetrahedron have an empty cell: others around them are heavier")
-            }
-            Check::Vertices => {
-                ("vertices", "the simplices of every vertex close around it, or up to the hull")
-            }
-            Check::Finalization => ("finalization", "no vertex is used after its finalization"),
-            Check::Hull => ("hull", "the boundary is convex, closed, and goes around once"),
-            Check::Border => {
-                ("border", "the boundary does not meet itself, and its edges are those that cutting leaves")
-            }
-            Check::Constraints => {
-                ("segments", "segments are chains of edges, or named as open, and meet at ends only")
-            }
-            Check::Euler => ("euler", "simplices of all dimensions are as many as in a disk or ball"),
-            Check::Counts => ("counts", "vertices, merged and unwritten points are all points"),
-            Check::Bounds => ("bounds", "the bounding box holds all points"),
-            Check::Points => ("points", "the vertices are where the given points are"),
-            Check::Labels => ("labels", "all vertices have a label or none has, and it follows its vertex"),
-            Check::Region => ("region", "every point lies in the region of the stream"),
-            Check::Cells => ("cells", "no point follows the tag of its cell, every tag is news"),
-            Check::Chunks => {
-                ("chunks", "the points between two runs of tags lie in one cell, which the second run tags")
-            }
-            Check::Residual => ("residual", "the residual is what is not final, each point once"),
-            Check::Walls => ("walls", "the walls are the open edges or facets of the final simplices"),
-        }
     }
 }
 

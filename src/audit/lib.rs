@@ -35,6 +35,33 @@
 //! canonical triangulation, which is unique. Euler's relation follows too, and is checked as a test of the
 //! audit itself.
 
+/// An enumeration of what an audit proves. Each line has a value, its name, and the claim.
+macro_rules! claims {
+    ($(#[$about:meta])* $kind:ident: $($value:ident $name:literal $claim:literal)+) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $kind {
+            $(#[doc = $claim] $value,)+
+        }
+
+        impl $kind {
+            /// All of them, in the order of reports.
+            pub const ALL: [$kind; [$($name),+].len()] = [$($kind::$value),+];
+
+            /// Name for people and for JSON.
+            pub fn name(self) -> &'static str {
+                self.row().0
+            }
+
+            fn row(self) -> (&'static str, &'static str) {
+                match self {
+                    $($kind::$value => ($name, $claim),)+
+                }
+            }
+        }
+    };
+}
+
 mod border;
 mod cells;
 mod check;
@@ -60,10 +87,10 @@ mod vertices;
 mod winding;
 
 pub use check::{Check, CheckLine, Violation};
-pub use inventory::ConstraintInventory;
-pub use inventory::Inventory4;
-pub use inventory::{CellPoints, Inventory, PatchSize};
-pub use inventory::{ConfigurationInventory, DegreeInventory};
+pub use inventory::{
+    CellPoints, ConfigurationInventory, ConstraintInventory, DegreeInventory, Inventory, Inventory4,
+    PatchSize,
+};
 pub use point_set::PointSet;
 pub use tetrahedra::{Census, Counts, Faults};
 pub use triangles::Standard;

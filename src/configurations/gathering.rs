@@ -6,8 +6,7 @@
 
 use super::knots::Knots;
 use spmesh_base::error::{Error, ErrorKind, Result};
-use spmesh_stream::model::configurations::FARAWAY;
-use spmesh_stream::model::configurations::{Configurations, Links};
+use spmesh_stream::model::configurations::{Configurations, FARAWAY, Links};
 
 /// A directed edge packed into one integer, with the start in the upper half; comparing one integer is faster
 /// than comparing two.

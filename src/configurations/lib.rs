@@ -28,8 +28,7 @@ mod start_check;
 mod surface;
 mod symbolic;
 
-pub use centroids::{CentroidMesh, centroid};
-pub use centroids::{UnionSource, inverse_union_map, union_map};
+pub use centroids::{CentroidMesh, UnionSource, centroid, inverse_union_map, union_map};
 pub use gathering::links;
 pub use knots::Knots;
 pub use lift::Lift;

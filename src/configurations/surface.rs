@@ -8,8 +8,7 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::random::Random;
 use spmesh_delaunay::delaunay2::{Kernel, Triangles};
 use spmesh_delaunay::predicates::FiniteFloatPredicates;
-use spmesh_stream::model::configurations::FARAWAY;
-use spmesh_stream::model::configurations::{Claim, Configurations};
+use spmesh_stream::model::configurations::{Claim, Configurations, FARAWAY};
 
 /// A corner of a triangle, and the half-edge opposite to it: three times the number of the triangle, plus the
 /// place of the corner.

@@ -1,15 +1,12 @@
 //! Pictures of configurations: knots, centroid triangulations, and the link of a set of knots (thesis, figure
 //! 7.3).
 
-use super::copies;
 use super::options::Options;
 use super::picture::Picture;
-use super::points;
 use super::projection::Scene;
-use super::sheet::Units;
-use super::sheet::{Furniture, Mark, Shape};
+use super::sheet::{Furniture, Mark, Shape, Units};
 use super::svg::{self, Anchor};
-use super::ticks;
+use super::{copies, points, ticks};
 use spmesh_base::error::{Error, Result};
 use spmesh_configurations::{CentroidMesh, Configurations, FARAWAY, Knots};
 use spmesh_formats::raster::colour_map::{Colour, hex};

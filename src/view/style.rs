@@ -2,8 +2,7 @@
 
 use super::canvas::Paint;
 use super::options::{Fill, Options, When};
-use super::sheet::Legend;
-use super::sheet::Units;
+use super::sheet::{Legend, Units};
 use super::shown::{self, Shown};
 use spmesh_formats::raster::Light;
 use spmesh_formats::raster::colour_map::{self, BATLOW, Colour, ColourMap, VIK, VIRIDIS};

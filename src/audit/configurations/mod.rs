@@ -19,8 +19,7 @@ pub use circles::check_circles;
 pub use facets::{FacetCounts, check_facets, check_start};
 pub use knots::Knots;
 pub use planar::check_centroids;
-pub use set::ConfigurationSet;
-pub use set::check_functions;
+pub use set::{ConfigurationSet, check_functions};
 pub use stream::{DegreeProof, Proof, StreamAudit, Violation, check};
 
 // Two terms of the stream format: data, not code.

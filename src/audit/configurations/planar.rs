@@ -11,8 +11,7 @@
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
-use super::circles::Disk;
-use super::circles::{moved, turn};
+use super::circles::{Disk, moved, turn};
 use super::{Configurations, Knots};
 use crate::exact::plane::Xy;
 use num_bigint::BigInt;

@@ -1,8 +1,10 @@
 //! The audit of a stream of configurations: everything in it is held, and proved when it is complete.
 
 use super::set::Collector;
-use super::{Claim, ConfigurationSet, Configurations, FacetCounts, Knots};
-use super::{check_centroids, check_circles, check_facets, check_functions, check_start};
+use super::{
+    Claim, ConfigurationSet, Configurations, FacetCounts, Knots, check_centroids, check_circles,
+    check_facets, check_functions, check_start,
+};
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_stream::Event;
 

@@ -4,69 +4,21 @@ use std::fmt;
 
 use spmesh_stream::model::cells4::Point4;
 
-/// One kind of claim that the audit proves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Claim {
-    /// Points are finite, distinct and, in a diagram, in lexicographic order.
-    Points,
-    /// Numbers of vertices and neighbours are in range and increasing; every simplex is positively oriented.
-    Cells,
-    /// Cells come in canonical order.
-    Order,
-    /// Every point is a vertex.
-    Vertices,
-    /// Neighbours are mutual, and an infinite cell has one finite neighbour.
-    Neighbours,
-    /// The vertices of every cell are on one sphere and span space.
-    Spheres,
-    /// What cells share are facets of both, on opposite sides.
-    Facets,
-    /// The facets of a cell close up.
-    Faces,
-    /// Spheres are empty: neighbours are outside.
-    Delaunay,
-    /// The boundary is convex, and its facets are neighbours across their ridges.
-    Boundary,
-    /// The cells cover their hull once.
-    Covering,
-    /// Faces of all dimensions are as many as in a ball.
-    Euler,
-}
-
-impl Claim {
-    /// Every claim, in the order of the enumeration.
-    pub const ALL: [Claim; 12] = [
-        Claim::Points,
-        Claim::Cells,
-        Claim::Order,
-        Claim::Vertices,
-        Claim::Neighbours,
-        Claim::Spheres,
-        Claim::Facets,
-        Claim::Faces,
-        Claim::Delaunay,
-        Claim::Boundary,
-        Claim::Covering,
-        Claim::Euler,
-    ];
-
-    /// Name for people and for JSON.
-    pub fn name(self) -> &'static str {
-        match self {
-            Claim::Points => "points",
-            Claim::Cells => "cells",
-            Claim::Order => "order",
-            Claim::Vertices => "vertices",
-            Claim::Neighbours => "neighbours",
-            Claim::Spheres => "spheres",
-            Claim::Facets => "facets",
-            Claim::Faces => "faces",
-            Claim::Delaunay => "delaunay",
-            Claim::Boundary => "boundary",
-            Claim::Covering => "covering",
-            Claim::Euler => "euler",
-        }
-    }
+claims! {
+    /// One kind of claim that the audit proves.
+    Claim:
+    Points "points" "points are finite, distinct and, in a diagram, in lexicographic order"
+    Cells "cells" "numbers of vertices and neighbours are in range and increasing, simplices positively oriented"
+    Order "order" "cells come in canonical order"
+    Vertices "vertices" "every point is a vertex"
+    Neighbours "neighbours" "neighbours are mutual, and an infinite cell has one finite neighbour"
+    Spheres "spheres" "the vertices of every cell are on one sphere and span space"
+    Facets "facets" "what cells share are facets of both, on opposite sides"
+    Faces "faces" "the facets of a cell close up"
+    Delaunay "delaunay" "spheres are empty: neighbours are outside"
+    Boundary "boundary" "the boundary is convex, and its facets are neighbours across their ridges"
+    Covering "covering" "the cells cover their hull once"
+    Euler "euler" "faces of all dimensions are as many as in a ball"
 }
 
 /// The first violation in a diagram or complex.

@@ -5,8 +5,7 @@ use std::ops::{Add, Mul, Sub};
 
 use num_bigint::BigInt;
 
-use super::dyadic::Wide;
-use super::dyadic::{differences, integers, small_differences};
+use super::dyadic::{Wide, differences, integers, small_differences};
 use super::{Decided, ROUNDING, decide, decided, power_of_two};
 
 /// A position in the plane, in stored coordinates. Both are finite.

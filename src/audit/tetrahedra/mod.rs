@@ -54,13 +54,12 @@ mod hull;
 mod live;
 mod partial;
 
-use super::Standard;
 use super::check::{Check, Ledger, Violation};
-use super::corner;
 use super::corner::Extent;
 use super::points::check_points;
 use super::unused::Unused;
 use super::vertices::Vertex;
+use super::{Standard, corner};
 pub use census::{Census, Counts, Faults};
 use hidden::Hidden;
 use hull::Hull;

@@ -3,8 +3,7 @@
 
 use super::cavity::{Cavity, Face, Finding};
 use super::complex::{Complex, VERTEX, tetrahedron_of};
-use super::exact::Exact;
-use super::exact::{EXACT, is_inside};
+use super::exact::{EXACT, Exact, is_inside};
 use super::insphere3::Frame;
 use super::lanes::Lanes;
 use super::locate::{Site, is_in_conflict, walk, walk_exactly};

@@ -33,8 +33,7 @@ mod whole;
 mod words;
 
 pub use corners::{CornerParts, Corners, turned};
-pub use edges::EDGES;
-pub use edges::Ring;
+pub use edges::{EDGES, Ring};
 pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
 

@@ -17,8 +17,7 @@ use super::insphere3::{Frame, Signs};
 use super::lanes::Lanes;
 use super::tetrahedralization::Vertex;
 use super::weights::Weights;
-use super::words::Trusted;
-use super::words::Words;
+use super::words::{Trusted, Words};
 use std::ops::Range;
 
 /// Why a search stopped.

@@ -3,12 +3,11 @@
 use super::build::Build;
 use super::complex::{Complex, DELETED, TETRAHEDRA_PER_VERTEX};
 use super::insertion::Buffers;
-use super::parts;
 use super::stats::Stats;
 use super::tetrahedralization::{Tetrahedron, Vertex, WORDS};
 use super::weights::Weights;
 use super::words::Words;
-use super::{Kernel, MAX_POINTS};
+use super::{Kernel, MAX_POINTS, parts};
 use crate::error::{Error, Result};
 use crate::order::{Insertions, Sequence};
 use crate::predicates::{Arithmetic3, PredicateCounts};

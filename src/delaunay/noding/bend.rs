@@ -1,10 +1,8 @@
 //! Segments bent to the centres of the hot pixels that they pass through, and elevations of their vertices.
 
-use super::collinear::Cover;
-use super::collinear::Segments;
+use super::collinear::{Cover, Segments};
 use super::exact::{Place, minus};
-use super::nodes::Nodes;
-use super::nodes::{Part, Places};
+use super::nodes::{Nodes, Part, Places};
 use super::search::Found;
 use super::{LineVertex, Noded, NodingChange, NodingOptions};
 use crate::network::NetworkSegment;

@@ -8,8 +8,7 @@ use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
 use super::exact::{Place, cross, minus};
-use super::nodes::Nodes;
-use super::nodes::{Part, Parts};
+use super::nodes::{Nodes, Part, Parts};
 
 /// Segments, of which no two overlap.
 pub(super) struct Segments {

@@ -5,9 +5,8 @@
 //! (3 + 16 u) u S for `orient2d` and (10 + 96 u) u P for `incircle`, where S and P are the same sums with
 //! every product replaced by its magnitude, provided that nothing over- or underflows.
 
-use super::exact;
 use super::forms::{Incircle, Orient2d};
-use super::{Extent, Numbers, Point2, PredicateCounts, Predicates2, Sign};
+use super::{Extent, Numbers, Point2, PredicateCounts, Predicates2, Sign, exact};
 
 pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 const ORIENT2D_BOUND: f64 = (3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;

@@ -49,8 +49,7 @@ pub mod sphere;
 
 pub(crate) use adaptive::INCIRCLE_BOUND;
 pub use adaptive::{BoundedFloatPredicates, FiniteFloatPredicates};
-pub use area::area;
-pub use area::exact_area;
+pub use area::{area, exact_area};
 pub use counts::PredicateCounts;
 pub use extent::Extent;
 pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredicates, Width};

@@ -25,8 +25,7 @@ mod star;
 use std::time::Instant;
 
 pub use check::violations;
-use insertion::Sorted;
-use insertion::State;
+use insertion::{Sorted, State};
 pub use phase_timer::{Seconds, Stats};
 use spmesh_delaunay::delaunay3::Tetrahedralization;
 use spmesh_delaunay::order::{Curve, Sequence};

@@ -16,8 +16,7 @@ mod spheres;
 pub mod sweep;
 mod tables;
 
-pub use alpha::AlphaComplex;
-pub use alpha::Radius;
+pub use alpha::{AlphaComplex, Radius};
 pub use balls::{BallOptions, ColourBy, ContactFilter, Level, NamedRadii, PictureForm, PictureOptions};
 pub use job::{ModelName, run};
 pub use mesh::write_mesh;

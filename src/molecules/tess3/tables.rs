@@ -14,11 +14,11 @@ use spmesh_formats::molecules::{AtomView, Selected};
 use spmesh_formats::sink::{Column, ColumnKind, TableSink};
 
 /// Columns of the table of tetrahedra.
-pub(super) const TETRAHEDRA: &str = "model\tatom1\tatom2\tatom3\tatom4\tserial1\tserial2\tserial3\tserial4\t\
-                                     circumradius\tvolume\n";
+pub(super) const TETRAHEDRA: &str =
+    "model atom1 atom2 atom3 atom4 serial1 serial2 serial3 serial4 circumradius volume";
 
 /// Columns of the table of contacts.
-pub(super) const CONTACTS: &str = "model\tatom1\tatom2\tserial1\tserial2\tdistance\ttetrahedra\n";
+pub(super) const CONTACTS: &str = "model atom1 atom2 serial1 serial2 distance tetrahedra";
 
 /// The data of the tables of one model.
 pub(super) struct ModelTables<'s> {
@@ -163,10 +163,10 @@ impl AtomNames {
     }
 }
 
-/// The columns that a line names, with tabs between them. Names have the same type in all tables.
-pub(super) fn columns(line: &str) -> Vec<Column> {
+/// The columns of these names. A name has the same type in all tables.
+pub(super) fn columns(names: &str) -> Vec<Column> {
     let column = |name: &str| Column { name: name.to_string(), kind: kind(name) };
-    line.trim_end().split('\t').map(column).collect()
+    names.split(' ').map(column).collect()
 }
 
 /// The type of the column of a name; numbers unless it is listed.

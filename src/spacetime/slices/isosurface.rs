@@ -1,8 +1,7 @@
 //! Surfaces of equal value in a slice (marching tetrahedra).
 
 use super::NO_VALUES;
-use super::slice::Slice;
-use super::slice::{Cuts, between};
+use super::slice::{Cuts, Slice, between};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 

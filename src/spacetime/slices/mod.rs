@@ -13,11 +13,9 @@ mod slice;
 mod subdivide;
 
 pub use faces::Faces;
-pub use interpolate::Interpolator;
-pub use interpolate::Locator;
+pub use interpolate::{Interpolator, Locator};
 pub use isosurface::{Surface, isosurface};
-pub use slice::first_time;
-pub use slice::{Slice, slice};
+pub use slice::{Slice, first_time, slice};
 pub use subdivide::{Rule, Subdivision, subdivide};
 
 /// The error message for points without values where values are needed.

@@ -6,10 +6,8 @@ pub(crate) use bends::Bend;
 
 use super::directional_limit::DirectionalLimit;
 use super::domain::Domain;
-use super::elements::FunctionSets;
-use super::elements::{Elements, Share};
-use super::linear_simplex::Factors;
-use super::linear_simplex::{self, Found, Line, LinearSimplex};
+use super::elements::{Elements, FunctionSets, Share};
+use super::linear_simplex::{self, Factors, Found, Line, LinearSimplex};
 use super::simplex;
 use super::simplex::Jet;
 use super::tree::Tree;

@@ -2,10 +2,8 @@
 
 use super::basis::Basis;
 use super::domain::Domain;
-use super::elements::FunctionSets;
-use super::elements::{Elements, hull_area, hull_edges};
-use super::linear_simplex::Factors;
-use super::linear_simplex::LinearSimplex;
+use super::elements::{Elements, FunctionSets, hull_area, hull_edges};
+use super::linear_simplex::{Factors, LinearSimplex};
 use super::simplex::MAX_DEGREE;
 use super::tree::{Hull, Tree};
 use spmesh_base::error::{Error, Result};

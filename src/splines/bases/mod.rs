@@ -29,5 +29,4 @@ pub(crate) use basis::Bend;
 pub use basis::{Basis, Scratch};
 pub use directional_limit::DirectionalLimit;
 pub use raster::{Raster, Row};
-pub use simplex::Jet;
-pub use simplex::{MAX_DEGREE, simplex_spline, simplex_spline_jet};
+pub use simplex::{Jet, MAX_DEGREE, simplex_spline, simplex_spline_jet};

@@ -15,8 +15,7 @@ pub use counts::{DegreeCounts, FunctionCounts};
 pub use mesh::write_centroids;
 pub use options::{Border, Flips, Options, Places, RuleName};
 pub use sites::{Frame, Sites, read_sites};
-pub use special::{BoxName, SpecialKind};
-pub use special::{read_features, read_patches};
+pub use special::{BoxName, SpecialKind, read_features, read_patches};
 
 use std::io::Write;
 use std::time::{Duration, Instant};
@@ -25,8 +24,7 @@ use self::start::{Origin, Setup};
 use spmesh_base::error::Result;
 use spmesh_configurations::special::{Function, functions};
 use spmesh_configurations::{self as configurations, CentroidMesh, Configurations, Knots};
-use spmesh_stream::Header;
-use spmesh_stream::{Content, configurations_header, write_content};
+use spmesh_stream::{Content, Header, configurations_header, write_content};
 
 /// The result of a run.
 #[derive(Debug)]

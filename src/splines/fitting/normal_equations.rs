@@ -10,8 +10,7 @@
 
 use std::num::NonZeroUsize;
 
-use super::blocks::{self, Block};
-use super::blocks::{Observation, Observations};
+use super::blocks::{self, Block, Observation, Observations};
 use super::polygon;
 use super::symmetric::Symmetric;
 use crate::bases::{Basis, Scratch};

@@ -2,8 +2,7 @@
 
 use std::num::NonZeroUsize;
 
-use super::blocks::{self, Block};
-use super::blocks::{Observation, Observations};
+use super::blocks::{self, Block, Observation, Observations};
 use crate::bases::{Basis, Scratch};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point2;

@@ -5,8 +5,7 @@
 
 use super::blocks::Observations;
 use super::knot_placement::knot_for_residual;
-use super::mesh::Mesh;
-use super::mesh::SplineSpace;
+use super::mesh::{Mesh, SplineSpace};
 use super::refine::{Goal, Round};
 use super::residuals::{self, Residual};
 use spmesh_base::error::Result;

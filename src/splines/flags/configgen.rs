@@ -8,8 +8,9 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use crate::configgen::{Border, BoxName, Flips, Made, Options, Places, RuleName, Sites, SpecialKind};
-use crate::configgen::{read_features, read_patches};
+use crate::configgen::{
+    Border, BoxName, Flips, Made, Options, Places, RuleName, Sites, SpecialKind, read_features, read_patches,
+};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;

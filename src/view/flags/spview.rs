@@ -10,8 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 
 use crate::{Extent, Fill, Form, Moments, Options, Picture, When};
-use outputs::{Every, Moment};
-use outputs::{Format, Outputs};
+use outputs::{Every, Format, Moment, Outputs};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::places::check_apart;
 use spmesh_formats::raster::Light;

@@ -19,8 +19,7 @@ use super::shares::Measure;
 use super::tile::Tile;
 use super::tiles::{self, Members, TILE_MAX};
 use super::{Balls, Cell};
-use probe::Neighbours;
-use probe::{Probe, probes};
+use probe::{Neighbours, Probe, probes};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::parallel;
 

@@ -9,19 +9,15 @@ use spmesh_base::error::Result;
 use spmesh_formats::sink::TableSink;
 
 pub(super) fn columns(options: &BallOptions) -> String {
-    if options.mouths {
-        return match options.level {
-            Level::Molecule => "model\tpocket\tmouth\tarea\tatoms\n".to_string(),
-            Level::Atom => "model\tpocket\tmouth\tatom\tserial\n".to_string(),
-            level => format!("model\tpocket\tmouth\t{}\n", level.name()),
-        };
-    }
-    match options.level {
-        Level::Molecule => {
-            "model\tpocket\tkind\tvolume\tarea\tmouths\tmouth_area\tdepth\tatoms\ttetrahedra\n".to_string()
+    match (options.mouths, options.level) {
+        (true, Level::Molecule) => "model pocket mouth area atoms".into(),
+        (true, Level::Atom) => "model pocket mouth atom serial".into(),
+        (true, level) => format!("model pocket mouth {}", level.name()),
+        (false, Level::Molecule) => {
+            "model pocket kind volume area mouths mouth_area depth atoms tetrahedra".into()
         }
-        Level::Atom => "model\tpocket\tkind\tatom\tserial\n".to_string(),
-        level => format!("model\tpocket\tkind\t{}\n", level.name()),
+        (false, Level::Atom) => "model pocket kind atom serial".into(),
+        (false, level) => format!("model pocket kind {}", level.name()),
     }
 }
 

@@ -14,14 +14,13 @@ pub(super) fn cell_columns(options: &BallOptions) -> String {
     columns.push(if options.level == Level::Atom { "serial" } else { "atoms" });
     columns.extend(options.areas.then_some("area"));
     columns.extend(options.volumes.then_some("volume"));
-    columns.join("\t") + "\n"
+    columns.join(" ")
 }
 
 pub(super) fn contact_columns(options: &BallOptions) -> String {
     let name = options.level.name();
-    let rest =
-        if options.level == Level::Atom { "serial1\tserial2\tdistance\tarea" } else { "contacts\tarea" };
-    format!("model\t{name}1\t{name}2\t{rest}\n")
+    let rest = if options.level == Level::Atom { "serial1 serial2 distance area" } else { "contacts area" };
+    format!("model {name}1 {name}2 {rest}")
 }
 
 pub(super) struct CellTable<'t> {

@@ -7,8 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::Sweep;
-use super::done::Input;
-use super::done::{self, DoneFile};
+use super::done::{self, DoneFile, Input};
 use super::summary::{Line, Written};
 use crate::tess3::heap::peak_during;
 use crate::tess3::{ModelName, Options, Product, Report, job};

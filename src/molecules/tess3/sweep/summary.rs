@@ -6,9 +6,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::time::Duration;
 
-use super::done::Done;
-use super::done::Input;
-use super::done::{Lock, lock};
+use super::done::{Done, Input, Lock, lock};
 use super::row::{Format, Row, columns};
 use crate::tess3::Report;
 use spmesh_base::error::{Error, Result};

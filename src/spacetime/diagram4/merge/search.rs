@@ -2,11 +2,9 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::AHEAD;
-use super::Borders;
-use super::classes::Numbers;
-use super::classes::Part;
+use super::classes::{Numbers, Part};
 use super::order::sort_distinct;
+use super::{AHEAD, Borders};
 use crate::diagram4::simplices::{FACETS, Simplex, facet, facet_of, simplex_of, without};
 use spmesh_base::prefetch::prefetch;
 use spmesh_stream::model::cells4::Lists4;

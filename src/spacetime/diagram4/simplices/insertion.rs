@@ -2,8 +2,7 @@
 
 use super::cavity::Cavity;
 use super::coefficient::Coefficient;
-use super::complex::Arrays;
-use super::complex::{Complex, FACETS, Facet, INFINITE, Simplex, facet, simplex_of, spheres_of};
+use super::complex::{Arrays, Complex, FACETS, Facet, INFINITE, Simplex, facet, simplex_of, spheres_of};
 #[cfg(target_arch = "x86_64")]
 use super::lanes::Avx2;
 use super::lanes::{LANES, Lanes, Portable};

@@ -3,8 +3,7 @@
 
 use super::cavity::Cavity;
 use super::coefficient::Coefficient;
-use super::complex::Arrays;
-use super::complex::{FACETS, Facet, NO_NEIGHBOUR, facet, facet_of, simplex_of, spheres_of, without};
+use super::complex::{Arrays, FACETS, Facet, NO_NEIGHBOUR, facet, facet_of, simplex_of, spheres_of, without};
 use super::lanes::{LANES, Lanes};
 use spmesh_stream::model::cells4::Point4;
 
