@@ -172,9 +172,11 @@ impl Flags {
         let (polylines, system) = self.features.as_deref().map(read_features).transpose()?.unzip();
         let options = self.options(polylines.unwrap_or_default());
         let points = self.points(common)?;
-        let check = |system: LineSystem| system.check(&options.polylines_name, points.crs());
-        let about_system = system.map_or(Ok(None), check)?;
-        points.notices().iter().chain(&about_system).for_each(|text| say(common, text));
+        if let Some(system) = system {
+            // Lines of text are in the system of the points: a notice would tell nothing.
+            system.check(&options.polylines_name, points.crs())?;
+        }
+        points.notices().iter().for_each(|text| say(common, text));
         let knots = self.knots(common)?;
         let progress = RefCell::new(Progress::new(common, "fitting", None));
         let fitted =
