@@ -138,9 +138,9 @@ fn masks_have_the_messages_of_other_polygons() {
     for (text, part) in [
         ("", "mask: empty: the input has no bytes"),
         ("{", "not JSON: the file is cut off"),
-        (r#"{"type":"Point","coordinates":[1,2]}"#, "feature 0: found a line, expected polygons"),
+        (r#"{"type":"Point","coordinates":[1000,2]}"#, "feature 0: found a line, expected polygons"),
         (
-            r#"{"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1],[5,6]]]}"#,
+            r#"{"type":"Polygon","coordinates":[[[0,0],[1000,0],[1,1],[5,6]]]}"#,
             "feature 0: a ring starts at 0, 0 and ends at 5, 6: repeat its first position",
         ),
         (r#"{"type":"Polygon","coordinates":[[[0,0],[1],[0,0]]]}"#, "two numbers"),
