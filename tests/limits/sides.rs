@@ -3,7 +3,7 @@
 use spmesh_base::limits::{
     BREAKLINE_VERTICES_MAX, CONDITION_DEPTH_MAX, CONDITION_LEN_MAX, CONTOURS_PER_TRIANGLE_MAX,
     LIST_FILES_MAX, NPY_HEADER_MAX, NRRD_FILES_MAX, NRRD_HEADER_MAX, NUMBER_LEN_MAX, STRUCTURE_LINE_MAX,
-    TEXT_LINE_MAX, XML_DEPTH_MAX, XML_TAG_MAX,
+    TEXT_LINE_MAX, WKT_LEN_MAX, XML_DEPTH_MAX, XML_TAG_MAX,
 };
 use spmesh_formats::source::{read_polygons, read_polylines};
 use spmesh_formats::volumes::Condition;
