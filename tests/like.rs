@@ -87,7 +87,7 @@ fn grid_of(bytes: &[u8]) -> Result<Grid, String> {
 fn every_form_of_a_file_states_its_cells() {
     let expected = Grid { left: 9.75, top: 250.25, step: 0.5, columns: 700, rows: 300 };
     for form in FORMS {
-        assert_eq!(grid_of(&form.file(&tags())), Ok(expected.clone()), "{form:?}");
+        assert_eq!(grid_of(&form.file(&tags())), Ok(expected), "{form:?}");
     }
 }
 

@@ -3,6 +3,8 @@
 mod balls;
 #[cfg(feature = "experiments")]
 mod float;
+#[cfg(feature = "experiments")]
+mod float_parts;
 mod pockets;
 mod surface;
 mod surfaces;

@@ -66,7 +66,7 @@ impl CircleBounds {
         let (m_y, n_y) = difference_of_products(bx, q, cx, p);
         let smallest = n_d.min(n_x).min(n_y).min(p).min(q);
         let numerators = [(m_x, self.numerator * n_x), (m_y, self.numerator * n_y)];
-        // Written so that a NaN is refused.
+        // False for NaN, too.
         (smallest >= UNDERFLOW_GUARD).then_some(Circle { area: (d, self.area * n_d), numerators })
     }
 
@@ -117,8 +117,9 @@ impl Circle {
     pub fn disk(&self) -> Option<Disk> {
         let (d, e_d) = self.area;
         let margin = d.abs() - e_d;
-        // Written so that a NaN is refused.
-        if !(d.abs() > 2.0 * e_d) {
+        // False for NaN, too.
+        let is_far_from_zero = d.abs() > 2.0 * e_d;
+        if !is_far_from_zero {
             return None;
         }
         let centre = self.numerators.map(|(m, _)| m / (2.0 * d));

@@ -2,23 +2,24 @@
 
 use super::mesh::{faraway_corner, finite_facet};
 use super::phase_timer::Stats;
-use super::sphere::{difference, orientation};
+use super::sphere::orientation;
 use spmesh_delaunay::delaunay3::{Tetrahedralization, Vertex};
 use spmesh_delaunay::order::Insertions;
 use spmesh_delaunay::predicates::{
     FiniteFloatPredicates, FiniteFloatPredicates3, Point3, Predicates2, Predicates3, Sign,
 };
+use spmesh_delaunay::vector::difference;
 
 /// Integer differences below this have in-sphere determinants below 2^125.
 const INTEGER_LIMIT: f64 = 8_388_608.0;
 
 /// Exact orientation of a tetrahedron.
-pub(super) fn orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
+pub fn orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
     FiniteFloatPredicates3::default().orient3d(a, b, c, d)
 }
 
 /// Whether three points are on a line.
-pub(super) fn are_collinear(a: Point3, b: Point3, c: Point3) -> bool {
+pub fn are_collinear(a: Point3, b: Point3, c: Point3) -> bool {
     [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
         let [a, b, c] = [a, b, c].map(|p| [p[i], p[j]]);
         FiniteFloatPredicates::default().orient2d(a, b, c) == Sign::Zero
@@ -28,7 +29,7 @@ pub(super) fn are_collinear(a: Point3, b: Point3, c: Point3) -> bool {
 /// Compares the value of a sphere, or half-space, at `p` with the exact one.
 #[cold]
 #[inline(never)]
-pub(super) fn check(vertices: &[Vertex], corners: &[u32; 4], p: Point3, value: f64, stats: &mut Stats) {
+pub fn check(vertices: &[Vertex], corners: &[u32; 4], p: Point3, value: f64, stats: &mut Stats) {
     let point = |corner: usize| vertices[corners[corner] as usize].at;
     let exact = if let Some(corner) = faraway_corner(corners) {
         let [o, a, b] = finite_facet(corner).map(point);
@@ -48,7 +49,7 @@ pub(super) fn check(vertices: &[Vertex], corners: &[u32; 4], p: Point3, value: f
 
 /// Whether `value` is not the in-sphere determinant of points with integer coordinates that are near each
 /// other.
-fn is_rounded([o, a, b, c]: [Point3; 4], p: Point3, value: f64) -> bool {
+pub fn is_rounded([o, a, b, c]: [Point3; 4], p: Point3, value: f64) -> bool {
     let is_integer = |p: Point3| p.iter().all(|x| x.trunc() == *x);
     let differences = [a, b, c, p].map(|q| difference(q, o));
     let is_small = |d: &Point3| d.iter().all(|x| x.abs() < INTEGER_LIMIT);
@@ -70,7 +71,7 @@ fn is_rounded([o, a, b, c]: [Point3; 4], p: Point3, value: f64) -> bool {
 ///
 /// The first to be inserted, the second, the first that is not collinear with them, the first after that that
 /// is not coplanar.
-pub(super) fn first_tetrahedron(vertices: &[Vertex], mut insertions: Insertions) -> Option<[u32; 4]> {
+pub fn first_tetrahedron(vertices: &[Vertex], mut insertions: Insertions) -> Option<[u32; 4]> {
     let at = |v: u32| vertices[v as usize].at;
     let (a, b) = (insertions.next()?, insertions.next()?);
     let c = insertions.find(|&v| !are_collinear(at(a), at(b), at(v)))?;
@@ -104,40 +105,4 @@ fn has_neighbour_inside(mesh: &Tetrahedralization, number: usize) -> bool {
         let apex = mesh.tetrahedra()[beyond.tetrahedron as usize].vertices[beyond.corner as usize];
         FiniteFloatPredicates3::default().insphere(a, b, c, d, point(apex)) == Sign::Positive
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::float::sphere::Sphere;
-    use spmesh_delaunay::delaunay3::triangulate;
-
-    #[test]
-    fn values_of_small_integers_are_not_rounded_and_those_of_great_ones_are() {
-        let tetrahedron = [[0.0, 0.0, 0.0], [7.0, 1.0, 0.0], [3.0, 5.0, 1.0], [1.0, 2.0, 9.0]];
-        for (scale, expected) in [(1.0, false), (100.0, false), (65_537.0, true)] {
-            let [o, a, b, c] = tetrahedron.map(|p| p.map(|x: f64| x * scale));
-            let p = [scale * 5.0, scale * 3.0 + 1.0, scale * 2.0 - 1.0];
-            let value = Sphere::through(o, a, b, c).value(o, p);
-            assert_eq!(is_rounded([o, a, b, c], p, value), expected, "{scale}");
-        }
-        let [o, a, b, c] = tetrahedron.map(|p| p.map(|x: f64| x * 0.5));
-        assert!(!is_rounded([o, a, b, c], [1.0; 3], 1e300), "unknown for coordinates that are not integers");
-    }
-
-    #[test]
-    fn what_is_not_delaunay_is_counted() {
-        let mut points =
-            vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0], [9.0, 9.0, 9.0]];
-        assert_eq!(violations(&triangulate(&points).unwrap()), 0);
-        points
-            .extend((0..50).map(|i| [f64::from(i % 7), f64::from(i * i % 11), f64::from(i * 5 % 13) + 0.5]));
-        let mesh = triangulate(&points).unwrap();
-        assert_eq!(violations(&mesh), 0);
-        // A vertex that moves across its neighbours turns some of them over.
-        let mut vertices = mesh.vertices().to_vec();
-        vertices[5].at = vertices[5].at.map(|x| 12.0 - x);
-        let moved = Tetrahedralization::from_parts(vertices, Vec::new(), mesh.tetrahedra().to_vec());
-        assert!(violations(&moved) > 0);
-    }
 }

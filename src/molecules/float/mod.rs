@@ -13,14 +13,14 @@
 //! that is left out, and counted.
 
 mod cavity;
-mod check;
+pub mod check;
 mod insertion;
 mod locate;
 mod mesh;
 mod phase_timer;
 mod search;
-mod sphere;
-mod star;
+pub mod sphere;
+pub mod star;
 
 use std::time::Instant;
 

@@ -5,11 +5,11 @@ use super::sphere::Sphere;
 
 /// The star of one new point at a time: a tetrahedron on each wall of its cavity.
 #[derive(Debug)]
-pub(super) struct Star {
+pub struct Star {
     /// For each wall and its corners 1 to 3, the side of another wall: `wall * 4 + corner`.
-    pub(super) beside: Vec<[u32; 4]>,
+    pub beside: Vec<[u32; 4]>,
     /// Where the tetrahedra go.
-    pub(super) slots: Vec<u32>,
+    pub slots: Vec<u32>,
     edges: Edges,
     /// For each vertex, and the faraway point, the last star that it is a corner of.
     seen: Vec<u32>,
@@ -18,7 +18,7 @@ pub(super) struct Star {
 
 impl Star {
     /// Buffers for a mesh of `points` points.
-    pub(super) fn new(points: usize) -> Star {
+    pub fn new(points: usize) -> Star {
         Star {
             beside: Vec::new(),
             slots: Vec::new(),
@@ -28,7 +28,8 @@ impl Star {
         }
     }
 
-    pub(super) fn bytes(&self) -> usize {
+    /// Memory of the table.
+    pub fn bytes(&self) -> usize {
         size_of::<u32>() * (self.seen.capacity() + self.slots.capacity())
             + size_of::<[u32; 4]>() * self.beside.capacity()
     }
@@ -39,7 +40,7 @@ impl Star {
     /// together, and one at least finite. By Euler's relation the surface is a sphere then, unless it is
     /// several that touch, or worse, and the number of vertices makes up for it by chance.
     #[inline(always)]
-    pub(super) fn pair(&mut self, walls: &[Wall]) -> bool {
+    pub fn pair(&mut self, walls: &[Wall]) -> bool {
         self.number += 1;
         self.edges.clear(walls.len());
         self.beside.clear();
@@ -81,20 +82,21 @@ impl Star {
 
 /// A facet around a cavity, as the new tetrahedron on it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Wall {
+pub struct Wall {
     /// The tetrahedron in the cavity.
-    pub(super) inside: u32,
+    pub inside: u32,
     /// The facet, from outside of the cavity.
-    pub(super) outside: Facet,
+    pub outside: Facet,
     /// The new point, and the corners of the facet.
-    pub(super) vertices: [u32; 4],
-    pub(super) sphere: Sphere,
+    pub vertices: [u32; 4],
+    /// The sphere of the tetrahedron beyond it.
+    pub sphere: Sphere,
 }
 
 impl Wall {
     /// Whether the new point sees the inner side of the facet.
     #[inline(always)]
-    pub(super) fn is_seen(&self) -> bool {
+    pub fn is_seen(&self) -> bool {
         self.sphere.volume > 0.0 || faraway_corner(&self.vertices).is_some()
     }
 }
@@ -111,7 +113,7 @@ struct Slot {
 
 /// What a table of edges knows of the edge of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shared {
+pub enum Shared {
     /// No other side was at this edge so far.
     WithNone,
     /// This one was.
@@ -122,14 +124,14 @@ pub(super) enum Shared {
 
 /// A hash table of the edges of one surface at a time.
 #[derive(Debug, Default)]
-pub(super) struct Edges {
+pub struct Edges {
     slots: Vec<Slot>,
     stamp: u32,
 }
 
 impl Edges {
     /// Empties the table, and makes it large enough for the edges of a surface of `facets` triangles.
-    pub(super) fn clear(&mut self, facets: usize) {
+    pub fn clear(&mut self, facets: usize) {
         let slots = (4 * facets).next_power_of_two();
         if self.stamp == u32::MAX || self.slots.len() < slots {
             self.slots.clear();
@@ -143,7 +145,7 @@ impl Edges {
     ///
     /// Domain: at most three sides per facet of the surface that the table was cleared for.
     #[inline(always)]
-    pub(super) fn enter(&mut self, u: u32, v: u32, side: u32) -> Shared {
+    pub fn enter(&mut self, u: u32, v: u32, side: u32) -> Shared {
         let edge = [u.min(v), u.max(v)];
         let bits = (u64::from(edge[0]) << 32 | u64::from(edge[1])).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mut place = (bits >> 32) as usize & (self.slots.len() - 1);
@@ -158,26 +160,6 @@ impl Edges {
                 return if other == CLOSED { Shared::WithTwo } else { Shared::With(other) };
             }
             place = (place + 1) & (self.slots.len() - 1);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sides_meet_once() {
-        let mut edges = Edges::default();
-        for facets in [1, 4, 1000] {
-            edges.clear(facets);
-            for side in 0..3 * facets as u32 {
-                assert_eq!(edges.enter(side, 7_000_000, side), Shared::WithNone);
-            }
-            edges.clear(facets);
-            assert_eq!(edges.enter(1, 2, 10), Shared::WithNone);
-            assert_eq!(edges.enter(2, 1, 11), Shared::With(10));
-            assert_eq!(edges.enter(1, 2, 12), Shared::WithTwo);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Rules of plans: a plan that breaks one was not made by this program, though its hash may be right.
 
 use super::node::NodeBox;
-use super::plan::Plan;
+use super::planning::Plan;
 use spmesh_base::error::{Error, Result};
 
 const DISAGREEMENT: &str = "parent and children disagree";

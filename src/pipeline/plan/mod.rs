@@ -14,7 +14,7 @@ mod folder;
 mod leaf;
 mod make;
 mod node;
-mod plan;
+mod planning;
 mod report;
 mod tree;
 
@@ -22,5 +22,5 @@ pub use collect::collect;
 pub use files::PlannedFile;
 pub use make::{Maker, Work};
 pub use node::{Node, NodeBox, NodeKind};
-pub use plan::{Plan, Planning, plan_of};
+pub use planning::{Plan, Planning, plan_of};
 pub use report::{FileCount, FileSize, NodeReport, hash_of_file};

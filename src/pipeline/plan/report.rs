@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::plan::hash_of;
+use super::planning::hash_of;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::REPORT_LEN_MAX;
 

@@ -20,12 +20,14 @@ pub enum Product {
     Values(Vec<Point4>),
     /// Tetrahedra at a time.
     Slice {
+        /// The time.
         time: f64,
         /// VTU or Medit.
         format: Format,
     },
     /// A surface of equal value at a time.
     Isosurface {
+        /// The time.
         time: f64,
         /// The value.
         level: f64,

@@ -63,11 +63,7 @@ impl Circle {
             let seen = [seen(bounds.min, -self.margin), seen(bounds.max, self.margin)];
             return !self.exact.is_some_and(|circle| circle.misses(seen));
         };
-        let mut square = 0.0;
-        for axis in 0..2 {
-            let nearest = centre[axis].clamp(bounds.min[axis], bounds.max[axis]);
-            square += (centre[axis] - nearest).powi(2);
-        }
-        square <= radius * radius
+        let [x, y] = [0, 1].map(|axis| centre[axis] - centre[axis].clamp(bounds.min[axis], bounds.max[axis]));
+        x * x + y * y <= radius * radius
     }
 }
