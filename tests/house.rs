@@ -18,7 +18,7 @@ const ARROWS: [(&str, &[&str]); 14] = [
     ("pipeline", &["audit", "delaunay", "formats", "shell", "stream", "base"]),
     ("terrain", &["pipeline", "delaunay", "formats", "shell", "stream", "base"]),
     ("molecules", &["delaunay", "formats", "shell", "stream", "base"]),
-    ("spacetime", &["convert", "delaunay", "formats", "shell", "stream", "base"]),
+    ("spacetime", &["delaunay", "formats", "shell", "stream", "base"]),
     ("splines", &["configurations", "view", "delaunay", "formats", "shell", "stream", "base"]),
     ("view", &["configurations", "delaunay", "formats", "shell", "stream", "base"]),
     ("convert", &["formats", "shell", "stream", "base"]),
