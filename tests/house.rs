@@ -1,4 +1,4 @@
-//! Rules of the project: which crate may use which, and how large files may become.
+//! Rules of the project: which crate may use which crates and packages, and how large files and documents may become.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -125,9 +125,9 @@ fn heavy_packages_stay_in_one_crate() {
 fn command_lines_can_be_left_out() {
     for (name, manifest) in manifests().iter().filter(|(name, _)| *name != "shell") {
         for package in OF_COMMAND_LINES.iter().chain(&["spmesh-shell"]) {
-            let is_asked_for = !dependencies(manifest).iter().any(|used| used == package)
+            let can_be_left_out = !dependencies(manifest).iter().any(|used| used == package)
                 || manifest.contains(&format!("\n{package} = {{ workspace = true, optional = true }}\n"));
-            assert!(is_asked_for, "{name} always uses {package}");
+            assert!(can_be_left_out, "{name} always uses {package}");
         }
     }
 }

@@ -11,14 +11,14 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// There are more points than the kernel numbers.
+    /// There are more points than the kernel can number.
     TooManyPoints {
         /// How many there are.
         count: usize,
         /// How many it takes.
         most: usize,
     },
-    /// More tetrahedra would arise than the kernel numbers.
+    /// More tetrahedra would arise than the kernel can number.
     TooManyTetrahedra(usize),
     /// A coordinate or a weight is infinite or not a number.
     NotFinite {
@@ -27,7 +27,7 @@ pub enum Error {
         /// What is wrong with it, with its numbers.
         found: String,
     },
-    /// A vertex of a line is too far from the origin of the grid, infinite, or not a number.
+    /// A vertex of a line is farther from the origin of the grid than `most` along an axis.
     BeyondGrid {
         /// Where it is.
         place: [i64; 2],
@@ -74,7 +74,8 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {}
 
 impl From<Error> for io::Error {
-    /// The kind tells a request that asks for too much, invalid input, from data that are malformed.
+    /// `InvalidInput`: the request is too large for a kernel. `InvalidData`: points or lines are wrong, or lines cross
+    /// too often. `Other`: the work has become too large.
     fn from(error: Error) -> io::Error {
         let kind = match error {
             Error::TooManyPoints { .. } => io::ErrorKind::InvalidInput,

@@ -1,5 +1,5 @@
-//! The table of formats: their names, how they are recognized, and what opens and writes them. Detection,
-//! what each tool reads, the formats of `spconvert` and messages follow from it.
+//! The table of formats: their names, their first bytes, and what opens and writes them. What each tool reads, the
+//! formats of `spconvert` and messages follow from it; text is recognized in `detect`.
 //!
 //! A new format is a folder with its reader and writer, and a row here.
 

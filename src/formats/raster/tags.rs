@@ -27,7 +27,7 @@ pub(crate) struct Tags(BTreeMap<u16, Value>);
 
 struct Value {
     kind: u16,
-    /// The values, each as eight bytes or less of the least byte first.
+    /// The values, each widened to eight bytes, the least byte first.
     items: Vec<[u8; 8]>,
 }
 
@@ -47,7 +47,7 @@ impl Tags {
         }
     }
 
-    /// The numbers of a tag; none if it is missing, or of a type for something else.
+    /// The numbers of a tag; none if it is missing, or of a type that is not read.
     pub(crate) fn numbers(&self, tag: u16) -> Vec<f64> {
         let Some(Value { kind, items }) = self.0.get(&tag) else { return Vec::new() };
         let number = |item: &[u8; 8]| match *kind {
@@ -117,7 +117,7 @@ impl<'a, O: ByteOrder> Directory<'a, O> {
         let (count_len, entry_len) = if self.is_big { (8, 20) } else { (2, 12) };
         let count = self.bytes(self.start, count_len)?;
         let count = if self.is_big { O::read_u64(&count) } else { u64::from(O::read_u16(&count)) };
-        // More tags than numbers for tags cannot be.
+        // Numbers of tags have 16 bits.
         let count = usize::try_from(count).ok().filter(|&count| count <= usize::from(u16::MAX));
         let count = count.ok_or("it states too many tags")?;
         let entries = self.bytes(self.start.saturating_add(count_len as u64), count * entry_len)?;
