@@ -67,7 +67,7 @@ pub fn triangulate(points: &[Point3], options: &Options) -> Result<(Tetrahedrali
     Ok((Tetrahedralization::from_parts(vertices, duplicates, tetrahedra), stats))
 }
 
-/// Options of [`triangulate`](super::triangulate).
+/// Options of [`triangulate`].
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// The curve along which points are stored and inserted.
