@@ -2,7 +2,7 @@
 
 /// Prefetches what a pointer points at into the cache. Any address will do.
 #[inline(always)]
-pub fn prefetch_at<T>(place: *const T) {
+fn prefetch_at<T>(place: *const T) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
