@@ -90,8 +90,8 @@
 //! | `geopackage` (default) | lines of GeoPackages |
 //! | `experiments` | flags that measure the kernels |
 //!
-//! Engines of the programs are crates of their own, such as `spmesh-terrain`, whose feature `flags` adds the command
-//! lines.
+//! Engines of the programs are crates of their own, such as `spmesh-terrain`, whose feature `flags` adds the
+//! command lines.
 
 pub use spmesh_base as base;
 pub use spmesh_delaunay as delaunay;

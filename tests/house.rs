@@ -1,4 +1,5 @@
-//! Rules of the project: which crate may use which crates and packages, and how large files and documents may become.
+//! Rules of the project: which crate may use which crates and packages, and how large files and documents may
+//! become.
 
 use std::collections::BTreeMap;
 use std::fs;

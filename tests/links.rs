@@ -27,7 +27,8 @@ fn every_relative_link_leads_somewhere() {
     assert!(broken.is_empty(), "broken links:\n{}", broken.join("\n"));
 }
 
-/// Files and folders of the sources that documents name in full are there; CHANGELOG.md tells of those that were.
+/// Files and folders of the sources that documents name in full are there; CHANGELOG.md tells of those that
+/// were.
 #[test]
 fn every_named_source_is_there() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

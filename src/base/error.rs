@@ -95,8 +95,8 @@ impl Error {
         Error { kind, input: None, position: None, message: what.into(), cause: Some(cause) }
     }
 
-    /// A computation on points or lines that was refused, by a crate that knows nothing of inputs and exit codes. Too
-    /// much of a request is [`ErrorKind::Usage`], malformed data are [`ErrorKind::Malformed`].
+    /// A computation on points or lines that was refused, by a crate that knows nothing of inputs and exit
+    /// codes. Too much of a request is [`ErrorKind::Usage`], malformed data are [`ErrorKind::Malformed`].
     pub fn of_computation(cause: impl Into<io::Error>) -> Self {
         let cause = cause.into();
         let kind = match cause.kind() {

@@ -1,6 +1,6 @@
-//! The base of all crates but `delaunay`: errors with positions, limits, threads, random numbers; with the feature
-//! `files` output files that appear only when complete and replace no input, temporary files, exit codes along a pipe,
-//! and the operating system.
+//! The base of all crates but `delaunay`: errors with positions, limits, threads, random numbers; with the
+//! feature `files` output files that appear only when complete and replace no input, temporary files, exit
+//! codes along a pipe, and the operating system.
 
 #[cfg(feature = "files")]
 pub mod allocator;

@@ -138,7 +138,8 @@ pub const LINE_CROSSINGS_MAX: usize = 1 << 23;
 /// Most files in a list of files: their names take about 100 MB.
 pub const LIST_FILES_MAX: usize = 1 << 20;
 
-/// Longest value of a tag of a TIFF file that is read, in bytes: those that say where cells are have a hundred numbers.
+/// Longest value of a tag of a TIFF file that is read, in bytes: those that say where cells are have a
+/// hundred numbers.
 pub const TIFF_TAG_BYTES_MAX: usize = 1 << 20;
 
 /// Longest header of an array of numpy, in bytes; numpy has the same limit.

@@ -37,8 +37,8 @@ pub struct Options {
 /// of points or vertices done. Returns notices for the user about what was lost. The output is complete only
 /// if the call succeeds.
 ///
-/// Memory: that of [`spmesh_stream::MemoryRules`], which is bounded by the width of a stream; meshes that do not
-/// state when vertices are final are held.
+/// Memory: that of [`spmesh_stream::MemoryRules`], which is bounded by the width of a stream; meshes that do
+/// not state when vertices are final are held.
 ///
 /// # Errors
 /// Malformed, if the input is; usage, if its format is not recognized or `to` cannot hold it; I/O.

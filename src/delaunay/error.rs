@@ -74,8 +74,8 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {}
 
 impl From<Error> for io::Error {
-    /// `InvalidInput`: the request is too large for a kernel. `InvalidData`: points or lines are wrong, or lines cross
-    /// too often. `Other`: the work has become too large.
+    /// `InvalidInput`: the request is too large for a kernel. `InvalidData`: points or lines are wrong, or
+    /// lines cross too often. `Other`: the work has become too large.
     fn from(error: Error) -> io::Error {
         let kind = match error {
             Error::TooManyPoints { .. } => io::ErrorKind::InvalidInput,

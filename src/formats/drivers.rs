@@ -1,5 +1,5 @@
-//! The table of formats: their names, their first bytes, and what opens and writes them. What each tool reads, the
-//! formats of `spconvert` and messages follow from it; text is recognized in `detect`.
+//! The table of formats: their names, their first bytes, and what opens and writes them. What each tool
+//! reads, the formats of `spconvert` and messages follow from it; text is recognized in `detect`.
 //!
 //! A new format is a folder with its reader and writer, and a row here.
 
@@ -129,7 +129,8 @@ const TO_POINTS: &str = "make a point stream of its atoms with spfinalize --octr
 const TO_STREAM: &str = "convert it first with spconvert";
 const TO_PLY: &str = "convert it first with spconvert --to ply";
 
-// Of each: its name with an article, its name in lists, how it is recognized, and a hint for tools that do not read it.
+// Of each: its name with an article, its name in lists, how it is recognized, and a hint for tools that do
+// not read it.
 formats! {
     Las("a LAS, LAZ or COPC file", "LAS, LAZ, COPC", Test::Magic(&[b"LASF"]), "") {
         is_in_parts: true, points: Some(records::open)

@@ -1,8 +1,9 @@
 //! Molecules and other balls: tetrahedra of atoms (thesis 3.4), and the union of balls, its areas, volumes,
 //! contacts, pockets and surfaces.
 //!
-//! [`balls`] computes, [`tess3`] is the engine of the program; `flags`, with the feature of this name, has its
-//! command line. `float`, with the feature `experiments`, is the program of the thesis, in floating-point arithmetic.
+//! [`balls`] computes, [`tess3`] is the engine of the program; `flags`, with the feature of this name, has
+//! its command line. `float`, with the feature `experiments`, is the program of the thesis, in floating-point
+//! arithmetic.
 
 pub mod balls;
 #[cfg(feature = "flags")]

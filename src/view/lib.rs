@@ -9,8 +9,8 @@
 //! the live vertices, `cells` the cells of a finalization. `configurations` draws knots and centroid
 //! triangulations. A [`Picture`] is SVG, also on an HTML page that pans and zooms.
 //!
-//! `render` turns the SVG of pictures alone into pixels, and clips: `pen` is what elements inherit, and refuses
-//! what it does not know; `outlines` are the shapes, and text in the `font`.
+//! `render` turns the SVG of pictures alone into pixels, and clips: `pen` is what elements inherit, and
+//! refuses what it does not know; `outlines` are the shapes, and text in the `font`.
 //!
 //! `flags`, with the feature of this name, has the command line.
 //!

@@ -56,8 +56,8 @@ pub struct Options {
     pub name: String,
     /// What triangles and points show; depends on the stream if `None`.
     pub fill: Option<Fill>,
-    /// The attribute that they show instead, as `spmesh_stream::model::attributes::Attributes::column` takes it, or the
-    /// name of one with three components, which is a colour.
+    /// The attribute that they show instead, as `spmesh_stream::model::attributes::Attributes::column` takes
+    /// it, or the name of one with three components, which is a colour.
     pub colour_by: Option<String>,
     /// Edges of triangles.
     pub edges: When,

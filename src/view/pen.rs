@@ -1,5 +1,5 @@
-//! Attributes of SVG: each must be taken, so that none is left out unseen. Those that elements inherit say how
-//! shapes are filled and stroked.
+//! Attributes of SVG: each must be taken, so that none is left out unseen. Those that elements inherit say
+//! how shapes are filled and stroked.
 
 use std::borrow::Cow;
 use std::fmt::Display;

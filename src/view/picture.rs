@@ -21,11 +21,12 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// The picture on a page that pans and zooms, as one file of HTML that needs nothing else. Its content policy
-    /// blocks everything outside of the file, and all scripts but its own.
+    /// The picture on a page that pans and zooms, as one file of HTML that needs nothing else. Its content
+    /// policy blocks everything outside of the file, and all scripts but its own.
     ///
-    /// The view box begins at zero. The page zooms the group `map`, which has no transform. A path in the group
-    /// `scale` is the scale bar; a text there is its length in world units, a blank, and the name of the unit.
+    /// The view box begins at zero. The page zooms the group `map`, which has no transform. A path in the
+    /// group `scale` is the scale bar; a text there is its length in world units, a blank, and the name of
+    /// the unit.
     ///
     /// # Errors
     /// If writing fails.

@@ -57,8 +57,8 @@ impl Collector {
     }
 }
 
-/// Checks that the pair of each term has a link: that a configuration (B, I) of degree 1 has I and a knot of B
-/// in it. `pairs` are the configurations of degree 1, if there are any.
+/// Checks that the pair of each term has a link: that a configuration (B, I) of degree 1 has I and a knot of
+/// B in it. `pairs` are the configurations of degree 1, if there are any.
 ///
 /// Memory: three pairs for each configuration.
 ///

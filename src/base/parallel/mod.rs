@@ -1,5 +1,5 @@
-//! Threads: the few shapes of parallel work that the programs need. Results of computations that are all in memory
-//! come from `parallel::map` of the crate `delaunay`.
+//! Threads: the few shapes of parallel work that the programs need. Results of computations that are all in
+//! memory come from `parallel::map` of the crate `delaunay`.
 //!
 //! | shape | function | threads end |
 //! |---|---|---|

@@ -29,7 +29,8 @@
 //! * *Power*: that of a place `w` relative to `a`, times `d`, is `g = d |w|^2 - m w`. With the roundings of
 //!   `d x x`, of `m x`, of their difference and of sums, its part along an axis errs by at most
 //!   `(E_d + 6 u |d^|) x^2 + (E_m + 6 u |m^|) |x|`. Along an axis, `g` is `d x^2` and a linear function, so
-//!   inside of a box with the sides `s` and `t` it is less than at the corners by at most `d (s^2 + t^2) / 4`.
+//!   inside of a box with the sides `s` and `t` it is less than at the corners by at most
+//!   `d (s^2 + t^2) / 4`.
 //!
 //! Underflow would break relative errors: where one of `n_d`, `n_x`, `n_y`, `p`, `q` is below 2^-900 nothing
 //! is claimed, and above it an underflowing product errs by less than 2^-1074, which is below `u` times the

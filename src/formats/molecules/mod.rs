@@ -58,8 +58,8 @@ use spmesh_stream::Coordinates;
 /// tells the format; with [`Format::Text`], it tells which format of points without names it is.
 ///
 /// Cost: one pass. Memory: 56 bytes per atom, and 24 per point without names. Points of such a
-/// format in an input that is not a regular file, and compressed LAS and VTK files, are copied to an unlinked temporary file
-/// first.
+/// format in an input that is not a regular file, and compressed LAS and VTK files, are copied to an unlinked
+/// temporary file first.
 ///
 /// # Errors
 /// If the file cannot be read; [`spmesh_base::error::ErrorKind::Malformed`], with file and line (or byte), if

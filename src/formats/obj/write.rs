@@ -55,12 +55,13 @@ impl Colour {
 }
 
 impl<W: Write> ObjSink<W> {
-    /// Starts the output. With a local origin, coordinates are differences from an origin near the middle of the
-    /// box of the stream, so that programs that compute in f32 lose nothing. A comment `# origin X Y Z` states it.
+    /// Starts the output. With a local origin, coordinates are differences from an origin near the middle of
+    /// the box of the stream, so that programs that compute in f32 lose nothing. A comment `# origin X Y Z`
+    /// states it.
     ///
     /// # Errors
-    /// Usage, if OBJ does not hold the kind of stream, or the header does not state the box that a local origin
-    /// needs; or if writing fails.
+    /// Usage, if OBJ does not hold the kind of stream, or the header does not state the box that a local
+    /// origin needs; or if writing fails.
     pub fn new(mut output: W, header: &Header, options: &SinkOptions) -> Result<Self> {
         expect_kind(header, "OBJ", &[Kind::Points, Kind::TriangleMesh])?;
         output.write_all(b"# OBJ written by spmesh\n").map_err(write_error)?;

@@ -15,7 +15,8 @@ pub(crate) fn is_compressed(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"))
 }
 
-/// The whole file as an array of points; without the last bytes if it ends within a point and is to be salvaged.
+/// The whole file as an array of points; without the last bytes if it ends within a point and is to be
+/// salvaged.
 pub(crate) fn open(view: &FileView, kind: RawType, is_salvaged: bool) -> Result<Content> {
     let point_len = 3 * kind.sample.len() as u64;
     let (len, points) = (view.len(), view.len() / point_len);

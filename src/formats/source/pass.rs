@@ -18,8 +18,9 @@ pub(crate) const BATCH_POINTS: usize = 1 << 14;
 
 /// One pass over the points of one file.
 pub(crate) trait Pass: Send {
-    /// Appends the next points to `batch`, about `BATCH_POINTS` of them, possibly none after filters, and their
-    /// rows to `rows`, if points carry attributes. Returns false at the end of the file, without appending any.
+    /// Appends the next points to `batch`, about `BATCH_POINTS` of them, possibly none after filters, and
+    /// their rows to `rows`, if points carry attributes. Returns false at the end of the file, without
+    /// appending any.
     fn next_batch(
         &mut self,
         placement: &mut Placement,

@@ -82,7 +82,8 @@ pub struct Cells {
 /// of threads.
 ///
 /// # Errors
-/// As [`spmesh_delaunay::delaunay3::Kernel::triangulate_weighted`]; usage, if a coordinate or radius is above 1e60.
+/// As [`spmesh_delaunay::delaunay3::Kernel::triangulate_weighted`]; usage, if a coordinate or radius is above
+/// 1e60.
 ///
 /// Cost: O(n) for atoms of molecules, about twice the time of the triangulation. Memory: 16 bytes per ball
 /// and per contact, and for each thread that of a tile, 8 MB.
@@ -117,7 +118,8 @@ fn check(balls: Balls<'_>) -> Result<()> {
     }
 }
 
-/// [`measure`] with at most `tile_max` balls in a tile, for those around it. This changes no more than rounding.
+/// [`measure`] with at most `tile_max` balls in a tile, for those around it. This changes no more than
+/// rounding.
 ///
 /// # Errors
 /// As [`measure`]; too large numbers give infinite results.

@@ -1,8 +1,8 @@
 //! Breaklines: from lines in files to a planar network on the grid of a stream.
 //!
-//! Steps: `io` reads the lines; their systems are compared with that of the points; gaps in
+//! Steps: `spmesh_formats` reads the lines; their systems are compared with that of the points; gaps in
 //! elevations are filled and long parts divided (`prepare`); coordinates are rounded to the grid of the
-//! stream (`grid`); and `geometry::noding` makes crossings and overlaps common vertices.
+//! stream (`grid`); and `spmesh_delaunay::noding` makes crossings and overlaps common vertices.
 
 mod areas;
 mod banks;

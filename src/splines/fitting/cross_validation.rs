@@ -1,8 +1,8 @@
 //! Scores of smoothing parameters: generalised and k-fold cross-validation, and restricted maximum
 //! likelihood.
 //!
-//! For the likelihood, the energy is a distribution of splines: coefficients are normally distributed with the
-//! precision lambda E / s^2, and the errors of observations with W / s^2. Linear functions, which have no
+//! For the likelihood, the energy is a distribution of splines: coefficients are normally distributed with
+//! the precision lambda E / s^2, and the errors of observations with W / s^2. Linear functions, which have no
 //! energy, are integrated out. The likelihood of `lambda` is then that of all observations, whereas
 //! cross-validation only counts errors at their places. A spline that follows all observations closely is
 //! unlikely, even if it has small residuals. So this choice rarely smooths too little.

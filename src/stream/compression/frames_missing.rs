@@ -1,5 +1,5 @@
-//! In the place of `frames`, where the feature `zstd` is missing: nothing is compressed, and what is compressed
-//! cannot be read.
+//! In the place of `frames`, where the feature `zstd` is missing: nothing is compressed, and what is
+//! compressed cannot be read.
 
 use super::Fault;
 

@@ -2,7 +2,7 @@
 
 /// A point in stored coordinates: x, y and z. Two-dimensional points without an elevation have z = 0.
 ///
-/// Streams of integer coordinates carry integer values; `Coordinates` of the crate `spmesh-stream` tells how
+/// Streams of integer coordinates carry integer values; [`crate::Coordinates`] tells how
 /// they map to the world.
 pub type Point = [f64; 3];
 

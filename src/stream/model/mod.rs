@@ -12,7 +12,7 @@
 //! | [`decimal`] | numbers as canonical decimals |
 //! | [`functions`] | functions of quadratic splines, as sums of B-splines |
 //!
-//! `crate` reads and writes these types, and `spmesh_delaunay` computes them.
+//! The rest of this crate reads and writes these types.
 //!
 //! # Example
 //!

@@ -25,7 +25,8 @@ use statistic::{Cell, Steps};
 pub struct Options {
     /// What cells hold.
     pub statistic: Statistic,
-    /// The attribute that it is of, as `spmesh_stream::model::attributes::Attributes::column` takes it; elevations if `None`.
+    /// The attribute that it is of, as `spmesh_stream::model::attributes::Attributes::column` takes it;
+    /// elevations if `None`.
     pub attribute: Option<String>,
     /// Bytes for cells; others wait in a temporary file.
     pub memory: u64,

@@ -63,8 +63,8 @@ pub fn molecular_surface(balls: Balls<'_>, probe: f64, threads: NonZeroUsize) ->
     molecular_surface_in_tiles(balls, probe, threads, TILE_MAX)
 }
 
-/// [`molecular_surface`] with at most `tile_max` balls in a tile, for a `probe` in its domain. This changes no more
-/// than rounding.
+/// [`molecular_surface`] with at most `tile_max` balls in a tile, for a `probe` in its domain. This changes
+/// no more than rounding.
 ///
 /// # Errors
 /// As [`super::measure_in_tiles`].

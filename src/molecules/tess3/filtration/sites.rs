@@ -1,10 +1,9 @@
 //! The weighted points, and what is decided about simplices of them.
 //!
-//! Points in a plane, on a line or at one place have no tetrahedra. As few points are added as it takes to span
-//! the space. The flat of the given
-//! points then touches the convex hull of all in a face. So the regular tetrahedralization of all contains
-//! that of the given points, in which none is hidden that was not before, whatever the weights of the others
-//! are.
+//! Points in a plane, on a line or at one place have no tetrahedra. As few points are added as it takes to
+//! span the space. The flat of the given points then touches the convex hull of all in a face. So the regular
+//! tetrahedralization of all contains that of the given points, in which none is hidden that was not before,
+//! whatever the weights of the others are.
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
