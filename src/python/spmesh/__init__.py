@@ -30,7 +30,7 @@ from .blocks import (
     Simplices4,
     Walls,
 )
-from .errors import MalformedError, SpmeshError, TooNewError
+from .errors import MalformedError, SpmeshError, TooNewError, UpstreamError
 from .header import Attribute, Header, Tree
 from .reader import Reader
 from .reader import Reader as open  # noqa: A004
@@ -38,3 +38,10 @@ from .whole import Stream, attributes_of, read, write_points, write_triangles
 from .writer import Writer
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Attribute", "attributes_of", "Cells", "Cells4", "Coefficients", "Configurations", "End", "FARAWAY",
+    "Function", "Functions", "Header", "Labels", "MalformedError", "NOT_A_VERTEX", "open", "OpenSegments",
+    "Patch", "Points", "Points4", "read", "Reader", "ResidualPoints", "Segments", "Simplices4", "SpmeshError",
+    "Stream", "TooNewError", "Tree", "UpstreamError", "Walls", "write_points", "write_triangles", "Writer",
+]

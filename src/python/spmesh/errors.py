@@ -1,5 +1,9 @@
 """What a reader refuses."""
 
+from __future__ import annotations
+
+import re
+
 
 class SpmeshError(ValueError):
     """A stream that is refused. `place` says where: the header, or the block and its first byte."""
@@ -15,6 +19,22 @@ class MalformedError(SpmeshError):
 
 class TooNewError(SpmeshError):
     """The stream needs what this version does not know (exit code 6 of the programs)."""
+
+
+class UpstreamError(SpmeshError):
+    """The program that wrote the stream failed, and said so at its end; `exit_code` is that of the program."""
+
+    exit_code = 1
+
+
+def upstream_error(tail: bytes) -> UpstreamError | None:
+    """The failure that the last bytes of a stream tell, if they do."""
+    mark = re.search(rb"\nspmesh: failed (\d{3})\n\Z", tail)
+    if mark is None:
+        return None
+    error = UpstreamError(f"the program that wrote the stream failed with exit code {int(mark[1])}; stderr says why")
+    error.exit_code = int(mark[1])
+    return error
 
 
 def require(holds, message: str) -> None:

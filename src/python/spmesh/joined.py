@@ -58,6 +58,8 @@ class Join:
     def read(self, memory: bool) -> Whole:
         for part in self.parts:
             path = os.path.join(self.folder, part["file"])
+            # Opening a pipe waits for a writer, which may never come.
+            require(os.path.isfile(path) or not os.path.exists(path), f"{path} is no regular file")
             with Reader(path, memory) as reader:
                 try:
                     self._check_header(reader.header, part["number"])

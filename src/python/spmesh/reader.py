@@ -12,7 +12,7 @@ from crc32c import crc32c
 from . import blocks as b
 from .compression import decompress
 from .constraints import Constraints, sides_of
-from .errors import SpmeshError, needs, require
+from .errors import SpmeshError, needs, require, upstream_error
 from .header import CODES, KINDS, NUMBER_BITS, UNKNOWN, Header, check_tag
 from .parts import check_shared, shared_of
 from .rules import Chunks, FinalCells, LiveVertices
@@ -32,12 +32,13 @@ class Reader:
     def __init__(self, file: BinaryIO | str | os.PathLike, memory: bool = True):
         self._own = isinstance(file, (str, os.PathLike))
         self._file = open(file, "rb") if self._own else file
-        self.place, self._offset, self._number = "header at byte 0", 0, 0
+        self.place, self._offset, self._number, self._tail = "header at byte 0", 0, 0, b""
         try:
             self.header = Header.read(self._read)
         except SpmeshError as error:
+            failure = self._failure_of(error)
             self.close()
-            raise type(error)(error.message, self.place) from None
+            raise failure from None
         header = self.header
         self._phases, self._phase, self._ended = KINDS[CODES[header.kind]][2], 0, False
         self.totals = dict.fromkeys(b.TOTALS, 0)
@@ -73,7 +74,13 @@ class Reader:
         while len(data) < size and (more := self._file.read(size - len(data))):
             data += more
         self._offset += len(data)
+        self._tail = (self._tail + data[-32:])[-32:]
         return data
+
+    def _failure_of(self, error: SpmeshError) -> SpmeshError:
+        """The error with its place, or that of the program before this one in a pipe, which is its cause."""
+        cause = None if self._own else upstream_error(self._tail + self._read(32))
+        return cause or type(error)(error.message, self.place)
 
     def _take(self, size: int) -> bytes:
         data = self._read(size)
@@ -102,7 +109,7 @@ class Reader:
             return block
         except SpmeshError as error:
             self._ended = True
-            raise type(error)(error.message, self.place) from None
+            raise self._failure_of(error) from None
 
     @staticmethod
     def _points_of(block) -> int:

@@ -62,7 +62,7 @@ def read(file, memory: bool = True) -> Stream:
     """
     if is_manifest(file):
         whole = Join(file).read(memory)
-        return Stream(whole.header, whole.stored, whole.simplices, whole.rows, totals=whole.totals)
+        return Stream(whole.header, whole.stored, whole.simplices.astype(np.int64), whole.rows, totals=whole.totals)
     with Reader(file, memory) as reader:
         header, parts = reader.header, {}
         configurations, functions, totals = [], [], {}
@@ -103,6 +103,9 @@ def read(file, memory: bool = True) -> Stream:
         arrays["rows"] = np.empty(0, header.row_dtype)
     if arrays["simplices"] is None and header.has_patches:
         arrays["simplices"] = np.empty((0, header.corners), np.uint64)
+    if header.has_patches:
+        # numpy makes floats of sums of unsigned and signed integers.
+        arrays["simplices"] = arrays["simplices"].astype(np.int64, copy=False)
     residual, cells4 = parts.get("residual"), parts.get("cells4")
     return Stream(
         header, stored, **arrays, totals=totals, configurations=configurations, functions=functions,
@@ -203,8 +206,17 @@ def write_points(file, xyz, attributes=None, scale=None, offset=(0.0, 0.0, 0.0),
         "points", dims, xyz.shape[1] > dims, scale, tuple(map(float, offset)) if scale else None,
         points=len(xyz), wkt=wkt, attributes=attributes_of({} if attributes is None else attributes),
     )
-    with Writer(file, header) as writer:
+    with Writer(file, _bounded(header, xyz)) as writer:
         writer.points(xyz, None if attributes is None else _filled(attributes, header.attributes))
+
+
+def _bounded(header: Header, xyz: np.ndarray) -> Header:
+    """The header with the box of these points, so that programs need not be told where they are."""
+    if len(xyz) and np.isfinite(xyz).all():
+        low, high = header.stored(np.array([xyz.min(axis=0), xyz.max(axis=0)])).tolist()
+        flat = [0] * (3 - len(low))
+        header.bounds = (*low, *flat, *high, *flat)
+    return header
 
 
 def _indices(triangles) -> np.ndarray:
@@ -247,7 +259,7 @@ def write_triangles(file, xyz, triangles, attributes=None, scale=None, offset=(0
     ids[order] = np.arange(len(xyz))
     columns = _filled({} if attributes is None else attributes, header.attributes)
     pick = lambda chosen: {name: column[chosen] for name, column in columns.items()} if columns else None
-    with Writer(file, header) as writer:
+    with Writer(file, _bounded(header, xyz)) as writer:
         written = 0
         for number, at in enumerate(range(0, len(triangles), step)):
             part = ids[triangles[at : at + step]]

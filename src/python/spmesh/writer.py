@@ -12,6 +12,7 @@ from crc32c import crc32c
 from .blocks import NOT_A_VERTEX, TOTALS, OpenSegments, Patch, Segments
 from .constraints import Constraints, segment_dtype
 from .header import KINDS, CODES, Header
+from .output import OutputFile
 from .parts import check_shared, origins_of
 from .reader import KNOTS_OF
 
@@ -25,15 +26,15 @@ class Writer:
         with spmesh.Writer(path, header) as writer:
             writer.points(xyz)
 
-    Leaving the block normally writes END; leaving it by an exception does not, so that what was written is never taken
-    for a whole stream. Values that break a rule raise ValueError; whole meshes are not checked (`spinfo --audit` is).
+    Leaving the block normally writes END, and gives a file its name; leaving it by an exception does neither, so that
+    what was written is never taken for a whole stream, and a file that was there before stays. Values that break a rule raise ValueError; whole meshes are not checked (`spinfo --audit` is).
     """
 
     def __init__(self, file: BinaryIO | str | os.PathLike, header: Header):
         self._data = header.encode()
         self.header = header
         self._own = isinstance(file, (str, os.PathLike))
-        self._file = open(file, "wb") if self._own else file
+        self._file = OutputFile(file) if self._own else file
         self._sequence, self._phase = 0, 0
         self.totals = dict.fromkeys(TOTALS, 0)
         self._finalized = 0
@@ -263,4 +264,7 @@ class Writer:
         if self.header.has_patches and self._finalized + getattr(self, "_named", 0) != totals["vertices"]:
             raise ValueError(f"{self._finalized} of {totals['vertices']} vertices are finalized")
         self._block(b"END ", struct.pack("<7Q", *totals.values()))
-        self._file.flush()
+        if self._own:
+            self._file.commit()
+        else:
+            self._file.flush()

@@ -186,6 +186,21 @@ class Programs(unittest.TestCase):
 
 
 class Writers(unittest.TestCase):
+    def test_meshes_say_where_they_are(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, raster = Path(folder, "a.spm"), Path(folder, "a.asc")
+            for scale in (None, 0.001):
+                spmesh.write_triangles(path, [[0, 0, 1], [9, 0, 2], [0, 9, 3]], [[0, 1, 2]], scale=scale)
+                run("spdem", "--step", 1, path, "-o", raster)
+                self.assertIn("ncols 9", " ".join(raster.read_text().split()))
+            self.assertEqual((spmesh.read(path).simplices + np.arange(3)).dtype, np.int64)
+
+    def test_a_program_that_failed_is_named(self):
+        command = f"{BIN / 'spfinalize'} -q missing.laz | {BIN / 'spdelaunay2d'} -q"
+        with subprocess.Popen(command, shell=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as pipe:
+            with self.assertRaisesRegex(spmesh.UpstreamError, "exit code 1"):
+                spmesh.read(pipe.stdout)
+
     def test_an_exception_leaves_no_end(self):
         file = io.BytesIO()
         with self.assertRaises(RuntimeError):
@@ -194,6 +209,29 @@ class Writers(unittest.TestCase):
                 raise RuntimeError("the producer failed")
         with self.assertRaises(spmesh.MalformedError):
             spmesh.read(io.BytesIO(file.getvalue()))
+
+    def test_files_get_their_names_when_they_are_whole(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, link = Path(folder, "a.spm"), Path(folder, "link")
+            link.symlink_to("a.spm")
+            spmesh.write_points(link, cloud(100))
+            path.chmod(0o640)
+            whole = path.read_bytes()
+
+            def fail():
+                with spmesh.Writer(path, spmesh.Header()) as writer:
+                    writer.points([[0.0, 1.0]])
+                    raise RuntimeError("the producer failed")
+
+            def forget():
+                spmesh.Writer(path, spmesh.Header()).points([[0.0, 1.0]])
+
+            self.assertRaises(RuntimeError, fail)
+            forget()
+            self.assertEqual((sorted(os.listdir(folder)), path.read_bytes()), (["a.spm", "link"], whole))
+            spmesh.write_points(link, cloud(5))
+            self.assertEqual((len(spmesh.read(path).xyz), path.stat().st_mode & 0o777), (5, 0o640))
+            self.assertTrue(link.is_symlink())
 
     def test_what_breaks_a_rule_is_refused(self):
         grid = dict(scale=(1.0,) * 3, offset=(0.0,) * 3)
