@@ -4,7 +4,7 @@ use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::process::{Command, Output, Stdio};
 
-use crate::programs::{Folder, cloud, outcome, run, tool};
+use crate::programs::{Folder, cloud, mesh_of_cloud, outcome, run, tool};
 
 /// A run that succeeds: the tool, its arguments but for the output, and the input.
 struct Run {
@@ -159,7 +159,7 @@ fn inputs_of_flags_are_not_replaced() {
     let folder = Folder::new();
     let given = folder.write("given", "1\n");
     let list = folder.write("list", "a.txt\n");
-    let pictures = folder.write("1.svg", "");
+    let pictures = folder.write("1.svg", mesh_of_cloud(20));
     let cases: [(&str, &[&str]); 14] = [
         ("spfinalize", &["--lof", &list, "-o", &list]),
         ("spdem", &["--like", &given, "mesh.spm", "-o", &given]),

@@ -8,6 +8,7 @@ mod empty;
 mod endless;
 mod files;
 mod finalize;
+mod inputs;
 mod limits;
 mod lines;
 mod messages;

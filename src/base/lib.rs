@@ -5,6 +5,8 @@
 #[cfg(feature = "files")]
 pub mod allocator;
 pub mod error;
+#[cfg(feature = "files")]
+pub mod inputs;
 pub mod limits;
 #[cfg(feature = "files")]
 pub mod output;

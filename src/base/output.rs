@@ -12,6 +12,7 @@ use rustix::fs::{AtFlags, CWD};
 use rustix::fs::{Mode, OFlags};
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::inputs::{self, Claim};
 use crate::system;
 use crate::temporary::{Name, without_path};
 use crate::upstream;
@@ -42,6 +43,8 @@ const TEMPORARY_PREFIX: &str = ".spmesh-";
 /// cannot be caught, if the program has called [`crate::temporary::remove_names_at_signals`].
 pub struct Output {
     name: String,
+    /// Keeps inputs from its place until it is complete.
+    _claim: Claim,
     sink: Sink,
     written: u64,
     /// End of the bytes of a file that the system has started to write to the disk.
@@ -71,9 +74,10 @@ impl Output {
     /// Binary data on stdout are marked if the program fails ([`crate::upstream`]).
     ///
     /// # Errors
-    /// Usage, if `binary` data would go to a terminal; I/O, if stdout is closed or the folder cannot be
+    /// Usage, if `binary` data would go to a terminal, or the file is an input of this run; I/O, if stdout is closed or the folder cannot be
     /// written to.
     pub fn create(path: &Path, binary: bool) -> Result<Output> {
+        let _claim = Claim::new(path)?;
         if path == Path::new("-") {
             let stdout = open_stdout()?;
             if binary && stdout.is_terminal() {
@@ -85,12 +89,12 @@ impl Output {
             // Bypasses `Stdout`, whose line buffering would search binary data for line ends.
             let file = stdout.as_fd().try_clone_to_owned().map_err(|e| Error::io("opening stdout", e))?;
             let sink = Sink::InPlace(BufWriter::with_capacity(BUFFER_LEN, File::from(file)));
-            return Ok(Output { name: "stdout".into(), sink, written: 0, write_back_end: 0 });
+            return Ok(Output { name: "stdout".into(), _claim, sink, written: 0, write_back_end: 0 });
         }
         upstream::output_is_open(false);
         let name = path.display().to_string();
         let sink = create_file(path).map_err(|e| Error::io("creating the output", e).of_input(&name))?;
-        Ok(Output { name, sink, written: 0, write_back_end: 0 })
+        Ok(Output { name, _claim, sink, written: 0, write_back_end: 0 })
     }
 
     /// Bytes written so far.
@@ -169,6 +173,19 @@ impl Seek for Output {
 pub fn create_folder(folder: &Path) -> Result<()> {
     fs::create_dir_all(folder)
         .map_err(|e| Error::io("creating the folder", e).of_input(folder.display().to_string()))
+}
+
+/// Removes a file of an earlier run, if it is there. `what` it is stands in messages.
+///
+/// # Errors
+/// If the system refuses it; usage, if the file is an input of this run.
+pub fn remove_earlier(path: &Path, what: &str) -> Result<()> {
+    if !path.is_file() {
+        return Ok(());
+    }
+    inputs::check_output(path)?;
+    let failed = |e| Error::io(format!("removing {what} of an earlier run"), e);
+    fs::remove_file(path).map_err(|e| failed(e).of_input(path.display().to_string()))
 }
 
 /// Stdout.
@@ -332,7 +349,13 @@ mod tests {
         take_signals();
         remove_names_at_signals();
         let sink = create_named(folder.join("mesh.spm"), None).unwrap();
-        let mut output = Output { name: "mesh.spm".into(), sink, written: 0, write_back_end: 0 };
+        let mut output = Output {
+            name: "mesh.spm".into(),
+            _claim: Claim::new(folder).unwrap(),
+            sink,
+            written: 0,
+            write_back_end: 0,
+        };
         output.write_all(b"half").unwrap();
         output.flush().unwrap();
         println!("ready");

@@ -1,9 +1,10 @@
 //! Recognizes outputs that would replace inputs or each other, however their paths are written.
 
 use std::collections::{HashMap, HashSet};
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 use rustix::fs::{FileType, fstat, stat};
@@ -13,7 +14,7 @@ use crate::output::{folder_of, target_of};
 
 /// The identity of a file.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-enum Place {
+pub(crate) enum Place {
     /// A regular file: device and inode.
     File(u64, u64),
     /// A file that does not exist yet: its path, free of symbolic links.
@@ -23,7 +24,7 @@ enum Place {
 impl Place {
     /// The place of `path`, or of `standard` for "-". `None` for devices, which may be given several times,
     /// for pipes (see [`pipe_at`]), for folders, and for paths that cannot be created.
-    fn of(path: &Path, standard: BorrowedFd<'_>) -> Option<Place> {
+    pub(crate) fn of(path: &Path, standard: BorrowedFd<'_>) -> Option<Place> {
         match found_at(path, standard) {
             Ok(found) => {
                 (found.kind == FileType::RegularFile).then_some(Place::File(found.device, found.inode))
@@ -35,6 +36,12 @@ impl Place {
                 Some(Place::New(folder.join(target.file_name()?)))
             }
         }
+    }
+
+    /// The place of an open file, if it is a regular one.
+    pub(crate) fn of_file(file: &File) -> Option<Place> {
+        let metadata = file.metadata().ok().filter(fs::Metadata::is_file)?;
+        Some(Place::File(metadata.dev(), metadata.ino()))
     }
 }
 
@@ -72,7 +79,7 @@ impl Inputs {
 /// Usage, if two of them are one file, two outputs are stdout, or two inputs are one pipe.
 pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&str, &Path)]) -> Result<()> {
     let inputs: Vec<&Path> = inputs.into_iter().collect();
-    check_pipes(&inputs)?;
+    check_pipes(inputs.iter().copied())?;
     let inputs = Inputs::of(inputs);
     for &(flag, path) in outputs {
         if let Some(input) = inputs.at(path) {
@@ -94,9 +101,12 @@ pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&
 
 /// Refuses a named pipe that is given as two inputs: its data can be read once, and the second time the
 /// program would wait for a writer that never comes. Programs say themselves what "-" may stand for.
-fn check_pipes(inputs: &[&Path]) -> Result<()> {
+///
+/// # Errors
+/// Usage, with the name of the pipe.
+pub fn check_pipes<'p>(inputs: impl IntoIterator<Item = &'p Path>) -> Result<()> {
     let mut pipes = HashSet::new();
-    for &path in inputs {
+    for path in inputs {
         let Some(pipe) = pipe_at(path, io::stdin().as_fd()) else { continue };
         if !pipes.insert(pipe) && !is_standard(path) {
             let message = "is a pipe that is given twice, but its data can be read once: give a file";
@@ -120,11 +130,11 @@ fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-fn name_of_input(path: &Path) -> String {
+pub(crate) fn name_of_input(path: &Path) -> String {
     name_of(path, "stdin")
 }
 
-fn name_of_output(path: &Path) -> String {
+pub(crate) fn name_of_output(path: &Path) -> String {
     name_of(path, "stdout")
 }
 

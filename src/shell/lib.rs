@@ -5,6 +5,7 @@ pub mod cells;
 pub mod compression;
 pub mod crs;
 pub mod endings;
+mod files;
 pub mod messages;
 mod named;
 pub mod outline;
@@ -26,8 +27,10 @@ pub use messages::{notice, say};
 pub use named::{Names, named, of_ending, value_name};
 pub use spmesh_base::allocator::Allocator;
 use spmesh_base::error::{Error, ErrorKind};
+use spmesh_base::inputs;
 use spmesh_base::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
 use spmesh_base::parallel::{THREADS_DEFAULT_MAX, available_threads};
+use spmesh_base::places::check_pipes;
 use spmesh_base::system;
 pub use spmesh_base::system::peak_memory;
 use spmesh_base::temporary::remove_names_at_signals;
@@ -44,6 +47,7 @@ pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> Exi
     system::save_address_space();
     system::report_large_files();
     remove_names_at_signals();
+    inputs::watch();
     system::exit_at_abort("not enough memory\n", ErrorKind::Memory.exit_code());
     let arguments = join_stats_format(std::env::args_os());
     let flags: Flags = match messages::parse(&arguments) {
@@ -208,6 +212,7 @@ pub fn read_list(list: &Path) -> spmesh_base::error::Result<Vec<PathBuf>> {
     if files.is_empty() {
         return Err(Error::usage("lists no files").of_input(&name));
     }
+    check_pipes(files.iter().map(PathBuf::as_path))?;
     Ok(files)
 }
 

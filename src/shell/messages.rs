@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use super::Common;
+use super::{Common, files};
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::open_stdout;
 use spmesh_base::upstream;
@@ -56,8 +56,15 @@ pub fn fail(tool: &str, error: &anyhow::Error) -> ExitCode {
 
 /// Parses the command line. If the run ends here, after help, a version or wrong usage, returns the exit code.
 pub fn parse<Flags: Parser>(arguments: &[OsString]) -> std::result::Result<Flags, ExitCode> {
-    let message = match Flags::try_parse_from(arguments) {
-        Ok(flags) => return Ok(flags),
+    let mut command = Flags::command();
+    let parsed = command.try_get_matches_from_mut(arguments).and_then(|mut matches| {
+        let checked = files::check(&command, &matches);
+        let flags = Flags::from_arg_matches_mut(&mut matches).map_err(|e| e.format(&mut command))?;
+        Ok((flags, checked))
+    });
+    let message = match parsed {
+        Ok((flags, Ok(()))) => return Ok(flags),
+        Ok((_, Err(error))) => return Err(fail(command.get_name(), &error.into())),
         // Messages repeat arguments.
         Err(message) => Flags::try_parse_from(arguments.iter().map(|argument| printable(argument)))
             .err()

@@ -7,7 +7,6 @@ use std::io::Cursor;
 use super::tiles::{mesh_and_grid, tiff_values};
 use super::{is_same, options, raster, values};
 use crate::programs::{Folder, assert_outcome, mesh_of_cloud, outcome, run, sample};
-use spmesh_base::places::Inputs;
 use spmesh_formats::raster::{Differences, Grid, RasterFormat, RasterOptions};
 use spmesh_stream::StreamReader;
 use spmesh_terrain::dem::{Method, Options, Quantity, Sample, rasterize};
@@ -25,7 +24,7 @@ fn sheets(
     let path = folder.root().join("all.x");
     // Of an earlier run.
     old.iter().chain(&["other.x"]).for_each(|name| drop(folder.file(name, "old")));
-    let mut sheets = Sheets::new(&path, division, Inputs::default(), options.raster.format).unwrap();
+    let mut sheets = Sheets::new(&path, division, options.raster.format).unwrap();
     let mut reader = StreamReader::new(stream, "mesh").unwrap();
     let output: Destination<Cursor<Vec<u8>>> = Destination::Sheets(&mut sheets);
     rasterize(&mut reader, output, grid, options, |_| {}).unwrap();

@@ -1,9 +1,11 @@
 //! Limits of inputs at both sides: the last that is taken, and the first that is refused.
 
+use std::fs::File;
+
 use spmesh_base::limits::{
     BREAKLINE_VERTICES_MAX, CONDITION_DEPTH_MAX, CONDITION_LEN_MAX, CONTOURS_PER_TRIANGLE_MAX,
-    LIST_FILES_MAX, NPY_HEADER_MAX, NRRD_FILES_MAX, NRRD_HEADER_MAX, NUMBER_LEN_MAX, STRUCTURE_LINE_MAX,
-    TEXT_LINE_MAX, WKT_LEN_MAX, XML_DEPTH_MAX, XML_TAG_MAX,
+    LIST_FILES_MAX, MANIFEST_LEN_MAX, NPY_HEADER_MAX, NRRD_FILES_MAX, NRRD_HEADER_MAX, NUMBER_LEN_MAX,
+    PLAN_LEN_MAX, STRUCTURE_LINE_MAX, TEXT_LINE_MAX, WKT_LEN_MAX, XML_DEPTH_MAX, XML_TAG_MAX,
 };
 use spmesh_formats::source::{read_polygons, read_polylines};
 use spmesh_formats::volumes::Condition;
@@ -96,6 +98,23 @@ fn headers_of_volumes() {
         format!("{}\n{values}", head.replace("raw", "ascii").replace("uchar", "double")).into_bytes()
     };
     assert_sides(&["dd4", "-"], NUMBER_LEN_MAX, "at most 128 bytes", number);
+}
+
+/// Files without data on the disk: a longer one is not read at all.
+#[test]
+fn manifests_and_plans() {
+    let folder = Folder::new();
+    let limits = [
+        (MANIFEST_LEN_MAX, r#"{"format":"spmesh mesh in parts","#, "spinfo", &[][..]),
+        (PLAN_LEN_MAX, r#"{"format":"spmesh plan","#, "spnode", &["list"]),
+    ];
+    for (most, start, name, words) in limits {
+        let path = folder.write("long.json", start);
+        File::options().write(true).open(&path).unwrap().set_len(most + 1).unwrap();
+        let (code, message) = outcome(&run(name, &[words, &[&path]].concat(), &[]));
+        let expected = format!("{} bytes, the maximum is {most}", most + 1);
+        assert!(code == Some(3) && message.contains(&expected), "{code:?} {message}");
+    }
 }
 
 #[test]

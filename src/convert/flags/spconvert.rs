@@ -9,7 +9,6 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use crate::{Options, convert};
 use spmesh_base::error::{Error, ErrorKind};
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_base::system;
 use spmesh_formats::drivers::Format;
 use spmesh_formats::sink::SinkOptions;
@@ -121,7 +120,6 @@ pub fn run(flags: Flags) -> Result<()> {
         Error::usage("the format of the output is not known: give it with --to, or a name like mesh.obj")
     })?;
     let compress = flags.compression.of_output(to == Format::Stream)?;
-    check_apart([flags.input.as_path()], &[("--output", &flags.output)])?;
     let is_binary = to.is_binary() && !(to == Format::Ply && flags.ascii);
     // Fail before the work if the output cannot be created.
     let mut output = Output::create(&flags.output, is_binary)?;

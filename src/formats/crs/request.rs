@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use spmesh_base::error::{Error, Result};
+use spmesh_base::inputs;
 use spmesh_base::limits::CRS_LEN_MAX;
 use spmesh_stream::Crs;
 
@@ -26,11 +27,11 @@ pub fn requested(argument: &str) -> Result<Crs> {
     let text = if bare.contains(['[', '(']) && !Path::new(argument).exists() {
         bare.to_string()
     } else {
-        std::fs::read_to_string(argument).map_err(|cause| {
-            let message =
-                "reading a coordinate reference system (--crs takes EPSG:CODE, well-known text, or a file)";
-            Error::io(message, cause).of_input(argument)
-        })?
+        let content = inputs::read(Path::new(argument), "a system of", CRS_LEN_MAX as u64);
+        let hint = "--crs takes EPSG:CODE, well-known text, or a file";
+        let content = content.map_err(|e| e.noting(hint).of_input(argument))?;
+        String::from_utf8(content)
+            .map_err(|_| Error::malformed("is no text").noting(hint).of_input(argument))?
     };
     of_text(text.trim_start_matches('\u{feff}').trim())
 }

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use crate::lines::Properties;
 use spmesh_base::error::{Error, Result};
+use spmesh_base::inputs;
 
 const HEADER_LEN: usize = 32;
 const FIELD_LEN: usize = 32;
@@ -32,20 +33,11 @@ pub(crate) struct Table {
 impl Table {
     /// The table beside a Shapefile; `None` if there is none, or none of its columns has a meaning.
     pub(crate) fn beside(path: &Path) -> Result<Option<Table>> {
-        for ending in ["dbf", "DBF"] {
-            let beside = path.with_extension(ending);
-            let name = beside.display().to_string();
-            match File::open(&beside) {
-                Ok(file) => {
-                    let table = Table::read_header(BufReader::new(file), name.clone());
-                    let table = table.map_err(|error| error.of_input(name))?;
-                    return Ok(Some(table).filter(|table| !table.columns.is_empty()));
-                }
-                Err(error) if error.kind() == ErrorKind::NotFound => {}
-                Err(error) => return Err(Error::io("opening", error).of_input(name)),
-            }
-        }
-        Ok(None)
+        let Some((file, beside)) = inputs::open_beside(path, &["dbf", "DBF"])? else { return Ok(None) };
+        let name = beside.display().to_string();
+        let table = Table::read_header(BufReader::new(file), name.clone());
+        let table = table.map_err(|error| error.of_input(name))?;
+        Ok(Some(table).filter(|table| !table.columns.is_empty()))
     }
 
     fn read_header(mut input: BufReader<File>, name: String) -> Result<Table> {

@@ -2,7 +2,6 @@
 //!
 //! Source: OGC 12-128r19, GeoPackage Encoding Standard 1.4.
 
-use std::fs::File;
 use std::io::Read;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
@@ -14,6 +13,7 @@ use rusqlite::{Connection, ErrorCode, OpenFlags};
 use crate::crs::{System, differences, requested};
 use crate::lines::{Breaklines, Collector, Properties, wkb};
 use spmesh_base::error::{Error, Result};
+use spmesh_base::inputs;
 use spmesh_base::limits::{CRS_LEN_MAX, geopackage_steps_max, geopackage_value_max};
 use spmesh_stream::Crs;
 
@@ -71,7 +71,7 @@ fn confine(database: &Connection, len: u64) -> Result<()> {
 /// if bytes 24 and 92 state the same change.
 fn check_whole(path: &Path) -> Result<u64> {
     let reading = |e| Error::io("reading", e);
-    let mut file = File::open(path).map_err(|e| Error::io("opening", e))?;
+    let mut file = inputs::open(path)?;
     let found = file.metadata().map_err(reading)?.len();
     let mut header = [0; 100];
     if file.read_exact(&mut header).is_err() {

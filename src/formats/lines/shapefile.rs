@@ -11,6 +11,7 @@ use crate::lines::collect::Shape;
 use crate::lines::dbase::Table;
 use crate::lines::{Breaklines, Collector};
 use spmesh_base::error::{Error, Result};
+use spmesh_base::inputs;
 use spmesh_base::limits::CRS_LEN_MAX;
 use spmesh_stream::Crs;
 
@@ -179,22 +180,15 @@ fn numbers(bytes: &[u8]) -> Vec<f64> {
 
 /// The system in the file beside a Shapefile.
 fn system(path: &Path) -> Result<Crs> {
-    for ending in ["prj", "PRJ"] {
-        let beside = path.with_extension(ending);
-        let mut text = Vec::new();
-        match std::fs::File::open(&beside) {
-            Ok(file) => file.take(CRS_LEN_MAX as u64 + 1).read_to_end(&mut text),
-            Err(error) if error.kind() == ErrorKind::NotFound => continue,
-            Err(error) => Err(error),
-        }
-        .map_err(|e| Error::io("reading", e).of_input(beside.display().to_string()))?;
-        if text.len() > CRS_LEN_MAX {
-            let message = format!("more than {CRS_LEN_MAX} bytes, expected well-known text of a system");
-            return Err(Error::malformed(message).of_input(beside.display().to_string()));
-        }
-        let text = String::from_utf8_lossy(&text);
-        let text = text.trim_start_matches('\u{feff}').trim();
-        return Ok(if text.is_empty() { Crs::Unknown } else { Crs::Wkt(text.to_string()) });
+    let Some((file, beside)) = inputs::open_beside(path, &["prj", "PRJ"])? else { return Ok(Crs::Unknown) };
+    let named = |e: Error| e.of_input(beside.display().to_string());
+    let mut text = Vec::new();
+    file.take(CRS_LEN_MAX as u64 + 1).read_to_end(&mut text).map_err(|e| named(Error::io("reading", e)))?;
+    if text.len() > CRS_LEN_MAX {
+        let message = format!("more than {CRS_LEN_MAX} bytes, expected well-known text of a system");
+        return Err(named(Error::malformed(message)));
     }
-    Ok(Crs::Unknown)
+    let text = String::from_utf8_lossy(&text);
+    let text = text.trim_start_matches('\u{feff}').trim();
+    Ok(if text.is_empty() { Crs::Unknown } else { Crs::Wkt(text.to_string()) })
 }

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use crate::source::gzip::Plain;
 use crate::source::origin::open_file;
 use spmesh_base::error::{Error, Result};
-use spmesh_base::limits::{self, MANIFEST_LEN_MAX};
+use spmesh_base::inputs;
+use spmesh_base::limits::MANIFEST_LEN_MAX;
 use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Header, JoinedMesh, OpenedPart, PartSize, StreamReader, Totals};
 
@@ -120,14 +121,8 @@ pub fn open_manifest(path: &Path) -> Result<JoinedMesh> {
     joined(path).map_err(|e| e.of_input(path.display().to_string()))
 }
 
-fn check_len(len: u64) -> Result<()> {
-    limits::check_len("a manifest of", len, MANIFEST_LEN_MAX)
-}
-
 fn joined(path: &Path) -> Result<JoinedMesh> {
-    let metadata = fs::metadata(path).map_err(|e| Error::io("reading", e))?;
-    check_len(metadata.len())?;
-    let manifest = Manifest::parse(&fs::read(path).map_err(|e| Error::io("reading", e))?)?;
+    let manifest = Manifest::parse(&inputs::read(path, "a manifest of", MANIFEST_LEN_MAX)?)?;
     let plan = manifest.plan_number()?;
     let folder = path.parent().map(PathBuf::from).unwrap_or_default();
     let sizes: Vec<PartSize> = manifest.parts.iter().map(size_of).collect();
@@ -165,16 +160,4 @@ fn open_part(path: &Path) -> Result<OpenedPart> {
     let (file, _) = open_file(path).map_err(named)?;
     let plain = Plain::new(file).map_err(|e| named(Error::io("reading", e)))?;
     Ok((Box::new(plain), name))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn length_has_a_limit() {
-        assert!(check_len(MANIFEST_LEN_MAX).is_ok());
-        let message = check_len(MANIFEST_LEN_MAX + 1).unwrap_err().to_string();
-        assert_eq!(message, "a manifest of 268435457 bytes, the maximum is 268435456");
-    }
 }

@@ -1,15 +1,16 @@
 //! Holds the place of an input's bytes, so that each pass can read them from the start.
 
 use std::fs::{File, FileType};
-use std::io::{self, Cursor, IsTerminal, Read, Seek, SeekFrom, Stdin};
+use std::io::{self, Cursor, Read, Seek, SeekFrom, Stdin};
 use std::os::fd::AsFd;
-use std::os::unix::fs::{FileExt, FileTypeExt, MetadataExt};
+use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::detect::{HEAD_LEN, Reader, read_head};
 use crate::source::gzip::{Plain, Use};
 use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::inputs;
 use spmesh_base::system;
 use spmesh_base::temporary::TemporaryFile;
 use spmesh_base::upstream::Watched;
@@ -52,37 +53,29 @@ pub(crate) enum Admitted {
 /// Stdin.
 ///
 /// # Errors
-/// If it was closed when the program started: an empty input would hide that.
+/// If it was closed when the program started: an empty input would hide that. Usage, if it is one of the
+/// outputs.
 pub fn open_stdin() -> Result<Watched<Stdin>> {
     let stdin = io::stdin();
     if system::was_closed(&stdin) {
         return Err(Error::new(ErrorKind::Io, "stdin is closed: give a file or pipe a stream in"));
     }
+    inputs::note(Path::new("-"))?;
     Ok(Watched(stdin))
 }
 
 /// Opens a file for reading, and says of which type it is.
 ///
 /// # Errors
-/// If the file cannot be opened; usage, if it is a folder or a device.
+/// As [`inputs::open`].
 pub fn open_file(path: &Path) -> Result<(File, FileType)> {
-    let file = File::open(path).map_err(|e| Error::io("opening", e))?;
-    let kind = check_type(&file)?;
+    let file = inputs::open(path)?;
+    let kind = type_of(&file)?;
     Ok((file, kind))
 }
 
-/// The type of an open file.
-fn check_type(file: &File) -> Result<FileType> {
-    let metadata = file.metadata().map_err(|e| Error::io("opening", e))?;
-    let kind = metadata.file_type();
-    if kind.is_dir() {
-        return Err(Error::usage("is a folder, expected a file"));
-    }
-    let is_null = || std::fs::metadata("/dev/null").is_ok_and(|null| null.rdev() == metadata.rdev());
-    if kind.is_char_device() && !file.is_terminal() && !is_null() {
-        return Err(Error::usage("is a device, expected a file or a pipe"));
-    }
-    Ok(kind)
+fn type_of(file: &File) -> Result<FileType> {
+    Ok(file.metadata().map_err(|e| Error::io("opening", e))?.file_type())
 }
 
 impl Origin {
@@ -127,7 +120,8 @@ impl Origin {
     ) -> Result<Origin> {
         let descriptor = stdin.as_fd().try_clone_to_owned().map_err(|e| Error::io("opening", e))?;
         let mut file = File::from(descriptor);
-        if check_type(&file)?.is_file() && file.stream_position().is_ok_and(|position| position == 0) {
+        inputs::check_type(&file)?;
+        if type_of(&file)?.is_file() && file.stream_position().is_ok_and(|position| position == 0) {
             return Ok(Origin::at(Place::Open(Arc::new(file))));
         }
         spool_pipe(Watched(file), "stdin", admitted, temp_dir, notices)
@@ -163,7 +157,7 @@ impl Origin {
     /// A view of all bytes as stored, positioned at their start.
     pub(crate) fn view(&self) -> Result<FileView> {
         let file = match &self.place {
-            Place::Path(path) => Arc::new(File::open(path).map_err(|e| Error::io("opening", e))?),
+            Place::Path(path) => Arc::new(inputs::open(path)?),
             Place::Open(file) => Arc::clone(file),
         };
         let end = file.metadata().map_err(|e| Error::io("opening", e))?.len();

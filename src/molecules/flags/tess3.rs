@@ -24,7 +24,6 @@ use selection::SelectionFlags;
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::Output;
 use spmesh_base::parallel::available_threads;
-use spmesh_base::places::check_apart;
 use spmesh_formats::drivers::Format;
 use spmesh_formats::molecules::{Structure, read_structure};
 use spmesh_formats::sink::TableFormat;
@@ -220,8 +219,6 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     }
     let is_table_of_bytes = options.format == TableFormat::Parquet;
     let is_binary = options.product == Product::Mesh || is_table_of_bytes || picture.is_some();
-    let inputs = std::iter::once(input.as_path()).chain(flags.balls.file());
-    check_apart(inputs, &[("--output", &flags.output)])?;
     let ending = match options.product {
         Product::Mesh => endings::STREAM,
         Product::Filtration => endings::NUMBERS,

@@ -12,7 +12,6 @@ use clap::Args;
 use crate::reduce::{Duplicates, Options, Part, Stats, missing_region};
 use spmesh_base::error::Error;
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::progress::Progress;
@@ -123,7 +122,6 @@ impl<const D: usize> Tool<D> {
     ) -> anyhow::Result<()> {
         advise_on_memory(self.name, "take fewer --threads, or merge --partial meshes; see --memory");
         let part = flags.part()?;
-        check_apart(flags.inputs.iter().map(PathBuf::as_path), &[("--output", &flags.output)])?;
         endings::check(&flags.output, &[endings::STREAM])?;
         let started = Instant::now();
         let options = Options { duplicates, part, weighted, ..Options::default() };

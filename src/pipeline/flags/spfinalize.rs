@@ -20,7 +20,6 @@ use planning::PlanFlags;
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::Output;
 use spmesh_base::parallel::available_threads;
-use spmesh_base::places::check_apart;
 use spmesh_base::system;
 use spmesh_formats::detect::SPFINALIZE;
 use spmesh_formats::source::{AttributeChoice, DropReason, Dropped, InvalidAdvice, RawType, SourceOptions};
@@ -213,11 +212,6 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     // Fail before the work if the output cannot be created.
     let mut output = Output::create(&flags.output, true)?;
     recipe.inputs = flags.paths()?;
-    let inputs = recipe.inputs.iter().chain(&flags.lof).chain(flags.beside()).map(PathBuf::as_path);
-    let inputs = inputs.chain(flags.weights.file());
-    let mut outputs = vec![("--output", flags.output.as_path())];
-    outputs.extend(flags.lines.report.as_ref().map(|report| ("--report", report.as_path())));
-    check_apart(inputs, &outputs)?;
     let report = flags.lines.create_report()?;
     endings::check(&flags.output, &[endings::STREAM])?;
     let mut watch = Watch { common: &flags.common, progress: None };

@@ -7,7 +7,6 @@ mod diagram;
 mod report;
 
 use std::io::{BufReader, Write};
-use std::iter;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
@@ -18,7 +17,6 @@ use spmesh_audit::diagram::{self as diagram4, StreamAudit};
 use spmesh_audit::{Audit, Census, Counts, Inventory, PointSet, Report, Standard};
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_formats::detect::SPINFO;
 use spmesh_formats::source::{Input, SourceOptions};
 use spmesh_shell::messages::escaped_json;
@@ -103,8 +101,6 @@ const STANDARDS: Names<Standard> = &[
 /// If the stream is malformed, cannot be read, or fails the audit (then the report is printed first).
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory("spinfo", "audit without --points, or audit partial meshes one by one");
-    let inputs = iter::once(&flags.input).chain(&flags.points).map(PathBuf::as_path);
-    check_apart(inputs, &[("the report", Path::new("-"))])?;
     // Fail before the work if stdout is closed.
     let output = Output::create(Path::new("-"), false)?;
     let (input, name) = open_input(&flags.input)?;

@@ -11,7 +11,6 @@ use crate::plan::{Maker, Node, Plan, Work, collect};
 use crate::reduce::Duplicates;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_shell::{Common, advise_on_memory, endings, notice, parse_size, parse_threads, threads};
 
 const TOOL: &str = "spnode";
@@ -169,7 +168,6 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             endings::check(output, &[endings::JSON])?;
             let work = work.work(Duplicates::default());
             let loaded = Plan::read(plan)?;
-            check_apart([plan.as_path()], &[("--output", output)])?;
             collect(&loaded, &work, output, *verify, &recipe, &note)?;
         }
     }

@@ -30,6 +30,7 @@ pub fn collect(
     check_name(manifest, &work.folder)?;
     let work = Work { duplicates: duplicates_of(plan, work)?, ..work.clone() };
     let maker = Maker::new(plan, &work, recipe, note)?;
+    plan.note_files()?;
     let mut output = Output::create(manifest, false)?;
     let order = plan.upwards();
     for &number in &order {

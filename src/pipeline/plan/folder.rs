@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{FileSize, Node, NodeReport, Plan, hash_of_file};
 use spmesh_base::error::{Error, ErrorKind, Result};
-use spmesh_formats::source::{Plain, open_file};
+use spmesh_formats::source::Plain;
 use spmesh_stream::StreamReader;
 
 /// The folder of all parts.
@@ -30,10 +30,10 @@ pub(super) fn report_name(number: u32) -> String {
     format!("{number:06}.json")
 }
 
-/// Opens a stream that a node has written.
+/// Opens a stream that a node has written. It is no input that must stay: the node may be made again.
 pub(super) fn open_stream(path: &Path) -> Result<StreamReader<Plain<File>>> {
     let name = path.display().to_string();
-    let (file, _) = open_file(path).map_err(|e| e.of_input(&name))?;
+    let file = File::open(path).map_err(|e| Error::io("opening", e).of_input(&name))?;
     let plain = Plain::new(file).map_err(|e| Error::io("reading", e).of_input(&name))?;
     StreamReader::new(plain, name)
 }

@@ -1,6 +1,6 @@
 //! Makes nodes.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{PipeReader, Write, pipe};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,8 @@ use crate::reduce::{
     triangulate_part,
 };
 use spmesh_base::error::{Error, ErrorKind, Result};
-use spmesh_base::output::{Output, create_folder};
+use spmesh_base::inputs;
+use spmesh_base::output::{Output, create_folder, remove_earlier};
 use spmesh_base::system;
 use spmesh_formats::source::Plain;
 use spmesh_stream::StreamReader;
@@ -96,22 +97,24 @@ impl<'a> Maker<'a> {
 
     /// Makes a node.
     pub(super) fn make(&self, node: &Node) -> Result<()> {
+        self.check_outputs(node.number)?;
         // Without its report, a node counts as incomplete while its files are replaced.
-        self.forget(node.number)?;
+        remove_earlier(&self.folder.report_path(node.number), "the report")?;
         if node.kind() == NodeKind::Inner {
             self.complete_children(node)?;
         }
         self.try_to_make(node)
     }
 
-    fn forget(&self, number: u32) -> Result<()> {
-        let path = self.folder.report_path(number);
-        match fs::remove_file(&path) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                Err(Error::io("removing an old report", e).of_input(path.display().to_string()))
-            }
-            _ => Ok(()),
+    /// Refuses to replace files of the plan. There may be a million of them: they are looked at if there is a
+    /// file under a name of this node that is no part of this plan.
+    fn check_outputs(&self, number: u32) -> Result<()> {
+        let folder = &self.folder;
+        let outputs = [folder.mesh(number), folder.residual(number), folder.report_path(number)];
+        if outputs.iter().any(|path| path.exists()) && !matches!(folder.report(number), Ok(Some(_))) {
+            folder.plan.note_files()?;
         }
+        outputs.iter().try_for_each(|path| inputs::check_output(path))
     }
 
     /// Makes the children whose residuals are not there as they were written, or were made with other options.

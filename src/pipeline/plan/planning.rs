@@ -1,6 +1,5 @@
 //! The plan as a file.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use data_encoding::HEXLOWER;
@@ -12,7 +11,8 @@ use super::files::PlannedFile;
 use super::node::Node;
 use super::tree::{Division, Share};
 use spmesh_base::error::{Error, Result};
-use spmesh_base::limits::{self, PLAN_LEN_MAX};
+use spmesh_base::inputs;
+use spmesh_base::limits::PLAN_LEN_MAX;
 use spmesh_formats::source::{Description, Extent, Survey};
 use spmesh_stream::{Coordinates, Crs, Header, Kind, PartName};
 
@@ -170,10 +170,6 @@ fn stages_of(nodes: &[Node]) -> Vec<[u32; 2]> {
     stages
 }
 
-fn check_len(len: u64) -> Result<()> {
-    limits::check_len("no plan: it has", len, PLAN_LEN_MAX)
-}
-
 impl Plan {
     /// Reads a plan.
     ///
@@ -182,13 +178,16 @@ impl Plan {
     /// version is another one.
     pub fn read(path: &Path) -> Result<Plan> {
         let named = |error: Error| error.of_input(path.display().to_string());
-        let found = fs::metadata(path).map_err(|e| named(Error::io("reading", e)))?;
-        if !found.is_file() {
-            return Err(named(Error::malformed("no plan: it is no regular file")));
-        }
-        check_len(found.len()).map_err(named)?;
-        let text = fs::read(path).map_err(|e| named(Error::io("reading", e)))?;
+        let text = inputs::read(path, "a plan of", PLAN_LEN_MAX).map_err(named)?;
         Plan::parse(&text).map_err(named)
+    }
+
+    /// Takes note that the files of the plan are inputs, whichever node reads them.
+    ///
+    /// # Errors
+    /// Usage, if one of them is an output of this run.
+    pub(super) fn note_files(&self) -> Result<()> {
+        self.files.iter().chain(&self.beside).try_for_each(|file| inputs::note(&file.path()))
     }
 
     fn parse(text: &[u8]) -> Result<Plan> {
@@ -315,17 +314,5 @@ impl Plan {
             }
         }
         order
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn length_has_a_limit() {
-        assert!(check_len(PLAN_LEN_MAX).is_ok());
-        let message = check_len(PLAN_LEN_MAX + 1).unwrap_err().to_string();
-        assert!(message.contains("1073741825 bytes, the maximum is 1073741824"), "{message}");
     }
 }

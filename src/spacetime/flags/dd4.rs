@@ -14,7 +14,6 @@ use crate::dd4::{Made, Options, Product, Quantum, TimeScale};
 use crate::diagram4::Route;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_base::system;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
@@ -153,8 +152,6 @@ impl Flags {
         if self.source.is_stdin() && self.product.reads_stdin() {
             return Err(Error::usage("points and sites cannot both come from stdin"));
         }
-        let inputs = self.source.file().into_iter().chain(self.product.file());
-        check_apart(inputs, &[("--output", &self.output)])?;
         endings::check(&self.output, &[endings::STREAM, endings::MESH, endings::TABLE])?;
         // Fail before the computation if the output cannot be created.
         let mut output = Output::create(&self.output, self.product.is_binary(&self.output)?)?;

@@ -13,7 +13,6 @@ use crate::configgen::{
 };
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_formats::source::{name_of, read_values};
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
@@ -159,9 +158,6 @@ impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
         advise_on_memory(TOOL, "take fewer knots or a lower degree");
-        let inputs = self.inputs();
-        let lists = [&self.values, &self.patches, &self.features].into_iter().flatten();
-        check_apart(inputs.iter().chain(lists).map(PathBuf::as_path), &[("--output", &self.output)])?;
         endings::check(&self.output, &[endings::STREAM])?;
         // Fail before the computation if the output cannot be created.
         let mut output = Output::create(&self.output, true)?;

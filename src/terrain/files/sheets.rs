@@ -11,8 +11,8 @@ use super::part::{Part, write};
 use super::tile_store::TileStore;
 use super::tiles::{TilePlace, TileSource, TileTarget, places, tiles_of};
 use spmesh_base::error::{Error, Result};
-use spmesh_base::output::{Output, create_folder};
-use spmesh_base::places::Inputs;
+use spmesh_base::inputs;
+use spmesh_base::output::{Output, create_folder, remove_earlier};
 use spmesh_formats::raster::{Grid, RasterFile, RasterFormat, TILE};
 
 /// A raster in many files, each of which gets its name when it is complete. Sheets without data are not
@@ -22,8 +22,6 @@ pub struct Sheets {
     /// The name of the raster, to which those of sheets are added.
     path: PathBuf,
     division: Division,
-    /// No sheet may replace one of them.
-    inputs: Inputs,
     /// Number of files.
     pub written: u64,
     /// Number of sheets without data.
@@ -38,7 +36,7 @@ impl Sheets {
     ///
     /// # Errors
     /// If no files can be made there.
-    pub fn new(path: &Path, division: Division, inputs: Inputs, format: RasterFormat) -> Result<Sheets> {
+    pub fn new(path: &Path, division: Division, format: RasterFormat) -> Result<Sheets> {
         let is_stream = path == Path::new("-") || fs::metadata(path).is_ok_and(|found| !found.is_file());
         if is_stream || path.file_name().is_none() {
             return Err(Error::usage("--tiles writes many files: give their name, as in -o folder/name.tif"));
@@ -46,7 +44,7 @@ impl Sheets {
         path.parent().map_or(Ok(()), create_folder)?;
         // Fails now rather than after the work; it leaves no file.
         Output::create(path, format == RasterFormat::GeoTiff)?;
-        Ok(Sheets { path: path.to_path_buf(), division, inputs, written: 0, blank: 0, bytes: 0 })
+        Ok(Sheets { path: path.to_path_buf(), division, written: 0, blank: 0, bytes: 0 })
     }
 
     /// The path of a sheet.
@@ -69,11 +67,7 @@ impl Sheets {
     fn check_apart(&self, strips: &[Strips; 2]) -> Result<()> {
         for [column, row] in places([strips[0].len(), strips[1].len()]) {
             let path = self.path_of([&strips[0][column].name, &strips[1][row].name]);
-            if let Some(input) = self.inputs.at(&path) {
-                let what =
-                    format!("a raster of --tiles would replace the input {input}: give another --output");
-                return Err(Error::usage(what).of_input(path.display().to_string()));
-            }
+            inputs::check_output(&path)?;
         }
         Ok(())
     }
@@ -138,7 +132,7 @@ impl<'s> Cutter<'s> {
             return Ok(());
         }
         self.sheets.blank += 1;
-        remove(&path)
+        remove_earlier(&path, "the raster")
     }
 
     /// Writes the file of a sheet, if it has data; returns whether it has.
@@ -191,14 +185,4 @@ fn window(grid: &Grid, [columns, rows]: &[Range<u32>; 2]) -> Grid {
         columns: columns.end - columns.start,
         rows: rows.end - rows.start,
     }
-}
-
-/// Removes what an earlier run left under the name of a sheet without data.
-fn remove(path: &Path) -> Result<()> {
-    if !path.is_file() {
-        return Ok(());
-    }
-    fs::remove_file(path).map_err(|e| {
-        Error::io("removing the raster of an earlier run", e).of_input(path.display().to_string())
-    })
 }

@@ -7,7 +7,6 @@ use clap::Args;
 use crate::files::{Destination, Division, SheetSize, Sheets};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_base::places::Inputs;
 use spmesh_formats::raster::RasterFormat;
 use spmesh_shell::cells::{self, CellFlags};
 
@@ -32,14 +31,12 @@ pub(super) enum RasterOutput {
 }
 
 impl SheetFlags {
-    /// Opens the output, so that a failure shows before the work. None of many rasters may replace one of
-    /// `inputs`.
-    pub(super) fn create<'p>(
+    /// Opens the output, so that a failure shows before the work.
+    pub(super) fn create(
         &self,
         path: &Path,
         format: RasterFormat,
         flags: &CellFlags,
-        inputs: impl IntoIterator<Item = &'p Path>,
     ) -> Result<RasterOutput> {
         let Some(size) = self.tiles else {
             return Ok(RasterOutput::One(cells::create(path, format)?));
@@ -49,7 +46,7 @@ impl SheetFlags {
             return Err(Error::usage(format!("--buffer takes a length from 0 on, not {buffer}")));
         }
         let division = Division { size, anchor: flags.anchor(), buffer };
-        Ok(RasterOutput::Many(Sheets::new(path, division, Inputs::of(inputs), format)?))
+        Ok(RasterOutput::Many(Sheets::new(path, division, format)?))
     }
 }
 

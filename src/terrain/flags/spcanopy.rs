@@ -11,7 +11,6 @@ use crate::canopy::{Settings, draw, thresholds};
 use crate::dem::{Method, Options, Quantity, Sample};
 use crate::height::{Ground, HeightPoints, about_below};
 use spmesh_base::error::{Error, ErrorKind, Result};
-use spmesh_base::places::check_apart;
 use spmesh_formats::detect::SPCANOPY;
 use spmesh_formats::raster::{Grid, RasterFormat, Window};
 use spmesh_formats::source::{Filters, Input, SourceOptions};
@@ -145,12 +144,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if paths.is_empty() {
         anyhow::bail!(Error::usage("no input: give LAS or LAZ files (see --help)"));
     }
-    let files = paths.iter().chain([&flags.ground]).chain(flags.cells.like()).map(PathBuf::as_path);
-    let files = || files.clone().chain(flags.outline.mask_path());
-    check_apart(files(), &[("--output", &flags.output)])?;
     endings::check(&flags.output, &[endings::RASTER])?;
     let format = of_ending(cells::ENDINGS, &flags.output).unwrap_or_default();
-    let mut output = flags.sheets.create(&flags.output, format, &flags.cells, files())?;
+    let mut output = flags.sheets.create(&flags.output, format, &flags.cells)?;
     let input = Input::open(&paths, &flags.source_options()?)?;
     input.notices().iter().for_each(|text| flags.notice(text));
     let grid = flags.cells.grid(&input.description().crs, || window(&input))?;

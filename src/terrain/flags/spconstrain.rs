@@ -8,7 +8,6 @@ use clap::Parser;
 use crate::constrain::{CutOptions, Options, Stats, constrain};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_base::system;
 use spmesh_pipeline::flags::lines::{LineFlags, summary};
 use spmesh_pipeline::lines::{self, Lines, Sources, Target, write_report};
@@ -220,10 +219,6 @@ impl Flags {
         if paths.iter().filter(|path| path.as_os_str() == "-").count() > 1 {
             return Err(Error::usage("stdin can be one input only: give the lines or the mesh as a file"));
         }
-        let report = self.lines.report.iter().map(|report| ("--report", report.as_path()));
-        let outputs: Vec<(&str, &Path)> =
-            [("--output", self.output.as_path())].into_iter().chain(report).collect();
-        check_apart(paths, &outputs)?;
         endings::check(&self.output, &[endings::STREAM])
     }
 }

@@ -4,8 +4,7 @@ mod contours;
 mod points;
 mod quantity;
 
-use std::iter;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Parser;
@@ -17,7 +16,6 @@ use crate::points::Options as PointOptions;
 use contours::{ContourFlags, Job};
 use quantity::QuantityFlags;
 use spmesh_base::error::Error;
-use spmesh_base::places::check_apart;
 use spmesh_formats::raster::RasterFormat;
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
 use spmesh_shell::crs::CrsFlag;
@@ -199,7 +197,6 @@ const FORMATS: Names<Format> = &[
 /// opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
-    check_apart(flags.inputs(), &[("--output", &flags.output)])?;
     if flags.format.is_none() {
         endings::check(&flags.output, &[endings::RASTER, endings::LINES])?;
     }
@@ -229,8 +226,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     advise_on_memory(TOOL, "take larger cells, or less --memory");
     let mut options = flags.options()?;
-    let mut output =
-        flags.sheets.create(&flags.output, options.raster.format, &flags.cells, flags.inputs())?;
+    let mut output = flags.sheets.create(&flags.output, options.raster.format, &flags.cells)?;
     let mut reader = open_stream(&flags.input)?;
     dem::check(reader.header(), &options.quantity).map_err(|e| e.of_input(reader.name()))?;
     let window = || dem::window(reader.header()).map_err(|e| e.of_input(reader.name()));
@@ -255,12 +251,6 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 }
 
 impl Flags {
-    /// The files that are read.
-    fn inputs(&self) -> impl Iterator<Item = &Path> {
-        let inputs = iter::once(self.input.as_path());
-        inputs.chain(self.cells.like().map(PathBuf::as_path)).chain(self.outline.mask_path())
-    }
-
     fn point_options(&self) -> Result<PointOptions, Error> {
         Ok(PointOptions {
             statistic: self.quantity.statistic()?,

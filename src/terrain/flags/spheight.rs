@@ -8,6 +8,7 @@ use clap::{Parser, ValueEnum};
 
 use crate::height::{Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights};
 use spmesh_base::error::{Error, Result};
+use spmesh_base::inputs;
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::check_apart;
 use spmesh_formats::las::LasFile;
@@ -140,18 +141,19 @@ struct Sums {
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     let started = Instant::now();
-    let inputs = flags.inputs()?;
-    let outputs = flags.outputs(&inputs)?;
+    let paths = flags.inputs()?;
+    let outputs = flags.outputs(&paths)?;
     // Before the check, which needs the folder to tell its files.
     if let Some(folder) = &flags.out_dir {
         create_folder(folder)?;
     }
     let flag = if flags.output.is_some() { "--output" } else { "--out-dir" };
     let named: Vec<_> = outputs.iter().map(|output| (flag, output.as_path())).collect();
-    check_apart(inputs.iter().map(PathBuf::as_path).chain([flags.ground.as_path()]), &named)?;
+    check_apart([], &named)?;
     // All headers are looked at before the work begins.
-    let files: Vec<LasFile> = inputs.iter().map(|input| flags.open(input)).collect::<Result<_>>()?;
+    let files: Vec<LasFile> = paths.iter().map(|path| flags.open(path)).collect::<Result<_>>()?;
     let mut reader = open_stream(&flags.ground)?;
+    outputs.iter().try_for_each(|output| inputs::check_output(output))?;
     let mut progress = Progress::new(&flags.common, "reading the ground", reader.header().points);
     let ground = Ground::read(&mut reader, flags.temp_dir.as_deref(), |vertices| progress.set(vertices))?;
     drop(progress);

@@ -12,7 +12,6 @@ use clap::Parser;
 use crate::{Extent, Fill, Form, Moments, Options, Picture, When};
 use outputs::{Every, Format, Moment, Outputs};
 use spmesh_base::error::{Error, Result};
-use spmesh_base::places::check_apart;
 use spmesh_formats::raster::Light;
 use spmesh_shell::cells::window_of;
 use spmesh_shell::crs::CrsFlag;
@@ -225,8 +224,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "take less --width, or --raster");
     let options = flags.options()?;
     let is_numbered = flags.snapshot.is_some();
-    check_apart(flags.outline.mask_path(), &[("--output", &flags.output)])?;
-    let mut outputs = Outputs::new(&flags.output, flags.format, is_numbered, flags.tee, &flags.input)?;
+    let mut outputs = Outputs::new(&flags.output, flags.format, is_numbered, flags.tee)?;
     let (mut input, name) = open_input(&flags.input)?;
     let head = solid::head(&mut input).map_err(|e| Error::io("reading", e).of_input(&name))?;
     let is_surface = solid::is_surface(&head);

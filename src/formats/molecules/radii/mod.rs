@@ -12,7 +12,6 @@ mod guess;
 mod residues;
 
 use std::collections::HashMap;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -26,6 +25,7 @@ use crate::molecules::model::{AtomView, Structure};
 use crate::molecules::selection::Selected;
 use crate::source::origin::open_file;
 use spmesh_base::error::{Error, Result};
+use spmesh_base::inputs;
 use spmesh_base::limits::RADII_LEN_MAX;
 
 /// Number of steps of a radius in 1 Å.
@@ -143,7 +143,7 @@ impl Radii {
         if let Some(radii) = Radii::named(name) {
             return Ok(LoadedRadii { radii, file: None });
         }
-        let input = File::open(name).map_err(|e| {
+        let input = inputs::open(Path::new(name)).map_err(|e| {
             let tables = Radii::NAMES.join(", ");
             Error::usage(format!("--radii {name}: {e}; expected a file of radii, or one of {tables}"))
         })?;

@@ -2,13 +2,11 @@
 
 use std::fmt::Write;
 use std::num::NonZeroUsize;
-use std::path::Path;
 
 use clap::Args;
 
 use crate::tess3::{BallOptions, ContactFilter, Level, NamedRadii, Product};
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::molecules::Radii;
 use spmesh_shell::named;
 
 /// Steps of a probe in 1 Å.
@@ -97,11 +95,6 @@ impl BallFlags {
         } else {
             (self.sasa || self.volumes).then_some(Product::Cells)
         }
-    }
-
-    /// The file of radii, if there is one.
-    pub(super) fn file(&self) -> Option<&Path> {
-        self.radii.as_deref().filter(|name| Radii::named(name).is_none()).map(Path::new)
     }
 
     /// The options.

@@ -1,12 +1,11 @@
 //! Flags for polygons, for water and for weights.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use crate::finalize::{Flatten, Weighing};
 use spmesh_base::error::Result;
-use spmesh_formats::molecules::Radii;
 use spmesh_shell::parse_numbers;
 
 /// Polygons that select points. They apply after the filters, and before points are thinned.
@@ -112,12 +111,6 @@ impl WeightFlags {
             (None, Some(name)) => Weighing::by_radii(name, self.probe.unwrap_or(0.0)).map(Some),
             (None, None) => Ok(None),
         }
-    }
-
-    /// The file of radii, if there is one.
-    pub(super) fn file(&self) -> Option<&Path> {
-        let file = self.radii.as_deref().filter(|name| Radii::named(name).is_none()).map(Path::new)?;
-        file.exists().then_some(file)
     }
 }
 

@@ -10,7 +10,6 @@ use super::{Flags, TOOL, flags_of};
 use crate::plan::{NodeKind, Plan, Planning, plan_of};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_formats::source::Survey;
 use spmesh_shell::endings;
 use spmesh_shell::notice;
@@ -49,8 +48,6 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
         let message = "plans need files, which jobs read later: give their names";
         return Err(Error::usage(message).of_input(stdin.display().to_string()).into());
     }
-    let inputs = paths.iter().chain(&flags.lof).chain(flags.beside()).map(PathBuf::as_path);
-    check_apart(inputs, &[("--plan", path)])?;
     let mut output = Output::create(path, false)?;
     let mut progress = Progress::counting("files", &flags.common, "headers", Some(paths.len() as u64));
     let survey = Survey::of(&paths, &flags.source_options()?, |done| progress.set(done))?;

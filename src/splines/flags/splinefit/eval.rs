@@ -1,6 +1,5 @@
 //! `splinefit eval`: flags.
 
-use std::iter;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -10,7 +9,6 @@ use super::{Threads, check_stdin, say};
 use crate::splinefit::{Attribute, Layout, Spline};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_formats::detect::SPLINEFIT;
 use spmesh_formats::raster::Grid;
 use spmesh_formats::sink::MatrixFormat;
@@ -101,8 +99,6 @@ impl Flags {
     pub(super) fn run(&self, common: &Common) -> Result<()> {
         let sites = self.at.as_ref().map(|path| ("--at", path.as_path()));
         check_stdin([("the spline", self.spline.as_path())].into_iter().chain(sites))?;
-        let inputs = iter::once(&self.spline).chain(&self.at).chain(self.cells.like());
-        check_apart(inputs.map(PathBuf::as_path), &[("--output", &self.output)])?;
         let form = format_of(&self.output, self.format, self.at.is_some(), self.collocation)?;
         match (&self.at, form) {
             (Some(sites), Form::Matrix(format)) => self.matrix(common, sites, format),

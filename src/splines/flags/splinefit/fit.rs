@@ -2,7 +2,6 @@
 
 use std::cell::RefCell;
 use std::io::Write;
-use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -13,7 +12,6 @@ use crate::fitting::Loss;
 use crate::splinefit::{Fitted, Options, Points, Smoothing};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_formats::detect::SPLINEFIT;
 use spmesh_formats::source::{
     Filters, InvalidAdvice, LineSystem, Opened, Polyline, SourceOptions, Values, name_of, open_knots,
@@ -161,7 +159,6 @@ impl Flags {
     pub(super) fn run(&self, common: &Common) -> Result<()> {
         let started = Instant::now();
         self.check_stdin()?;
-        self.check_apart()?;
         endings::check(&self.output, &[endings::STREAM])?;
         let lists = [&self.residuals, &self.rejected].into_iter().flatten();
         lists.into_iter().try_for_each(|path| endings::check(path, &[endings::NUMBERS]))?;
@@ -210,14 +207,6 @@ impl Flags {
         let others = [("--knots", &self.knots), ("--features", &self.features), ("--weights", &self.weights)];
         let others = others.iter().filter_map(|(flag, path)| Some((*flag, path.as_deref()?)));
         check_stdin(self.inputs.iter().map(|path| ("points", path.as_path())).chain(others))
-    }
-
-    fn check_apart(&self) -> Result<()> {
-        let others = [&self.knots, &self.features, &self.weights].into_iter().flatten();
-        let lists = [("--residuals", &self.residuals), ("--rejected", &self.rejected)];
-        let lists = lists.into_iter().filter_map(|(flag, path)| Some((flag, path.as_deref()?)));
-        let outputs: Vec<_> = iter::once(("--output", self.output.as_path())).chain(lists).collect();
-        check_apart(self.inputs.iter().chain(others).map(PathBuf::as_path), &outputs)
     }
 
     fn options(&self, polylines: Vec<Polyline>) -> Options {

@@ -8,7 +8,6 @@ use clap::Args;
 use crate::splinefit::{ControlMesh, Spline};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_base::places::check_apart;
 use spmesh_formats::source::name_of;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
@@ -40,7 +39,6 @@ impl Flags {
         }
         let is_picture = self.svg || self.output.extension().is_some_and(|ending| ending == "svg");
         let compress = self.compression.of_output(!is_picture)?;
-        check_apart([self.spline.as_path()], &[("--output", &self.output)])?;
         let mut output = Output::create(&self.output, !is_picture)?;
         let mesh = ControlMesh::of(&Spline::open(&self.spline)?)?;
         if is_picture {

@@ -1,7 +1,6 @@
 //! `spdem --points`: a raster of points.
 
-use std::iter;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use crate::flags::sheets::SheetFlags;
@@ -25,8 +24,7 @@ pub(super) struct Job<'f> {
 
 /// Writes the raster.
 pub(super) fn run(job: &Job, options: &Options, started: Instant) -> Result<()> {
-    let inputs = iter::once(job.input).chain(job.cells.like().map(PathBuf::as_path));
-    let mut output = job.sheets.create(job.output, options.raster.format, job.cells, inputs)?;
+    let mut output = job.sheets.create(job.output, options.raster.format, job.cells)?;
     let mut reader = open_stream(job.input)?;
     points::check(reader.header(), options).map_err(|e| e.of_input(reader.name()))?;
     let window = || points::window(reader.header()).map_err(|e| e.of_input(reader.name()));

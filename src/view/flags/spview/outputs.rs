@@ -30,8 +30,8 @@ enum Target {
     /// One picture. The output is opened before the work, so that a failure shows at once. It gets its name
     /// at the end, when the whole stream has been read.
     One { output: Output, is_written: bool },
-    /// Several pictures. None may replace the input.
-    Numbered { names: Names, input: PathBuf },
+    /// Several pictures.
+    Numbered { names: Names },
 }
 
 /// Names of numbered pictures: the parts before and after the number, and its least number of digits.
@@ -43,10 +43,9 @@ struct Names {
 
 impl Names {
     /// Opens the output of a picture.
-    fn create(&self, number: u64, format: Format, input: &Path) -> Result<Output> {
+    fn create(&self, number: u64, format: Format) -> Result<Output> {
         let Names { before, digits, after } = self;
         let path = PathBuf::from(format!("{before}{number:0digits$}{after}"));
-        check_apart([input], &[("--output", &path)])?;
         Output::create(&path, format == Format::Png)
     }
 }
@@ -60,7 +59,6 @@ impl Outputs {
         format: Option<Format>,
         is_numbered: bool,
         is_tee: bool,
-        input: &Path,
     ) -> Result<Outputs> {
         let is_stdout = path == Path::new("-");
         if is_tee && is_stdout {
@@ -70,7 +68,7 @@ impl Outputs {
         }
         let tee = is_tee.then_some(("--tee", Path::new("-")));
         let outputs: Vec<_> = iter::once(("--output", path)).chain(tee).collect();
-        check_apart([input], &outputs)?;
+        check_apart([], &outputs)?;
         if format.is_none() {
             endings::check(path, &[endings::PICTURE])?;
         }
@@ -83,8 +81,8 @@ impl Outputs {
             }
             let names = pattern(path)?;
             // A failure of the first picture shows before the work, too.
-            drop(names.create(1, format, input)?);
-            Target::Numbered { names, input: input.to_path_buf() }
+            drop(names.create(1, format)?);
+            Target::Numbered { names }
         } else {
             Target::One { output: Output::create(path, format == Format::Png)?, is_written: false }
         };
@@ -100,8 +98,8 @@ impl Outputs {
                 *is_written = true;
                 write(self.format, picture, output)
             }
-            Target::Numbered { names, input } => {
-                let mut output = names.create(self.pictures, self.format, input)?;
+            Target::Numbered { names } => {
+                let mut output = names.create(self.pictures, self.format)?;
                 write(self.format, picture, &mut output)?;
                 output.commit()
             }
