@@ -174,7 +174,11 @@ fn extended_xyz_states_its_columns() {
     ] {
         let structure = frame(comment, atom).unwrap();
         let model = &structure.models[0];
-        assert_eq!((model.points[0], model.atoms[0].atomic_number), ([1500.0, 2000.0, 3000.0], 6), "{comment}");
+        assert_eq!(
+            (model.points[0], model.atoms[0].atomic_number),
+            ([1500.0, 2000.0, 3000.0], 6),
+            "{comment}"
+        );
         assert!(structure.warnings.is_empty());
     }
     let periodic =

@@ -39,7 +39,10 @@ fn rows(text: &str, flags: &[&str]) -> (Vec<String>, String) {
 fn assert_rows(text: &str, level: &str, expected: &[&str], notice: &str) {
     let (found, notices) = rows(text, &["--per", level]);
     assert_eq!(found, expected, "{text}");
-    assert!(notices.contains(notice) && notices.contains("have labels") != notice.is_empty(), "{notices}");
+    assert!(
+        notices.contains(notice) && notices.contains("share their labels") != notice.is_empty(),
+        "{notices}"
+    );
 }
 
 #[test]
@@ -49,7 +52,7 @@ fn segments_are_chains_without_names() {
     assert_rows(&text, "chain", &["PROA 3", "PROB 3"], "");
     // With a name, the name counts, but residues are still apart.
     let named = pdb(&["A ALA 1 PROA", "A ALA 1 PROB"], &["N", "CA", "C"]);
-    assert_rows(&named, "residue", &["A/ALA/1 3", "A/ALA/1 3"], "2 residues have labels");
+    assert_rows(&named, "residue", &["A/ALA/1 3", "A/ALA/1 3"], "2 residues share their labels");
     assert_rows(&named, "chain", &["A 6"], "");
     // Older files have their code and the number of the line there.
     let old = text.replace("PROA", "1ABC   1").replace("PROB", "1ABC   2");
@@ -61,8 +64,8 @@ fn what_ends_a_chain_separates_copies() {
     let copies = [" ALA 1 ", " GLY 2 ", "TER", " ALA 1 ", " GLY 2 ", "TER"];
     let text = pdb(&copies, &["N", "CA"]);
     let expected = ["/ALA/1 2", "/GLY/2 2", "/ALA/1 2", "/GLY/2 2"];
-    assert_rows(&text, "residue", &expected, "4 residues have labels that others of them have, too");
-    assert_rows(&text, "chain", &[" 4", " 4"], "2 chains have labels");
+    assert_rows(&text, "residue", &expected, "4 residues share their labels: serial");
+    assert_rows(&text, "chain", &[" 4", " 4"], "2 chains share their labels");
     // A name is that of one chain as long as its numbers go on. Water may be counted from 1.
     for (residues, chains) in [
         (&["A ALA 1 ", "TER", "A ALA 2 ", "TER", "A HOH 1 "][..], &["A 6"][..]),
@@ -76,7 +79,7 @@ fn what_ends_a_chain_separates_copies() {
     let text = pdb(&[" ALA 1 ", "TER", " ALA 1 "], &["N"]);
     let output = run("tess3", &contacts, text.as_bytes());
     assert_eq!(String::from_utf8(output.stdout).unwrap().lines().count(), 2);
-    assert!(String::from_utf8(output.stderr).unwrap().contains("2 chains have labels"));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("2 chains share their labels"));
 }
 
 #[test]
@@ -86,11 +89,11 @@ fn numbers_that_start_again_are_new_residues() {
         let text = pdb(&residues.each_ref().map(String::as_str), &["O"]);
         let (found, notices) = rows(&text, &["--per", "residue"]);
         assert_eq!(found.len(), 3, "{found:?}");
-        assert!(notices.contains("2 residues have labels"), "{notices}");
+        assert!(notices.contains("2 residues share their labels"), "{notices}");
     }
     // Without numbers, an atom that comes again is one of another residue.
     let text = pdb(&["W HOH  ", "W HOH  ", "W HOH **** "], &["O", "H1"]);
-    assert_rows(&text, "residue", &["W/HOH/ 2", "W/HOH/ 2", "W/HOH/ 2"], "3 residues have labels");
+    assert_rows(&text, "residue", &["W/HOH/ 2", "W/HOH/ 2", "W/HOH/ 2"], "3 residues share their labels");
 }
 
 #[test]

@@ -47,7 +47,7 @@ impl Labels {
         let mut texts = Vec::new();
         for (count, what) in [(self.residues, "residues"), (self.chains, "chains")] {
             if count > 0 {
-                texts.push(format!("{count} {what} have labels that others of them have, too"));
+                texts.push(format!("{count} {what} share their labels: serial numbers tell atoms apart"));
             }
         }
         let named = self.others.iter().zip(["ligands", "ions", "water"]).filter(|&(&count, _)| count > 0);

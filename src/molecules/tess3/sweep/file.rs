@@ -206,8 +206,8 @@ pub(super) fn is_still_there(file: &Path, done: &DoneFile, folder: &Path) -> boo
 }
 
 /// Extensions of inputs that denote a format only.
-const FORMATS: [&str; 12] =
-    ["pdb", "ent", "cif", "mmcif", "xyz", "txt", "csv", "dat", "asc", "spm", "ply", "obj"];
+const FORMATS: [&str; 13] =
+    ["pdb", "ent", "pqr", "cif", "mmcif", "xyz", "txt", "csv", "dat", "asc", "spm", "ply", "obj"];
 
 /// The name of the output of each input, without its extension: relative to the folder of outputs, and none
 /// of `taken`.
