@@ -215,6 +215,9 @@ fn pqr_states_radii() {
         assert_eq!(found, [(Some(1850), 7), (Some(0), 30)]);
         assert_eq!(structure.chains(), chains);
     }
+    // Neither tabs nor the length of a line count.
+    let spread = read(unaligned.replace(' ', "\t         ")).unwrap();
+    assert_eq!(spread.models[0].atoms[0].radius(), Some(1850));
     let pdb = "ATOM      1  N   ALA A   1       0.169   7.698  13.415  1.00 20.50\n";
     assert_eq!(read(pdb).unwrap().models[0].atoms[0].radius(), None);
     for (wrong, words) in [

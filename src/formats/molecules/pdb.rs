@@ -122,7 +122,7 @@ impl PdbReader<'_> {
     fn atom(&mut self, line: &[u8], is_hetatm: bool) -> Result<()> {
         if self.is_pqr {
             self.reopen();
-            return self.builder.push(&pqr::atom(ascii(line)?, self.number, is_hetatm)?);
+            return self.builder.push(&pqr::atom(line, self.number, is_hetatm)?);
         }
         let place = place(line)?;
         let text = ascii(line)?;
@@ -171,7 +171,9 @@ impl PdbReader<'_> {
 fn record_name(line: &[u8]) -> &'static [u8] {
     let is = |name: &[u8], len: usize| {
         line.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name))
-            && line[name.len()..line.len().min(len)].iter().all(|byte| matches!(byte, b' ' | b'0'..=b'9'))
+            && line[name.len()..line.len().min(len)]
+                .iter()
+                .all(|byte| matches!(byte, b' ' | b'\t' | b'0'..=b'9'))
     };
     match line.first() {
         Some(b'A' | b'a') if is(b"ATOM", 6) => b"ATOM",

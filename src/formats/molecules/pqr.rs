@@ -42,11 +42,10 @@ fn is_atom(line: &str) -> bool {
     let fields: Vec<&str> = after_name(line).unwrap_or_default().split_ascii_whitespace().collect();
     let Some(at) = fields.len().checked_sub(NUMBERS).filter(|at| (4..=5).contains(at)) else { return false };
     let are_numbers = fields[at..].iter().all(|field| Number::parse(field.as_bytes()).is_some());
-    let is_number = |&(start, end): &(usize, usize)| {
-        let text = columns(line, start, end);
-        text.is_empty() || text.parse::<f64>().is_ok()
-    };
-    let is_pdb = line.is_ascii() && [(30, 38), (38, 46), (46, 54), (54, 60), (60, 66)].iter().all(is_number);
+    let is_number = |start: usize, end: usize| columns(line, start, end).parse::<f64>().is_ok();
+    let may_be = |start: usize, end: usize| columns(line, start, end).is_empty() || is_number(start, end);
+    let has_place = is_number(30, 38) && is_number(38, 46) && is_number(46, 54);
+    let is_pdb = line.is_ascii() && has_place && may_be(54, 60) && may_be(60, 66);
     let has_two_places = |field: &str| field.split_once('.').is_some_and(|(_, places)| places.len() == 2);
     let may_be_shares = fields[at + 3..].iter().all(|field| has_two_places(field) && !field.starts_with('-'));
     let is_radius = fields[at + 4].parse::<f64>().is_ok_and(|radius| (0.0..=RADIUS_MAX).contains(&radius));
@@ -54,7 +53,10 @@ fn is_atom(line: &str) -> bool {
 }
 
 /// The atom of a line, which ends in `line`.
-pub(crate) fn atom(text: &str, line: u64, is_hetatm: bool) -> Result<Record<'_>> {
+pub(crate) fn atom(text: &[u8], line: u64, is_hetatm: bool) -> Result<Record<'_>> {
+    let is_plain = text.iter().all(|byte| matches!(byte, b' '..=b'~' | b'\t'));
+    let plain = std::str::from_utf8(text).ok().filter(|_| is_plain);
+    let text = plain.ok_or_else(|| unexpected(text, "printable ASCII"))?;
     let fields: Vec<&str> = after_name(text).unwrap_or_default().split_ascii_whitespace().collect();
     let names = fields.len().checked_sub(NUMBERS).map(|at| fields.split_at(at));
     let (&[serial, name, residue_name, ref place @ ..], numbers) = names.unwrap_or_default() else {
