@@ -7,7 +7,7 @@ use std::io::{BufReader, Read, Write};
 use std::path::Path;
 
 use crate::cad::{dxf::DxfSink, landxml::LandXmlSink, medit::MeditSink};
-use crate::detect::{Test, binary};
+use crate::detect::{Test, binary, structures};
 use crate::historical::{read_sma::open_sma, read_smb::open_smb, sp_events::SpEvents};
 use crate::historical::{read_spa, read_spa::SpaReader, read_spb, read_spb::SpbReader};
 use crate::historical::{write_sma::SmaSink, write_smb::SmbSink, write_spa::SpaSink, write_spb::SpbSink};
@@ -126,6 +126,7 @@ const fn row(
 const NO_LIST: &str = "";
 const VALUES: &str = "write its values as NRRD or raw numbers first";
 const TO_POINTS: &str = "make a point stream of its atoms with spfinalize --octree, or use tess3";
+const TO_STRUCTURE: &str = "convert it to PDB or mmCIF first, for example with gemmi or obabel";
 const TO_STREAM: &str = "convert it first with spconvert";
 const TO_PLY: &str = "convert it first with spconvert --to ply";
 
@@ -219,7 +220,10 @@ formats! {
         is_in_parts: true, points: Some(|file, _| npy::read::open(file))
     }
     Pdb("a PDB file", "PDB", Test::Lines, TO_POINTS) {
-        points: Some(atoms::open), atoms: Some(|mut lines, builder| pdb::read(&mut lines, builder))
+        points: Some(atoms::open), atoms: Some(|mut lines, builder| pdb::read(&mut lines, builder, false))
+    }
+    Pqr("a PQR file", "PQR", Test::Lines, TO_POINTS) {
+        points: Some(atoms::open), atoms: Some(|mut lines, builder| pdb::read(&mut lines, builder, true))
     }
     Mmcif("an mmCIF file", "mmCIF", Test::Lines, TO_POINTS) {
         points: Some(atoms::open), atoms: Some(mmcif::read)
@@ -257,6 +261,13 @@ formats! {
         "decompress it first, for example with uncompress -c FILE.Z") {}
     BinaryCif("a BinaryCIF file", NO_LIST, Test::Look(binary::is_binary_cif),
         "download the entry as .cif or .cif.gz, or convert it first, for example with biotite") {}
+    Mmtf("an MMTF file", NO_LIST, Test::Look(binary::is_mmtf), TO_STRUCTURE) {}
+    Gro("a GRO file of GROMACS", NO_LIST, Test::Look(structures::is_gro),
+        "convert it to PDB first, for example with gmx editconf -f IN.gro -o OUT.pdb") {}
+    Lammps("a data or dump file of LAMMPS", NO_LIST, Test::Look(structures::is_lammps),
+        "convert it to XYZ first, for example with ovito or ase") {}
+    Mol2("a MOL2 file", NO_LIST, Test::Look(structures::is_mol2), TO_STRUCTURE) {}
+    Sdf("an SDF or MOL file", NO_LIST, Test::Look(structures::is_sdf), TO_STRUCTURE) {}
     Utf16("text in UTF-16", NO_LIST, Test::Magic(&[b"\xff\xfe", b"\xfe\xff"]),
         "convert it first, for example with iconv -f utf-16 -t utf-8") {}
     Pcd("a PCD file", NO_LIST, Test::Magic(&[b"# .PCD", b"VERSION .7", b"VERSION 0.7"]),

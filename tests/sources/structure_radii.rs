@@ -144,6 +144,17 @@ fn a_file_may_add_to_a_table() {
     for (start, element, expected) in cases {
         assert_eq!(step(&file, start, element).expect(start), expected, "{start}");
     }
+    // "else" comes behind the table.
+    let rest = of_file("else 1.5\ntable protor\nO 1.3\n");
+    let cases = [
+        ("HETATM    1  X   UNX A   1", "X", 1500),
+        ("ATOM      1  MW  SOL A   1", "", 1500),
+        ("ATOM      1  C   ALA A   1", "C", 1610),
+        ("ATOM      1  N   XYZ A   1", "N", 1550),
+    ];
+    for (start, element, expected) in cases {
+        assert_eq!(step(&rest, start, element).expect(start), expected, "{start}");
+    }
     assert!(step(&of_file("N 1.6\n"), "ATOM      1  C   ALA A   1", "C").is_err(), "no table was named");
 }
 
@@ -162,6 +173,8 @@ fn a_damaged_file_is_refused_with_its_line() {
         ("H 1\nD 1.1\n", "line 2: a second radius for \"H\", which differs"),
         ("table amber\n", "expected the name of a table: protor, bondi, united, charmm"),
         ("table bondi\ntable bondi\n", "line 2: a second table"),
+        ("else 1\nelse 1.2\n", "line 2: a second radius for \"else\", which differs"),
+        ("else\n", "\"table NAME\" or \"else RADIUS\""),
         ("C 1.7\0\n", "line 1: zero byte"),
     ];
     for (text, expected) in cases {

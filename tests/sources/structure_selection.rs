@@ -70,13 +70,37 @@ fn kinds_of_atoms_are_told_by_element_and_name() {
         "10 HG ? . HG A 10 1 HET",
         "11 HG ? . SER A 1 1",
         "12 ca c . ala A 1 1",
+        "13 D ? . ALA A 1 1",
+        "14 DB1 ? . ALA A 1 1",
     ];
     let structure = structure(&atoms);
     let of = |atoms, hetatm| labels(&structure, &Selection { atoms, hetatm, ..Selection::default() });
     assert_eq!(of(Atoms::CAlpha, true), [1, 3, 5, 12]);
     assert_eq!(of(Atoms::CAlpha, false), [1, 3, 12]);
     assert_eq!(of(Atoms::Heavy, true), [1, 2, 3, 4, 5, 9, 10, 12]);
-    assert_eq!(of(Atoms::All, false), [1, 3, 6, 7, 8, 11, 12]);
+    assert_eq!(of(Atoms::All, false), [1, 3, 6, 7, 8, 11, 12, 13, 14]);
+}
+
+/// Columns of the name tell mercury from a hydrogen.
+#[test]
+fn hydrogens_are_those_of_all_rules() {
+    let line = |start: &str| format!("{start:30}   1.000   2.000   3.000  1.00  0.00\n");
+    for (start, is_heavy) in [
+        ("ATOM      1  D   ALA A   1", false),
+        ("ATOM      1  DA  ALA A   1", false),
+        ("ATOM      1 DG11 VAL A   1", false),
+        ("ATOM      1 HG   SER A   1", false),
+        ("HETATM    1 HG   MMC A   1", true),
+        ("HETATM    1  H1  MMC A   1", false),
+        ("HETATM    1 HO2  GOL A   1", false),
+        ("HETATM    1 HO    HO A   1", true),
+        ("HETATM    1 1HB  XYZ A   1", false),
+        ("HETATM    1  D1  DOD A   1", false),
+    ] {
+        let structure = read(line(start)).unwrap();
+        let heavy = Selection { atoms: Atoms::Heavy, ..Selection::default() };
+        assert_eq!(!labels(&structure, &heavy).is_empty(), is_heavy, "{start}");
+    }
 }
 
 #[test]

@@ -125,6 +125,18 @@ fn an_operator_moves_the_chains_of_all_its_generators() {
     assert_eq!(points(&["--assembly", "1", "--chain", "U"], &text).len(), 10);
 }
 
+/// A chain of the file may have the name that a copy would have.
+#[test]
+fn copies_have_names_of_their_own() {
+    let text = mmcif(&[["1", "1-3", "A,B"]]).replace(" CA B U ", " CA B U-2 ");
+    let flags = ["--assembly", "1", "--sasa", "--radii", "bondi", "--per", "chain", "-"];
+    let output = run("tess3", &flags, text.as_bytes());
+    let rows = Rows::new(&String::from_utf8(output.stdout).unwrap());
+    let chains: Vec<&str> = (0..rows.len()).map(|row| rows.text(row, "chain")).collect();
+    assert_eq!(chains, ["U", "U-2", "U-3", "U-2-2", "U-4", "U-2-3"]);
+    assert!((0..6).all(|row| rows.text(row, "atoms") == "10"));
+}
+
 #[test]
 fn a_missing_assembly_is_an_error_that_lists_those_there_are() {
     let text = mmcif(&[["1", "1", "A"], ["PAU", "1", "B"], ["1", "2", "B"]]);

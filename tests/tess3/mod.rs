@@ -7,6 +7,7 @@ mod classes;
 mod failures;
 mod filtration;
 mod formats;
+mod identity;
 mod mesh;
 mod meshes;
 mod molecules;

@@ -25,6 +25,13 @@ pub(crate) fn is_binary_cif(head: &[u8]) -> bool {
     is_map && keys.iter().any(|key| head[1..].starts_with(key))
 }
 
+/// Whether `head` is MMTF: a map of MessagePack with the key of its version near the start.
+pub(crate) fn is_mmtf(head: &[u8]) -> bool {
+    const KEY: &[u8] = b"mmtfVersion";
+    matches!(head.first(), Some(0x80..=0x8f | 0xde | 0xdf))
+        && head.windows(KEY.len()).any(|window| window == KEY)
+}
+
 /// Whether `head` is an SPB header: version 7, byte order 0 or 1, then data type (two bits) and finalization
 /// method.
 pub(crate) fn is_spb(head: &[u8]) -> bool {

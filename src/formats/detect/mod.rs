@@ -3,6 +3,7 @@
 
 pub(crate) mod binary;
 mod readers;
+pub(crate) mod structures;
 mod text;
 
 use std::io::{self, Read};

@@ -1,6 +1,7 @@
 //! Recognizes text formats by a line that no other format has.
 
 use crate::detect::Format;
+use crate::molecules::pqr::is_pqr;
 
 /// Record names of PDB except ATOM and HETATM: words that rarely start a line of another text.
 const PDB_RECORDS: [&[u8]; 22] = [
@@ -23,6 +24,9 @@ pub(super) fn detect(head: &[u8]) -> Format {
     let mut lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii_end);
     if is_xyz(lines.clone()) {
         return Format::Xyz;
+    }
+    if is_pqr(lines.clone()) {
+        return Format::Pqr;
     }
     let mut seen = Seen::default();
     lines.find_map(|line| seen.by_line(line)).unwrap_or_else(|| seen.without_proof())
@@ -114,12 +118,14 @@ fn fills_columns(rest: &[u8]) -> bool {
     matches!(rest, [] | [b' '] | [b' ', b' ' | b'0'..=b'9', ..])
 }
 
-/// Whether the text starts with a count, a comment and an atom: `element x y z`.
+/// Whether the text starts with a count, a comment and an atom: `element x y z`, or as the comment states.
 fn is_xyz<'a>(mut lines: impl Iterator<Item = &'a [u8]>) -> bool {
     let Some(first) = lines.find(|line| !line.is_empty()) else { return false };
     let is_count = first.trim_ascii().iter().all(u8::is_ascii_digit);
-    let mut atom = words(lines.nth(1).unwrap_or_default()).skip(1);
-    is_count && atom.by_ref().take(3).filter(|field| is_number(field)).count() == 3
+    let comment = lines.next().unwrap_or_default();
+    let states_columns = words(comment).any(|word| word.starts_with(b"Properties="));
+    let mut atom = words(lines.next().unwrap_or_default()).skip(1);
+    is_count && (states_columns || atom.by_ref().take(3).filter(|field| is_number(field)).count() == 3)
 }
 
 /// Whether a field of the line is a number, whatever separates them.

@@ -24,10 +24,31 @@ struct Copies {
 /// Name of a copy of a chain, and its number, counted from 1.
 type Chains = Map<Name, (Name, u64)>;
 
+/// Number of copies of each chain so far, with the number behind the name of the last; and the names of the
+/// chains of the file.
+pub(crate) struct Counts {
+    copies: Map<Name, [u64; 2]>,
+    taken: Set<Name>,
+}
+
+impl Counts {
+    pub(crate) fn new(residues: &[Residue]) -> Counts {
+        Counts { copies: Map::default(), taken: residues.iter().map(|residue| residue.chain).collect() }
+    }
+}
+
+/// What numbers of a copy are greater by than those of the copy before: serial numbers, and those of chains.
+#[derive(Clone, Copy)]
+struct Steps {
+    serial: u64,
+    chain: u32,
+}
+
 impl Structure {
     /// The atoms of the assembly of this name, operator by operator and in the order of the file.
     ///
-    /// The first copy of chain A is named A, the next ones and so on. The serial number of an atom
+    /// The first copy of chain A is named A, the next ones and so on, but for names of other chains
+    /// of the file. The serial number of an atom
     /// of copy n is greater than in the file by n - 1 times the greatest serial number of the model.
     /// Coordinates are rounded to the grid of the structure.
     ///
@@ -41,19 +62,21 @@ impl Structure {
         self.check_count(&all)?;
         let models = std::mem::take(&mut self.models);
         let by_subchain: Vec<_> = models.iter().map(|model| self.by_subchain(model)).collect();
-        let greatest: Vec<u64> = models.iter().map(greatest_serial).collect();
+        let chain = self.residues.iter().map(|residue| residue.chain_number).max().unwrap_or(0);
+        let steps: Vec<Steps> =
+            models.iter().map(|model| Steps { serial: greatest_serial(model), chain }).collect();
         let mut made: Vec<Model> =
             models.iter().map(|model| Model { number: model.number, ..Model::default() }).collect();
-        let mut counts: Map<Name, u64> = Map::default();
+        let mut counts = Counts::new(&self.residues);
         let chains_of = self.chains_of_subchains();
         for copies in &all {
             let chains = self.name_chains(copies, &chains_of, &mut counts);
-            let sources = models.iter().zip(&by_subchain).zip(&greatest);
-            for (((model, by_subchain), &greatest), made) in sources.zip(&mut made) {
+            let sources = models.iter().zip(&by_subchain).zip(&steps);
+            for (((model, by_subchain), &steps), made) in sources.zip(&mut made) {
                 let lists = copies.subchains.iter().filter_map(|subchain| by_subchain.get(subchain));
                 let mut atoms: Vec<u32> = lists.flatten().copied().collect();
                 atoms.sort_unstable();
-                self.copy_atoms(model, &atoms, &copies.motion, &chains, greatest, made)?;
+                self.copy_atoms(model, &atoms, &copies.motion, &chains, steps, made)?;
             }
         }
         made.retain(|model| !model.atoms.is_empty());
@@ -146,34 +169,41 @@ impl Structure {
         &mut self,
         copies: &Copies,
         chains_of: &Map<Name, Set<Name>>,
-        counts: &mut Map<Name, u64>,
+        counts: &mut Counts,
     ) -> Chains {
         let mut chains = Chains::default();
         for &chain in copies.subchains.iter().filter_map(|subchain| chains_of.get(subchain)).flatten() {
-            chains.entry(chain).or_insert_with(|| {
-                let count = counts.entry(chain).or_default();
-                *count += 1;
-                let name = match *count {
-                    1 => chain,
-                    number => {
-                        let text = format!("{}-{number}", self.names.text(chain));
-                        self.names.intern(&text)
-                    }
-                };
-                (name, *count)
-            });
+            chains.entry(chain).or_insert_with(|| self.name_copy(chain, counts));
         }
         chains
     }
 
-    /// Adds copies of these atoms of `model`, whose greatest serial number is given, to `made`.
+    /// The name of the next copy of a chain, and its number: of chain A these are A, A-2, A-3 and so on, but
+    /// for names of chains of the file.
+    pub(crate) fn name_copy(&mut self, chain: Name, counts: &mut Counts) -> (Name, u64) {
+        let [count, last] = counts.copies.entry(chain).or_default();
+        *count += 1;
+        if *count == 1 {
+            return (chain, 1);
+        }
+        loop {
+            *last = 2.max(*last + 1);
+            let text = format!("{}-{last}", self.names.text(chain));
+            let name = self.names.intern(&text);
+            if !counts.taken.contains(&name) {
+                return (name, *count);
+            }
+        }
+    }
+
+    /// Adds copies of these atoms of `model` to `made`.
     fn copy_atoms(
         &mut self,
         model: &Model,
         atoms: &[u32],
         motion: &Motion,
         chains: &Chains,
-        greatest: u64,
+        steps: Steps,
         made: &mut Model,
     ) -> Result<()> {
         let mut residues: Map<u32, u32> = Map::default();
@@ -185,19 +215,26 @@ impl Structure {
                 _ if number == 1 => atom.residue,
                 Some(&index) => index,
                 None => {
-                    let index = self.add_residue(Residue { chain, ..residue })?;
+                    let step =
+                        u32::try_from(number - 1).ok().and_then(|copies| copies.checked_mul(steps.chain));
+                    let chain_number = step.and_then(|step| residue.chain_number.checked_add(step));
+                    let chain_number = chain_number.ok_or_else(|| self.too_large("2^32 chains"))?;
+                    let index = self.add_residue(Residue { chain, chain_number, ..residue })?;
                     residues.insert(atom.residue, index);
                     index
                 }
             };
-            let serial = greatest.checked_mul(number - 1).and_then(|before| atom.serial.checked_add(before));
-            let serial = serial.ok_or_else(|| {
-                Error::malformed("serial numbers are too large to number copies").of_input(&self.name)
-            })?;
+            let serial =
+                steps.serial.checked_mul(number - 1).and_then(|before| atom.serial.checked_add(before));
+            let serial = serial.ok_or_else(|| self.serials_overflow())?;
             made.points.push(self.moved(model.points[index as usize], motion)?);
             made.atoms.push(Atom { serial, residue, ..atom });
         }
         Ok(())
+    }
+
+    pub(crate) fn serials_overflow(&self) -> Error {
+        Error::malformed("serial numbers are too large to number copies").of_input(&self.name)
     }
 
     fn add_residue(&mut self, residue: Residue) -> Result<u32> {
@@ -221,6 +258,6 @@ impl Structure {
     }
 }
 
-fn greatest_serial(model: &Model) -> u64 {
+pub(crate) fn greatest_serial(model: &Model) -> u64 {
     model.atoms.iter().map(|atom| atom.serial).max().unwrap_or(0)
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::molecules::{Radii, Selected, Selection, read_structure_from};
+use crate::molecules::{Radii, RadiusCounts, Selected, Selection, read_structure_from};
 use crate::source::pass::{BATCH_POINTS, Content, Opening, Pass, Sort, Stated};
 use crate::source::placement::Placement;
 use crate::source::row_plan::{RowPlan, offers_of};
@@ -32,7 +32,7 @@ pub(crate) fn open(file: &Opening, notices: &mut Vec<String>) -> Result<Content>
     notices.extend(structure.warnings.iter().cloned());
     let selected = structure.select(&Selection::default())?;
     let points: Arc<[Point]> = selected.points().into();
-    let found = radii.map_or(Ok(Vec::new()), |radii| radii_of(&selected, radii))?;
+    let found = radii.map_or(Ok(Vec::new()), |radii| radii_of(&selected, radii, notices))?;
     let models = structure.models.len();
     if models > 1 {
         notices.push(format!("only the atoms of the first of {models} models are points"));
@@ -61,15 +61,19 @@ fn radius() -> Attribute {
 }
 
 /// The radii as bytes.
-fn radii_of(selected: &Selected<'_>, radii: &Radii) -> Result<Vec<u8>> {
+fn radii_of(selected: &Selected<'_>, radii: &Radii, notices: &mut Vec<String>) -> Result<Vec<u8>> {
     let Some(mut atoms) = radii.of_atoms(selected) else {
         return Err(Error::usage("points have no elements, and so no radii"));
     };
     let mut bytes = Vec::with_capacity(RADIUS_LEN * selected.points().len());
+    let mut counts = RadiusCounts::default();
     atoms.try_for_each(|found| {
-        bytes.extend(found?.1.to_le_bytes());
+        let (_, steps, origin) = found?;
+        counts.add(origin);
+        bytes.extend(steps.to_le_bytes());
         Ok(())
     })?;
+    notices.extend(counts.notices());
     Ok(bytes)
 }
 

@@ -1,8 +1,12 @@
 //! Builds a structure from atoms, in the order of a file.
 
+use std::num::NonZeroU16;
+
 use crate::molecules::assemblies::Assemblies;
 use crate::molecules::classes::{Annotations, Class, Detail};
 use crate::molecules::decimal::{Number, Quantum};
+use crate::molecules::guess::Elements;
+use crate::molecules::identity::Residues;
 use crate::molecules::model::{Atom, Model, Residue, Structure};
 use crate::molecules::names::{Name, Names};
 use spmesh_base::error::{Error, Result};
@@ -21,13 +25,19 @@ pub(crate) struct Record<'a> {
     /// Part of the chain, and its entity, if the file names them.
     pub(crate) subchain: &'a str,
     pub(crate) entity: &'a str,
+    /// Segment, as some PDB files name them.
+    pub(crate) segment: &'a str,
     pub(crate) residue_name: &'a str,
     pub(crate) residue_number: Option<i32>,
     pub(crate) insertion_code: &'a str,
     pub(crate) occupancy: f32,
     pub(crate) is_hetatm: bool,
+    /// Letters of the element's symbol at the start of the name, as the columns of the name in a PDB record
+    /// tell; 0 if they do not, and in other formats.
     pub(crate) symbol_len: u8,
     pub(crate) place: [Number; 3],
+    /// As [`Atom::radius`] has it.
+    pub(crate) radius: Option<NonZeroU16>,
 }
 
 /// An oddity that is counted, and reported once at the end.
@@ -58,6 +68,9 @@ pub(crate) struct StructureBuilder {
     /// Index of the model that receives atoms.
     model: usize,
     residues: Vec<Residue>,
+    /// Which of them an atom is of.
+    places: Residues,
+    elements: Elements,
     /// What is known of each residue until its class is.
     details: Vec<Detail>,
     /// What the file states of its molecules.
@@ -76,6 +89,7 @@ impl StructureBuilder {
     pub(crate) fn start_model(&mut self, number: i64) {
         self.model = self.models.len();
         self.models.push(Model { number, ..Model::default() });
+        self.places.end();
         self.annotations.model_starts.push(self.residues.len());
     }
 
@@ -85,7 +99,10 @@ impl StructureBuilder {
             return;
         }
         match self.models.iter().rposition(|model| model.number == number) {
-            Some(model) => self.model = model,
+            Some(model) => {
+                self.model = model;
+                self.places.end();
+            }
             None => self.start_model(number),
         }
     }
@@ -102,6 +119,7 @@ impl StructureBuilder {
 
     /// Ends the chain of the last residue.
     pub(crate) fn end_chain(&mut self) {
+        self.places.end();
         self.annotations.chain_ends.push(self.residues.len());
     }
 
@@ -135,7 +153,18 @@ impl StructureBuilder {
         self.last_line = record.line;
         let name = self.names.intern(record.name);
         let element = self.names.intern(record.element);
-        let residue = self.residue(record, name, element)?;
+        let altloc = self.names.intern(record.altloc);
+        let residue_name = self.names.intern(record.residue_name);
+        let atomic_number =
+            self.elements.number(&self.names, [residue_name, name, element], record.symbol_len);
+        let detail = Detail {
+            entity: self.names.intern(record.entity),
+            atom: name,
+            atomic_number,
+            is_hetatm: record.is_hetatm,
+            is_single: true,
+        };
+        let residue = self.residue(record, [residue_name, altloc], detail)?;
         let point = self.quantum.store(record.place, &mut self.models);
         let model = &mut self.models[self.model];
         let after_last = || model.atoms.last().map_or(1, |atom| atom.serial.saturating_add(1));
@@ -144,41 +173,41 @@ impl StructureBuilder {
             residue,
             name,
             element,
-            altloc: self.names.intern(record.altloc),
+            altloc,
             occupancy: record.occupancy,
             is_hetatm: record.is_hetatm,
-            symbol_len: record.symbol_len,
+            atomic_number,
+            radius: record.radius,
         };
         model.points.push(point);
         model.atoms.push(atom);
         Ok(())
     }
 
-    /// Index of the residue of an atom with this name and element: the residue of the atom before, or a new
-    /// one.
-    fn residue(&mut self, record: &Record, atom: Name, element: Name) -> Result<u32> {
+    /// Index of the residue of an atom, which is a new one if this is its first.
+    fn residue(&mut self, record: &Record, [name, altloc]: [Name; 2], detail: Detail) -> Result<u32> {
         let chain = self.names.intern(record.chain);
         let residue = Residue {
             chain,
-            name: self.names.intern(record.residue_name),
+            chain_number: 0,
+            name,
             number: record.residue_number,
             insertion_code: self.names.intern(record.insertion_code),
             subchain: if record.subchain.is_empty() { chain } else { self.names.intern(record.subchain) },
             class: Class::default(),
         };
-        let entity = self.names.intern(record.entity);
-        match (self.residues.last(), self.details.last_mut()) {
-            (Some(last), Some(detail)) if *last == residue && detail.entity == entity => {
-                detail.is_single &= detail.atom == atom;
-            }
-            _ => {
+        let next = u32::try_from(self.residues.len())
+            .map_err(|_| Error::malformed("more than 2^32 residues, the maximum"))?;
+        let labels = (residue, self.names.intern(record.segment), detail.entity);
+        let index = self.places.place(labels, [detail.atom, altloc], next);
+        match self.details.get_mut(index as usize) {
+            Some(first) => first.is_single &= first.atom == detail.atom,
+            None => {
                 self.residues.push(residue);
-                let is_hetatm = record.is_hetatm;
-                self.details.push(Detail { entity, atom, element, is_hetatm, is_single: true });
+                self.details.push(detail);
             }
         }
-        u32::try_from(self.residues.len() - 1)
-            .map_err(|_| Error::malformed("more than 2^32 residues, the maximum"))
+        Ok(index)
     }
 
     /// The finished structure. Messages call it `name`.
@@ -193,7 +222,9 @@ impl StructureBuilder {
                 self.warnings.push(format!("{count} {what}, the first in line {line}: {remedy}"));
             }
         }
-        self.annotations.classify(&mut self.residues, &self.details, &self.names);
+        let (residues, details) = (&mut self.residues, &self.details);
+        self.annotations.number_chains(residues, details, &self.names);
+        self.annotations.classify(residues, details, &self.names);
         Ok(Structure {
             name: name.to_string(),
             coordinates: self.quantum.coordinates(),

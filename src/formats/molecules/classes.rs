@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use foldhash::fast::FixedState;
 
+use crate::molecules::identity::{Link, number_chains};
 use crate::molecules::model::Residue;
 use crate::molecules::names::{Name, Names};
 use crate::molecules::residue_names::{Kind, is_ion_atom, kind};
@@ -37,7 +38,7 @@ pub(crate) struct Detail {
     pub(crate) entity: Name,
     /// Name and element of its first atom, and whether that is a HETATM record.
     pub(crate) atom: Name,
-    pub(crate) element: Name,
+    pub(crate) atomic_number: u8,
     pub(crate) is_hetatm: bool,
     /// Whether all of its atoms have one name: they are locations of one atom.
     pub(crate) is_single: bool,
@@ -67,36 +68,39 @@ pub(crate) struct Annotations {
 }
 
 impl Annotations {
+    /// Numbers the chains of the residues.
+    pub(crate) fn number_chains(&self, residues: &mut [Residue], details: &[Detail], names: &Names) {
+        let mut kinds = Kinds::new(names);
+        let link = |index: usize, name| Link { kind: kinds.of(name), is_hetatm: details[index].is_hetatm };
+        number_chains(residues, &self.model_starts, &self.ends(), link);
+    }
+
+    /// The last residues before a TER.
+    fn ends(&self) -> Set<usize> {
+        self.chain_ends.iter().filter_map(|&count| count.checked_sub(1)).collect()
+    }
+
     /// Sets the class of each residue.
     pub(crate) fn classify(&self, residues: &mut [Residue], details: &[Detail], names: &Names) {
-        // A TER is that of the residue before it.
-        let ends: Set<usize> = self.chain_ends.iter().filter_map(|&count| count.checked_sub(1)).collect();
-        let mut starts = self.model_starts.clone();
-        starts.retain(|&start| start < residues.len());
-        starts.push(residues.len());
-        // Names are few.
-        let mut kinds: Map<Name, Kind> = Map::default();
-        let mut start = 0;
-        for end in starts {
-            let mut chains: Map<Name, Chain> = Map::default();
-            for index in (start..end).filter(|index| ends.contains(index)) {
-                let chain: &mut Chain = chains.entry(residues[index].chain).or_default();
-                (chain.end, chain.ends) = (Some(index), chain.ends + 1);
-            }
-            for index in start..end {
-                let chain = chains.entry(residues[index].chain).or_default();
-                let residue = &mut residues[index];
-                let kind = *kinds.entry(residue.name).or_insert_with(|| kind(names.text(residue.name)));
-                residue.class = self.class(residue, &details[index], (chain.part(index), kind), names);
-                chain.has_polymer |= residue.class == Class::Polymer;
-            }
-            start = end;
+        let mut chains: Map<u32, Chain> = Map::default();
+        let mut ends: Vec<usize> = self.ends().into_iter().filter(|&index| index < residues.len()).collect();
+        ends.sort_unstable();
+        for index in ends {
+            let chain = chains.entry(residues[index].chain_number).or_default();
+            (chain.end, chain.ends) = (Some(index), chain.ends + 1);
+        }
+        let mut kinds = Kinds::new(names);
+        for (index, (residue, detail)) in residues.iter_mut().zip(details).enumerate() {
+            let chain = chains.entry(residue.chain_number).or_default();
+            let at = (chain.part(index), kinds.of(residue.name));
+            residue.class = self.class(residue, detail, at, names);
+            chain.has_polymer |= residue.class == Class::Polymer;
         }
     }
 
     fn class(&self, residue: &Residue, detail: &Detail, at: (Part, Kind), names: &Names) -> Class {
         let (part, kind) = at;
-        let is_ion = || detail.is_single && is_ion_atom(names, residue.name, detail.atom, detail.element);
+        let is_ion = || detail.is_single && is_ion_atom(names.text(residue.name), detail.atomic_number);
         let of_subchain = || self.entity_of.get(&residue.subchain).copied().unwrap_or_default();
         let entity = if detail.entity.is_empty() { of_subchain() } else { detail.entity };
         match self.entities.get(&entity) {
@@ -120,6 +124,22 @@ impl Annotations {
         kind == Kind::Polymer
             || self.sequences.contains(&(residue.chain, residue.name))
             || self.modified.contains(&site)
+    }
+}
+
+/// What the names of residues tell, which are few.
+struct Kinds<'n> {
+    names: &'n Names,
+    known: Map<Name, Kind>,
+}
+
+impl<'n> Kinds<'n> {
+    fn new(names: &'n Names) -> Self {
+        Kinds { names, known: Map::default() }
+    }
+
+    fn of(&mut self, residue: Name) -> Kind {
+        *self.known.entry(residue).or_insert_with(|| kind(self.names.text(residue)))
     }
 }
 

@@ -19,8 +19,9 @@ pub(crate) enum Preference {
 
 type Map<K, V> = HashMap<K, V, FixedState>;
 
-/// A place in a chain. Residues with different names at one place are alternatives too.
-type Site = (Name, Option<i32>, Name, Name);
+/// A place in a chain: number of the chain, number, insertion code and name of the residue. Residues with
+/// different names at one place are alternatives too.
+type Site = (u32, Option<i32>, Name, Name);
 
 /// A conformer at a site.
 #[derive(Debug, Clone, Copy)]
@@ -74,7 +75,7 @@ pub(crate) fn one_conformer(residues: &[Residue], atoms: &[Atom], preference: Pr
 /// The place of a residue. Residues without a number are distinguished by name.
 fn site(residue: &Residue) -> Site {
     let name = if residue.number.is_none() { residue.name } else { Name::EMPTY };
-    (residue.chain, residue.number, residue.insertion_code, name)
+    (residue.chain_number, residue.number, residue.insertion_code, name)
 }
 
 /// The preferred alternate location at each site.

@@ -32,7 +32,7 @@ impl Structure {
         let models = self.models.iter().enumerate().filter(|&(place, model)| match selection.models {
             Models::First => place == 0,
             Models::One(number) => model.number == number,
-            Models::All => true,
+            Models::All | Models::Joined => true,
         });
         let there = self.chains();
         // Chains that are not there yet are copies in an assembly.

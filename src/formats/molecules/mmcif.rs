@@ -350,6 +350,7 @@ impl Row {
             chain: self.text([Item::AuthChain, Item::LabelChain])?,
             subchain: self.text([Item::LabelChain, Item::AuthChain])?,
             entity: self.text([Item::Entity; 2])?,
+            segment: "",
             residue_name: self.text([Item::AuthResidue, Item::LabelResidue])?,
             residue_number,
             insertion_code: self.text([Item::Insertion; 2])?,
@@ -357,6 +358,7 @@ impl Row {
             is_hetatm: self.value(Item::Group).is_some_and(|group| group.eq_ignore_ascii_case(b"HETATM")),
             symbol_len: 0,
             place: [x, y, z],
+            radius: None,
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Molecular structures and files of points in space: PDB, mmCIF, XYZ, text of points, streams of this
+//! Molecular structures and files of points in space: PDB, PQR, mmCIF, XYZ, text of points, streams of this
 //! project and their text twins, PLY, OBJ, OFF and VTK, each plain or compressed with gzip. The content tells
 //! the format.
 //!
@@ -13,6 +13,10 @@ pub(crate) mod cif;
 pub(crate) mod classes;
 pub(crate) mod conformers;
 pub(crate) mod decimal;
+pub(crate) mod elements;
+pub(crate) mod guess;
+pub(crate) mod identity;
+pub(crate) mod joined;
 pub(crate) mod locations;
 pub(crate) mod mmcif;
 pub(crate) mod mmcif_tables;
@@ -25,6 +29,7 @@ pub(crate) mod pdb;
 pub(crate) mod pdb_assemblies;
 pub(crate) mod pdb_header;
 pub(crate) mod points;
+pub(crate) mod pqr;
 pub(crate) mod radii;
 pub(crate) mod residue_names;
 pub(crate) mod selection;
@@ -38,7 +43,7 @@ pub use assemblies::Assemblies;
 pub use classes::Class;
 pub use model::{Atom, AtomView, Model, Residue, Structure};
 pub use names::{Name, Names};
-pub use radii::{LoadedRadii, Radii, RadiusFinder};
+pub use radii::{LoadedRadii, Radii, RadiusCounts, RadiusFinder, RadiusOrigin};
 pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
 
 use self::builder::StructureBuilder;

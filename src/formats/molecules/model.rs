@@ -1,5 +1,7 @@
 //! Molecular structures in memory, compact enough for millions of atoms.
 
+use std::num::NonZeroU16;
+
 use crate::molecules::assemblies::Assemblies;
 use crate::molecules::classes::Class;
 use crate::molecules::names::{Name, Names};
@@ -25,20 +27,6 @@ pub struct Structure {
     pub assemblies: Assemblies,
     /// Oddities of the input, as sentences.
     pub warnings: Vec<String>,
-}
-
-impl Structure {
-    /// Whether an atom is a hydrogen or deuterium: by the element or, if it is not stated, by the name without
-    /// leading digits. An atom with the name of its residue is an ion.
-    pub fn is_hydrogen(&self, atom: &Atom) -> bool {
-        match self.names.text(atom.element) {
-            "" => {
-                let name = self.names.text(atom.name).trim_start_matches(|c: char| c.is_ascii_digit());
-                name.starts_with(['H', 'h']) && atom.name != self.residues[atom.residue as usize].name
-            }
-            element => matches!(element, "H" | "h" | "D" | "d"),
-        }
-    }
 }
 
 /// One model: in ensembles another copy of the same molecule, in other files anything.
@@ -72,16 +60,32 @@ pub struct Atom {
     pub occupancy: f32,
     /// Whether the record is HETATM: ligands, ions, water, modified residues.
     pub is_hetatm: bool,
-    /// Letters of the element's symbol at the start of the name, as the columns of the name in a PDB record
-    /// tell; 0 if they do not, and in other formats.
-    pub symbol_len: u8,
+    /// Atomic number of its element, as the file states it or else as the names of atom and residue tell; 0
+    /// if they do not.
+    pub atomic_number: u8,
+    /// See [`Atom::radius`]; one more, so that 0 is none.
+    pub(crate) radius: Option<NonZeroU16>,
+}
+
+impl Atom {
+    /// Its radius in steps of 0.001 Å, if the file states it.
+    pub fn radius(&self) -> Option<u32> {
+        self.radius.map(|steps| u32::from(steps.get()) - 1)
+    }
+
+    /// Whether it is hydrogen, or deuterium or tritium.
+    pub fn is_hydrogen(&self) -> bool {
+        self.atomic_number == 1
+    }
 }
 
 /// A residue: the data that the atoms of a monomer, ligand or water molecule share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Residue {
-    /// Chain, as named by the authors.
+    /// Chain, as named by the authors; the segment, if a PDB file names no chain.
     pub chain: Name,
+    /// Number of its chain, from 1 in the order of the file: chains of one name may differ.
+    pub chain_number: u32,
     /// Name ("ALA", "HOH").
     pub name: Name,
     /// Number within the chain, as counted by the authors; `None` if not stated.

@@ -32,10 +32,7 @@ pub struct Names {
 
 impl Default for Names {
     fn default() -> Self {
-        let mut names =
-            Names { texts: Vec::new(), by_number: HashMap::default(), by_text: HashMap::default() };
-        names.intern("");
-        names
+        Names { texts: vec!["".into()], by_number: HashMap::default(), by_text: HashMap::default() }
     }
 }
 
@@ -57,6 +54,8 @@ impl Names {
     /// The name of `text`, if the table has it.
     pub fn find(&self, text: &str) -> Option<Name> {
         match short(text) {
+            // Many fields are empty.
+            _ if text.is_empty() => Some(Name::EMPTY),
             Some(number) => self.by_number.get(&number).copied(),
             None => self.by_text.get(text).copied(),
         }

@@ -10,6 +10,7 @@ use crate::molecules::builder::{Oddity, Record, StructureBuilder};
 use crate::molecules::decimal::Number;
 use crate::molecules::pdb_assemblies::Remark350;
 use crate::molecules::pdb_header;
+use crate::molecules::pqr;
 use crate::molecules::serial::{Serials, residue_number};
 use crate::text::lines::{Lines, quote};
 use crate::twin::tokens::unexpected;
@@ -24,10 +25,10 @@ const WIDTH: usize = 8;
 /// Number of columns that are used.
 pub(crate) const LINE_LEN: usize = 80;
 
-/// Reads all records.
-pub(crate) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<()> {
+/// Reads all records. Atoms are those of PQR if `is_pqr`.
+pub(crate) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder, is_pqr: bool) -> Result<()> {
     let (serials, remark) = (Serials::default(), Remark350::default());
-    let mut reader = PdbReader { builder, serials, remark, is_closed: false, number: 0 };
+    let mut reader = PdbReader { builder, serials, remark, is_pqr, is_closed: false, number: 0 };
     while let Some(line) = lines.next_line()? {
         reader.number += 1;
         let is_part = is_part_of_name(line);
@@ -49,6 +50,7 @@ struct PdbReader<'b> {
     builder: &'b mut StructureBuilder,
     serials: Serials,
     remark: Remark350,
+    is_pqr: bool,
     /// Whether the last model has ended.
     is_closed: bool,
     /// Number of the line, counted from 1.
@@ -107,15 +109,24 @@ impl PdbReader<'_> {
         (self.is_closed, self.serials) = (false, Serials::default());
     }
 
-    fn atom(&mut self, line: &[u8], is_hetatm: bool) -> Result<()> {
-        let place = place(line)?;
-        let text = ascii(line)?;
+    /// Starts a model for an atom behind the end of one.
+    fn reopen(&mut self) {
         if std::mem::take(&mut self.is_closed) {
             self.builder.note(Oddity::Model, self.number);
             let number = self.builder.next_model_number();
             self.builder.start_model(number);
             self.serials = Serials::default();
         }
+    }
+
+    fn atom(&mut self, line: &[u8], is_hetatm: bool) -> Result<()> {
+        if self.is_pqr {
+            self.reopen();
+            return self.builder.push(&pqr::atom(line, self.number, is_hetatm)?);
+        }
+        let place = place(line)?;
+        let text = ascii(line)?;
+        self.reopen();
         let serial = self.serials.parse(serial_text(text, is_hetatm));
         if serial.is_none() {
             self.builder.note(Oddity::Serial, self.number);
@@ -131,6 +142,7 @@ impl PdbReader<'_> {
             self.builder.note(Oddity::Occupancy, self.number);
         }
         let element = columns(text, 76, 78);
+        let (chain, segment) = (columns(text, 21, 22), segment(text));
         self.builder.push(&Record {
             line: self.number,
             serial,
@@ -138,9 +150,10 @@ impl PdbReader<'_> {
             // Older files have their PDB code and a line number in the last columns.
             element: if element.bytes().all(|byte| byte.is_ascii_alphabetic()) { element } else { "" },
             altloc: columns(text, 16, 17),
-            chain: columns(text, 21, 22),
+            chain: if chain.is_empty() { segment } else { chain },
             subchain: "",
             entity: "",
+            segment,
             // The format leaves column 21 empty; residue names of four letters are widely used.
             residue_name: columns(text, 17, 21),
             residue_number,
@@ -149,6 +162,7 @@ impl PdbReader<'_> {
             is_hetatm,
             symbol_len: symbol_len(text),
             place,
+            radius: None,
         })
     }
 }
@@ -157,7 +171,9 @@ impl PdbReader<'_> {
 fn record_name(line: &[u8]) -> &'static [u8] {
     let is = |name: &[u8], len: usize| {
         line.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name))
-            && line[name.len()..line.len().min(len)].iter().all(|byte| matches!(byte, b' ' | b'0'..=b'9'))
+            && line[name.len()..line.len().min(len)]
+                .iter()
+                .all(|byte| matches!(byte, b' ' | b'\t' | b'0'..=b'9'))
     };
     match line.first() {
         Some(b'A' | b'a') if is(b"ATOM", 6) => b"ATOM",
@@ -233,9 +249,17 @@ pub(crate) fn columns(line: &str, start: usize, end: usize) -> &str {
     line.get(start..end).unwrap_or_default().trim_ascii()
 }
 
+/// The segment, as programs for simulations name it in columns 73 to 76; empty if there is none. Older files
+/// have the code of the entry there, before the number of the line.
+fn segment(line: &str) -> &str {
+    let behind = columns(line, 76, LINE_LEN);
+    let is_numbered = !behind.is_empty() && behind.bytes().all(|byte| byte.is_ascii_digit());
+    if is_numbered { "" } else { columns(line, 72, 76) }
+}
+
 /// Letters of the element's symbol in the name, columns 13 to 16: symbols of two letters start in column 13,
 /// others in column 14, after a blank or a number. Names of four characters fill all columns and do not tell.
-fn symbol_len(line: &str) -> u8 {
+pub(crate) fn symbol_len(line: &str) -> u8 {
     match line.as_bytes()[12..16] {
         [b' ' | b'0'..=b'9', ..] => 1,
         [_, .., b' '] => 2,

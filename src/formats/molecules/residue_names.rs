@@ -3,7 +3,7 @@
 //! Names are those of the Chemical Component Dictionary of the wwPDB, and those of force fields (AMBER,
 //! CHARMM, GROMACS).
 
-use crate::molecules::names::{Name, Names};
+use crate::molecules::elements::Element;
 
 /// Amino acids; also ambiguous and unknown ones, the states of protonation of force fields, and caps.
 const AMINO_ACIDS: &str = "ALA ARG ASN ASP CYS GLN GLU GLY HIS ILE LEU LYS MET PHE PRO SER THR TRP TYR VAL \
@@ -37,7 +37,7 @@ const FORCE_FIELD_IONS: &str = "SOD CLA POT CES CAL LIT RUB BAR CAD";
 /// Metals and halogens: single atoms of them are ions.
 const IONIC_ELEMENTS: &str = "LI NA K RB CS FR BE MG CA SR BA RA SC TI V CR MN FE CO NI CU ZN Y ZR NB MO TC \
                               RU RH PD AG CD LA CE PR ND PM SM EU GD TB DY HO ER TM YB LU HF TA W RE OS IR \
-                              PT AU HG AC TH PA U AL GA IN SN TL PB BI F CL BR I IOD";
+                              PT AU HG AC TH PA U AL GA IN SN TL PB BI F CL BR I";
 
 /// What the name of a residue tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,19 +61,11 @@ pub(crate) fn kind(name: &str) -> Kind {
     }
 }
 
-/// Whether the only atom of a residue is an ion: by its element or, if that is not stated, by its name, which
-/// is then the name of the residue. An alpha carbon is named as a calcium ion is.
-pub(crate) fn is_ion_atom(names: &Names, residue: Name, atom: Name, element: Name) -> bool {
-    let residue_text = names.text(residue);
-    if contains(FORCE_FIELD_IONS, residue_text) {
-        return true;
-    }
-    if !element.is_empty() {
-        return contains(IONIC_ELEMENTS, names.text(element));
-    }
-    let letters = |text: &str| text.trim_end_matches(|c: char| !c.is_ascii_alphabetic()).to_string();
-    let text = letters(names.text(atom));
-    text.eq_ignore_ascii_case(&letters(residue_text)) && contains(IONIC_ELEMENTS, &text)
+/// Whether the only atom of a residue is an ion.
+pub(crate) fn is_ion_atom(residue: &str, atomic_number: u8) -> bool {
+    let element = Element::of_number(usize::from(atomic_number));
+    contains(FORCE_FIELD_IONS, residue)
+        || element.is_some_and(|element| contains(IONIC_ELEMENTS, element.symbol()))
 }
 
 /// Whether a list of words has `name`, in upper or lower case.

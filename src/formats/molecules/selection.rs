@@ -20,6 +20,8 @@ pub enum Models {
     One(i64),
     /// All models, as one set of atoms.
     All,
+    /// All models, for a caller that makes one of them first ([`Structure::joined`]).
+    Joined,
 }
 
 /// Alternate locations to select. Atoms with a single location are always selected.
@@ -78,6 +80,9 @@ impl Default for Selection {
     }
 }
 
+/// Atomic number of carbon.
+const CARBON: u8 = 6;
+
 /// The selected atoms (or points without names), in the order of the file.
 #[derive(Debug, Clone)]
 pub struct Selected<'s> {
@@ -129,6 +134,18 @@ impl Structure {
         Selected { structure: self, points, members: Members::Model(model) }
     }
 
+    /// What a user may not expect of the file, or of a selection of its atoms, in sentences; usually nothing.
+    pub fn notices(&self, selection: &Selection) -> Vec<String> {
+        let models = self.models.len();
+        let is_cut = models > 1 && selection.models == Models::First;
+        let others = is_cut.then(|| {
+            format!(
+                "only the first of {models} models is taken: see --model N, --model all and --model joined"
+            )
+        });
+        self.warnings.iter().cloned().chain(self.missing_location(selection)).chain(others).collect()
+    }
+
     /// Indices of the selected models, of which there is one at least.
     ///
     /// # Errors
@@ -136,7 +153,7 @@ impl Structure {
     pub fn models_of(&self, selection: &Selection) -> Result<Vec<usize>> {
         match selection.models {
             Models::First => Ok(vec![0]),
-            Models::All => Ok((0..self.models.len()).collect()),
+            Models::All | Models::Joined => Ok((0..self.models.len()).collect()),
             Models::One(number) => {
                 let model = self.models.iter().position(|model| model.number == number);
                 let numbers = self.models.iter().map(|model| model.number.to_string());
@@ -232,7 +249,7 @@ impl<'s> Filter<'s> {
         let Some(atom) = self.model.atoms.get(index) else { return true };
         let is_kind = || match self.atoms {
             Atoms::All => true,
-            Atoms::Heavy => !self.structure.is_hydrogen(atom),
+            Atoms::Heavy => !atom.is_hydrogen(),
             Atoms::CAlpha => self.is_alpha_carbon(atom),
         };
         (self.hetatm || !atom.is_hetatm)
@@ -241,13 +258,8 @@ impl<'s> Filter<'s> {
             && is_kind()
     }
 
-    /// Decides by name and element. A calcium ion has the name of its residue.
     fn is_alpha_carbon(&self, atom: &Atom) -> bool {
-        let names = &self.structure.names;
-        let is_calcium = atom.name == self.structure.residues[atom.residue as usize].name;
-        names.text(atom.name).eq_ignore_ascii_case("CA")
-            && matches!(names.text(atom.element), "" | "C" | "c")
-            && !is_calcium
+        atom.atomic_number == CARBON && self.structure.names.text(atom.name).eq_ignore_ascii_case("CA")
     }
 }
 

@@ -10,23 +10,89 @@ use spmesh_base::error::{Error, Result};
 
 /// Reads all frames, each as a model. Atoms are numbered from 1 in each frame; their name is their element.
 pub(crate) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<()> {
-    let mut frame = 0;
+    let (mut frame, mut is_periodic) = (0, false);
     while let Some(atoms) = read_count(lines).map_err(|e| lines.locate(e))? {
         frame += 1;
         builder.start_model(frame);
-        if lines.next_line()?.is_none() {
+        let Some(comment) = lines.next_line()? else {
             return Err(lines.locate(truncated("the comment of the frame")));
-        }
+        };
+        is_periodic |= value(comment, b"lattice").is_some();
+        let columns = value(comment, b"properties").map_or(Ok(Columns::USUAL), Columns::parse);
+        let columns = columns.map_err(|e| lines.locate(e))?;
         let first = lines.number();
         for serial in 1..=atoms {
             let Some(line) = lines.next_line()? else {
                 return Err(lines.locate(truncated(&format!("atom {serial} of {atoms}"))));
             };
-            read_atom(line, [serial, first + serial], builder).map_err(|e| lines.locate(e))?;
+            read_atom(line, columns, [serial, first + serial], builder).map_err(|e| lines.locate(e))?;
         }
+    }
+    if is_periodic {
+        builder
+            .warn("the file states a periodic cell (Lattice): images of atoms in other cells do not count");
     }
     builder.end(lines.unended());
     Ok(())
+}
+
+/// The value of a key in the comment of extended XYZ, `key=value` or `key="value"`, without its quotes.
+fn value<'c>(comment: &'c [u8], key: &[u8]) -> Option<&'c [u8]> {
+    let starts = |at: usize| {
+        let is_first = at == 0 || comment[at - 1].is_ascii_whitespace();
+        let found = comment.get(at..at + key.len());
+        is_first
+            && found.is_some_and(|found| found.eq_ignore_ascii_case(key))
+            && comment.get(at + key.len()) == Some(&b'=')
+    };
+    let at = (0..comment.len()).find(|&at| starts(at))?;
+    let rest = &comment[at + key.len() + 1..];
+    let is_end = |&byte: &u8| byte.is_ascii_whitespace();
+    Some(match rest.first() {
+        Some(quote @ (b'"' | b'\'')) => rest[1..].split(|byte| byte == quote).next().unwrap_or_default(),
+        _ => &rest[..rest.iter().position(is_end).unwrap_or(rest.len())],
+    })
+}
+
+/// Columns of an atom, counted from 0.
+#[derive(Debug, Clone, Copy)]
+struct Columns {
+    /// Of the element, if there is one.
+    element: Option<usize>,
+    /// Of x, before y and z.
+    x: usize,
+}
+
+impl Columns {
+    /// Those of a file that does not state them.
+    const USUAL: Columns = Columns { element: Some(0), x: 1 };
+
+    /// The columns of a list `name:type:count:...`: types are S, R, I and L.
+    fn parse(list: &[u8]) -> Result<Columns> {
+        let parts: Vec<&[u8]> = list.split(|&byte| byte == b':').collect();
+        let expected = "NAME:TYPE:COUNT:... with pos:R:3 in Properties";
+        let (mut end, mut symbol, mut number, mut x) = (0usize, None, None, None);
+        for property in parts.chunks(3) {
+            let &[name, kind, count] = property else { return Err(unexpected(list, expected)) };
+            let columns = std::str::from_utf8(count).ok().and_then(|count| count.parse::<u16>().ok());
+            let columns = columns.filter(|&columns| columns > 0 && !name.is_empty());
+            let is_type = matches!(kind, b"S" | b"R" | b"I" | b"L");
+            let Some(columns) = columns.filter(|_| is_type) else { return Err(unexpected(list, expected)) };
+            let place = match (name.to_ascii_lowercase().as_slice(), kind, columns) {
+                (b"species" | b"element" | b"elements", b"S", 1) => &mut symbol,
+                (b"z" | b"numbers" | b"atomic_number", b"I", 1) => &mut number,
+                (b"pos" | b"positions", b"R" | b"I", 3) => &mut x,
+                (b"species" | b"pos" | b"positions", ..) => return Err(unexpected(list, expected)),
+                _ => &mut None,
+            };
+            if place.replace(end).is_some() {
+                return Err(unexpected(list, "each name once in Properties"));
+            }
+            end += usize::from(columns);
+        }
+        let x = x.ok_or_else(|| unexpected(list, expected))?;
+        Ok(Columns { element: symbol.or(number), x })
+    }
 }
 
 /// The number of atoms in the next frame; `None` if there is no frame.
@@ -42,13 +108,26 @@ fn read_count(lines: &mut Lines<impl Read>) -> Result<Option<u64>> {
 }
 
 /// Reads an atom; `serial` is its number in the frame, and `line` in the file.
-fn read_atom(text: &[u8], [serial, line]: [u64; 2], builder: &mut StructureBuilder) -> Result<()> {
-    let mut fields = fields(text);
-    let element = printable(next_field(&mut fields)?, "an element")?;
+fn read_atom(
+    text: &[u8],
+    columns: Columns,
+    [serial, line]: [u64; 2],
+    builder: &mut StructureBuilder,
+) -> Result<()> {
+    let mut element = "";
     let mut place = [Number::Float(0.0); 3];
-    for (number, axis) in place.iter_mut().zip(["x", "y", "z"]) {
+    let mut fields = fields(text);
+    for column in 0..=columns.element.unwrap_or(0).max(columns.x + 2) {
         let field = next_field(&mut fields)?;
-        *number = Number::parse(field).ok_or_else(|| unexpected(field, &format!("a number for {axis}")))?;
+        if columns.element == Some(column) {
+            element = printable(field, "an element")?;
+        }
+        let axis =
+            column.checked_sub(columns.x).and_then(|axis| place.get_mut(axis).zip(["x", "y", "z"].get(axis)));
+        if let Some((number, axis)) = axis {
+            *number =
+                Number::parse(field).ok_or_else(|| unexpected(field, &format!("a number for {axis}")))?;
+        }
     }
     builder.push(&Record {
         line,
@@ -59,6 +138,7 @@ fn read_atom(text: &[u8], [serial, line]: [u64; 2], builder: &mut StructureBuild
         chain: "",
         subchain: "",
         entity: "",
+        segment: "",
         residue_name: "",
         residue_number: None,
         insertion_code: "",
@@ -66,6 +146,7 @@ fn read_atom(text: &[u8], [serial, line]: [u64; 2], builder: &mut StructureBuild
         is_hetatm: false,
         symbol_len: 0,
         place,
+        radius: None,
     })
 }
 

@@ -69,7 +69,7 @@ truncated input, 5 not enough memory, 6 input of another version of spmesh, 141 
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
-/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF, VTK and
+/// Reads PDB, PQR, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF, VTK and
 /// LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table, also of areas, volumes,
 /// contacts and pockets of atoms as balls. The triangulation is exact and canonical: it depends on the set of
 /// points only.
@@ -171,6 +171,7 @@ pub struct Flags {
 /// Values of `--from`.
 const FORMATS: Names<Format> = &[
     ("pdb: PDB", Format::Pdb),
+    ("pqr: PQR: PDB with charges and radii", Format::Pqr),
     ("mmcif: PDBx/mmCIF", Format::Mmcif),
     ("xyz: XYZ of chemistry: number of atoms, comment, and lines of element x y z", Format::Xyz),
     ("points: Points as spfinalize reads them: lines of x y z, streams, LAS, VTK", Format::Text),
@@ -231,9 +232,8 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     let mut output = Some(Output::create(&flags.output, is_binary)?);
     let started = Instant::now();
     let structure = read_structure(input, flags.from)?;
-    let missing = structure.missing_location(&options.selection);
-    let warnings = structure.warnings.iter().chain(&missing);
-    warnings.for_each(|warning| flags.notice(&format!("{}: {warning}", structure.name)));
+    let notices = structure.notices(&options.selection);
+    notices.iter().for_each(|text| flags.notice(&format!("{}: {text}", structure.name)));
     check_models(&structure, &options, flags)?;
     let read = started.elapsed();
     let reports = crate::tess3::run(structure, &options, &mut |_| {

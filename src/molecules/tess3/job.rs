@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::alpha::AlphaComplex;
 use super::balls::{BallOptions, Molecule};
 use super::filtration::Filtration;
+use super::labels::Labels;
 use super::mesh::write_mesh;
 use super::tables::{CONTACTS, ModelTables, TETRAHEDRA, columns};
 use super::{Arithmetic, Options, Product, Report, selection};
@@ -38,6 +39,12 @@ pub fn run(
         None => structure,
     };
     let mut job = Job { options: options.clone(), open, table: None };
+    let structure = if options.selection.models == Models::Joined {
+        job.options.selection.models = Models::First;
+        structure.joined()?
+    } else {
+        structure
+    };
     let reports = job.all_models(structure).map_err(|e| e.of_input(name))?;
     if let Some(table) = job.table {
         table.commit()?;
@@ -152,6 +159,7 @@ impl Job<'_> {
         let alpha = self.alpha(model, mesh, report);
         let (number, scale) = (model.name.number, model.scale());
         let tables = ModelTables { number, selected, mesh, alpha: alpha.as_ref(), scale };
+        report.labels = Labels::of(selected, &self.options);
         let is_contacts = self.options.product == Product::Contacts;
         let table = self.table()?;
         if is_contacts { tables.write_contacts(table) } else { tables.write_tetrahedra(table) }
@@ -165,6 +173,7 @@ impl Job<'_> {
         started: Instant,
     ) -> Result<Report> {
         let mut report = Report::new(molecule.number, molecule.selected.points().len());
+        report.labels = Labels::of(molecule.selected, &self.options);
         let product = self.options.product;
         if let Some(picture) = balls.picture {
             let mut output = (self.open)(None)?;

@@ -9,6 +9,7 @@ mod exact;
 pub mod filtration;
 pub mod heap;
 mod job;
+mod labels;
 mod mesh;
 mod method;
 mod selection;
@@ -19,6 +20,7 @@ mod tables;
 pub use alpha::{AlphaComplex, Radius};
 pub use balls::{BallOptions, ColourBy, ContactFilter, Level, NamedRadii, PictureForm, PictureOptions};
 pub use job::{ModelName, run};
+pub use labels::Labels;
 pub use mesh::write_mesh;
 pub use method::{Arithmetic, Method, NO_EXPERIMENTS};
 pub use spheres::{Measure, measure};
@@ -26,7 +28,7 @@ pub use spheres::{Measure, measure};
 use std::time::Duration;
 
 use spmesh_delaunay::predicates::PredicateCounts;
-use spmesh_formats::molecules::Selection;
+use spmesh_formats::molecules::{RadiusCounts, Selection};
 use spmesh_formats::sink::TableFormat;
 
 /// The output made of a triangulation.
@@ -109,6 +111,10 @@ pub struct Report {
     pub without_cell: u64,
     /// Atoms whose surface a mesh lacks, as rounding leaves its border in doubt.
     pub left_out: u64,
+    /// What the labels of a table do not tell.
+    pub labels: Labels,
+    /// Atoms whose radii are not those of a table.
+    pub radii: RadiusCounts,
     /// Hydrogens that were measured with radii of heavy atoms that include them.
     pub hydrogens: u64,
     /// Tetrahedra that the kernel created, infinite ones included; most were replaced later.
@@ -139,6 +145,8 @@ impl Report {
             let reason = "radii of heavy atoms include them: use --atoms heavy, or --radii bondi";
             texts.push(format!("{} {counted} twice, as {reason}", self.hydrogens));
         }
+        texts.extend(self.radii.notices());
+        texts.extend(self.labels.warnings());
         if self.without_cell > 0 {
             let verb = if self.without_cell == 1 { "has" } else { "have" };
             let (without, atoms) = (self.without_cell, self.atoms);

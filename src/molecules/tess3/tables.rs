@@ -143,23 +143,38 @@ impl AtomNames {
         match atom {
             None => write!(text, "{label}").expect("a string takes all"),
             Some(atom) => {
-                text.push_str(atom.chain());
+                push_residue(text, &atom);
                 text.push('/');
-                text.push_str(atom.residue_name());
-                text.push('/');
-                if let Some(number) = atom.residue_number() {
-                    write!(text, "{number}").expect("a string takes all");
-                }
-                text.push_str(atom.insertion_code());
-                text.push('/');
-                text.push_str(atom.name());
+                push_name(text, atom.name());
                 if !atom.altloc().is_empty() {
                     text.push('/');
-                    text.push_str(atom.altloc());
+                    push_name(text, atom.altloc());
                 }
             }
         }
         self.ends.push(text.len());
+    }
+}
+
+/// Appends the name of the residue of an atom: `chain/residue/number`.
+pub(super) fn push_residue(text: &mut String, atom: &AtomView<'_>) {
+    push_name(text, atom.chain());
+    text.push('/');
+    push_name(text, atom.residue_name());
+    text.push('/');
+    if let Some(number) = atom.residue_number() {
+        write!(text, "{number}").expect("a string takes all");
+    }
+    push_name(text, atom.insertion_code());
+}
+
+/// Appends a name. In it, slashes are written as in addresses of the web, so that those between names are
+/// alone.
+fn push_name(text: &mut String, name: &str) {
+    if name.bytes().any(|byte| matches!(byte, b'/' | b'%')) {
+        text.push_str(&name.replace('%', "%25").replace('/', "%2F"));
+    } else {
+        text.push_str(name);
     }
 }
 

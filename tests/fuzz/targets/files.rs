@@ -197,8 +197,9 @@ pub fn mmcif(bytes: &[u8]) {
     structure(bytes, Some(Format::Mmcif));
 }
 
-/// XYZ, OFF, and formats that are detected by content.
+/// XYZ, PQR, OFF, and formats that are detected by content.
 pub fn molecule(bytes: &[u8]) {
+    structure(bytes, Some(Format::Pqr));
     structure(bytes, Some(Format::Xyz));
     structure(bytes, Some(Format::Off));
     structure(bytes, None);

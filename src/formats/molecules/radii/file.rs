@@ -6,8 +6,9 @@ use std::hash::Hash;
 use std::io::Read;
 
 use crate::molecules::decimal::Number;
-use crate::molecules::radii::elements::Element;
-use crate::molecules::radii::{ANY, Fallback, Radii, looked_up};
+use crate::molecules::elements::Element;
+use crate::molecules::guess::looked_up;
+use crate::molecules::radii::{ANY, Fallback, Radii};
 use crate::text::lines::quote;
 use crate::text::words::for_each_line;
 use crate::twin::tokens::unexpected;
@@ -29,6 +30,7 @@ pub(crate) fn read(input: impl Read) -> Result<Radii> {
 fn line(words: &[&[u8]], radii: &mut Radii) -> Result<()> {
     match *words {
         [word, name] if word.eq_ignore_ascii_case(b"table") => table(name, radii),
+        [word, radius] if word.eq_ignore_ascii_case(b"else") => rest(radius, radii),
         [symbol, radius] => {
             let element = std::str::from_utf8(symbol).ok().and_then(Element::of_symbol);
             let element = element.ok_or_else(|| unexpected(symbol, "the symbol of an element"))?;
@@ -46,7 +48,7 @@ fn line(words: &[&[u8]], radii: &mut Radii) -> Result<()> {
         }
         _ => Err(unexpected(
             &words.join(&b' '),
-            "\"RESIDUE ATOM RADIUS\", \"ELEMENT RADIUS\" or \"table NAME\"",
+            "\"RESIDUE ATOM RADIUS\", \"ELEMENT RADIUS\", \"table NAME\" or \"else RADIUS\"",
         )),
     }
 }
@@ -58,7 +60,19 @@ fn table(name: &[u8], radii: &mut Radii) -> Result<()> {
     }
     let table = std::str::from_utf8(name).ok().and_then(Radii::named);
     let expected = || format!("the name of a table: {}", Radii::NAMES.join(", "));
-    radii.fallback = Fallback::Table(Box::new(table.ok_or_else(|| unexpected(name, &expected()))?));
+    let table = table.ok_or_else(|| unexpected(name, &expected()))?;
+    radii.prefers_own = table.prefers_own;
+    radii.fallback = Fallback::Table(Box::new(table));
+    Ok(())
+}
+
+/// Takes a radius for all atoms that have none by the file and its table.
+fn rest(word: &[u8], radii: &mut Radii) -> Result<()> {
+    let steps = steps(word)?;
+    if radii.rest.is_some_and(|before| before != steps) {
+        return Err(Error::malformed("a second radius for \"else\", which differs"));
+    }
+    radii.rest = Some(steps);
     Ok(())
 }
 

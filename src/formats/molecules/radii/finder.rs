@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use foldhash::fast::FixedState;
 
+use crate::molecules::elements::Element;
+use crate::molecules::guess::{Labels, looked_up};
 use crate::molecules::model::{AtomView, Structure};
 use crate::molecules::names::Name;
-use crate::molecules::radii::elements::Element;
-use crate::molecules::radii::guess::Labels;
-use crate::molecules::radii::{Radii, STEPS, looked_up};
+use crate::molecules::radii::{Radii, RadiusOrigin, STEPS};
 use spmesh_base::error::{Error, Result};
 
 /// The texts of an atom that tell its radius.
@@ -16,20 +16,19 @@ use spmesh_base::error::{Error, Result};
 struct Kind {
     residue: Name,
     atom: Name,
-    element: Name,
-    symbol_len: u8,
+    atomic_number: u8,
 }
 
 /// Finds the radii of the atoms of one structure, by [`Radii::finder`].
 ///
 /// Cost: a table of texts is searched for the first atom of each kind (residue name, atom name, element); for
-/// others, a hash of four integers is looked up. Memory: 24 bytes per kind.
+/// others, a hash of three integers is looked up. Memory: 24 bytes per kind.
 #[derive(Debug)]
 pub struct RadiusFinder<'s> {
     radii: &'s Radii,
     structure: &'s Structure,
     /// Radii of the kinds so far, in steps of 0.001 Å.
-    known: HashMap<Kind, u32, FixedState>,
+    known: HashMap<Kind, (u32, RadiusOrigin), FixedState>,
 }
 
 impl<'s> RadiusFinder<'s> {
@@ -55,45 +54,38 @@ impl<'s> RadiusFinder<'s> {
     /// In debug builds, if the atom is of another structure.
     #[inline]
     pub fn steps_of(&mut self, atom: &AtomView<'_>) -> Result<u32> {
+        self.find(atom).map(|(steps, _)| steps)
+    }
+
+    /// As [`RadiusFinder::steps_of`], and where the radius is from.
+    pub(crate) fn find(&mut self, atom: &AtomView<'_>) -> Result<(u32, RadiusOrigin)> {
         debug_assert!(std::ptr::eq(atom.structure, self.structure), "names are those of one structure");
+        if let Some(steps) = atom.atom.radius().filter(|_| self.radii.prefers_own) {
+            return Ok((steps, RadiusOrigin::Own));
+        }
         let kind = Kind {
             residue: atom.residue().name,
             atom: atom.atom.name,
-            element: atom.atom.element,
-            symbol_len: atom.atom.symbol_len,
+            atomic_number: atom.atom.atomic_number,
         };
         match self.known.get(&kind) {
-            Some(&steps) => Ok(steps),
-            None => self.find(kind, atom),
+            Some(&found) => Ok(found),
+            None => self.find_first(kind, atom),
         }
     }
 
     /// Finds the radius of the first atom of a kind.
     #[cold]
-    fn find(&mut self, kind: Kind, atom: &AtomView<'_>) -> Result<u32> {
-        let texts = looked_up_texts(atom);
-        let labels = labels(&texts, atom);
-        let element = labels.element();
-        let steps = self.radii.find(&labels, element).ok_or_else(|| unknown(atom, element.is_some()))?;
-        self.known.insert(kind, steps);
-        Ok(steps)
+    fn find_first(&mut self, kind: Kind, atom: &AtomView<'_>) -> Result<(u32, RadiusOrigin)> {
+        let [residue, name] = [atom.residue_name(), atom.name()].map(looked_up);
+        let labels = Labels { residue: &residue, atom: &name };
+        let element = Element::of_number(usize::from(kind.atomic_number));
+        let of_table = self.radii.find(&labels, element).map(|steps| (steps, RadiusOrigin::Table));
+        let found = of_table.or(self.radii.rest.map(|steps| (steps, RadiusOrigin::Else)));
+        let found = found.ok_or_else(|| unknown(atom, element.is_some()))?;
+        self.known.insert(kind, found);
+        Ok(found)
     }
-}
-
-impl AtomView<'_> {
-    /// Atomic number of its element, as the file states it or its names tell; 0 if they do not.
-    pub fn atomic_number(&self) -> u8 {
-        labels(&looked_up_texts(self), self).element().map_or(0, Element::number)
-    }
-}
-
-/// Names of residue and atom, and the element, as they are looked up.
-fn looked_up_texts(atom: &AtomView<'_>) -> [String; 3] {
-    [atom.residue_name(), atom.name(), atom.element()].map(looked_up)
-}
-
-fn labels<'t>([residue, name, element]: &'t [String; 3], atom: &AtomView<'_>) -> Labels<'t> {
-    Labels { residue, atom: name, element, symbol_len: atom.atom.symbol_len }
 }
 
 /// An error about an atom without a radius.
@@ -109,7 +101,10 @@ fn unknown(atom: &AtomView<'_>, has_element: bool) -> Error {
         element => format!(", element {element}"),
     };
     let place = format!("residue {residue}{number}{code}{chain}{element}");
-    let remedy = format!("state it in a file for --radii, by a line \"{residue} {name} RADIUS\"");
+    let remedy = format!(
+        "state it in a file for --radii, by a line \"{residue} {name} RADIUS\", or \"else RADIUS\" for all \
+         such atoms, below \"table protor\" or another"
+    );
     Error::usage(format!("no radius for atom {} {name} in {place}: {remedy}", atom.atom.serial))
         .of_input(&atom.structure.name)
 }

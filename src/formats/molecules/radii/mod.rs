@@ -5,10 +5,8 @@
 //! single atoms.
 
 mod charmm;
-mod elements;
 mod file;
 mod finder;
-mod guess;
 mod residues;
 
 use std::collections::HashMap;
@@ -18,9 +16,10 @@ use std::path::Path;
 pub use finder::RadiusFinder;
 
 use self::charmm::CHARMM;
-use self::elements::Element;
-use self::guess::Labels;
+pub(crate) use self::residues::is_known;
 use self::residues::{Group, PROTOR, UNITED, UNITED_ELEMENTS};
+use crate::molecules::elements::Element;
+use crate::molecules::guess::Labels;
 use crate::molecules::model::{AtomView, Structure};
 use crate::molecules::selection::Selected;
 use crate::source::origin::open_file;
@@ -42,6 +41,21 @@ pub struct Radii {
     by_element: HashMap<Element, u32>,
     /// Where atoms are looked up that have no radius above.
     fallback: Fallback,
+    /// Radius of atoms that have none there either.
+    rest: Option<u32>,
+    /// Whether radii that a file of atoms states come before these.
+    prefers_own: bool,
+}
+
+/// Where the radius of an atom is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RadiusOrigin {
+    /// A table, or a line of a file of radii.
+    Table,
+    /// The file of the atoms.
+    Own,
+    /// The line `else` of a file of radii.
+    Else,
 }
 
 /// Radii of atoms that a table does not have.
@@ -56,6 +70,28 @@ enum Fallback {
     Table(Box<Radii>),
 }
 
+/// Counts of atoms whose radii are not those of a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RadiusCounts {
+    own: u64,
+    rest: u64,
+}
+
+impl RadiusCounts {
+    /// Counts an atom.
+    pub fn add(&mut self, origin: RadiusOrigin) {
+        self.own += u64::from(origin == RadiusOrigin::Own);
+        self.rest += u64::from(origin == RadiusOrigin::Else);
+    }
+
+    /// The counts in sentences.
+    pub fn notices(self) -> impl Iterator<Item = String> {
+        let own = (self.own > 0).then(|| format!("radii of atoms that the file states: {}", self.own));
+        let rest = (self.rest > 0).then(|| format!("atoms with the radius of \"else\": {}", self.rest));
+        own.into_iter().chain(rest)
+    }
+}
+
 /// Radii, and the file that they are from.
 #[derive(Debug, Clone)]
 pub struct LoadedRadii {
@@ -67,7 +103,7 @@ pub struct LoadedRadii {
 
 impl Radii {
     /// Names of the tables.
-    pub const NAMES: [&str; 4] = ["protor", "bondi", "united", "charmm"];
+    pub const NAMES: [&str; 5] = ["protor", "bondi", "united", "charmm", "own"];
 
     /// The table of a name:
     ///
@@ -79,11 +115,13 @@ impl Radii {
     ///   the program NACCESS); other elements, and hydrogens, as in `bondi`.
     /// * `charmm`: by residue and atom, hydrogens too, for amino acids, nucleotides, water and ions (the
     ///   force field CHARMM36m); other atoms as in `bondi`.
+    /// * `own`: those that the file of the atoms states, as PQR files do; of other files those of `protor`.
     ///
     /// The radii of `protor` and `united` include those of hydrogens, which are usually left out with them
     /// ([`Atoms::Heavy`](crate::molecules::Atoms::Heavy)).
     pub fn named(name: &str) -> Option<Radii> {
         Some(match name {
+            "own" => Radii { prefers_own: true, ..Radii::of_tables(PROTOR, &[]) },
             "protor" => Radii::of_tables(PROTOR, &[]),
             "bondi" => Radii::of_tables(&[], &[]),
             "united" => Radii::of_tables(UNITED, UNITED_ELEMENTS),
@@ -102,7 +140,7 @@ impl Radii {
         }
         let element = |&(symbol, radius): &(&str, u32)| Some((Element::of_symbol(symbol)?, radius));
         let by_element = elements.iter().filter_map(element).collect();
-        Radii { by_name, by_element, fallback: Fallback::Elements }
+        Radii { by_name, by_element, fallback: Fallback::Elements, ..Radii::default() }
     }
 
     /// Reads the radii in the file `path`. Each line has one of these forms, with radii in Å; text after `#`
@@ -112,6 +150,7 @@ impl Radii {
     ///   `* ATOM` leaves out ions, whose atom has the name of the residue, so that `* CA` is no calcium.
     /// * `ELEMENT RADIUS`: of an element. Deuterium is hydrogen.
     /// * `table NAME`: for all atoms that the file has no radius for, the table of this name.
+    /// * `else RADIUS`: for all atoms that have no radius by the other lines, nor by the table.
     ///
     /// Lines may have any order. Where several fit an atom, the first of these counts: residue and atom, the
     /// residue with any atom, the atom of any residue, the element, any atom of any residue. Upper and lower
@@ -163,16 +202,17 @@ impl Radii {
         RadiusFinder::new(self, structure)
     }
 
-    /// The selected atoms, each with its radius in steps of 0.001 Å; `None` if they are points without names.
+    /// The selected atoms, each with its radius in steps of 0.001 Å and where that is from; `None` if they
+    /// are points without names.
     ///
     /// An item is an error as [`RadiusFinder::steps_of`].
     pub fn of_atoms<'s>(
         &'s self,
         selected: &'s Selected<'s>,
-    ) -> Option<impl Iterator<Item = Result<(AtomView<'s>, u32)>>> {
+    ) -> Option<impl Iterator<Item = Result<(AtomView<'s>, u32, RadiusOrigin)>>> {
         let mut finder = self.finder(selected.atom(0)?.structure);
         let atoms = (0..selected.points().len()).filter_map(|index| selected.atom(index));
-        Some(atoms.map(move |atom| Ok((atom, finder.steps_of(&atom)?))))
+        Some(atoms.map(move |atom| finder.find(&atom).map(|(steps, origin)| (atom, steps, origin))))
     }
 
     /// The radius of an atom, in steps of 0.001 Å.
@@ -191,10 +231,4 @@ impl Radii {
                 Fallback::Table(table) => table.find(labels, element),
             })
     }
-}
-
-/// A name of a residue or an atom as it is looked up: in upper case, and with the prime of atoms of sugars
-/// that older files write as an asterisk.
-fn looked_up(name: &str) -> String {
-    name.to_ascii_uppercase().replace('*', "'")
 }

@@ -50,8 +50,9 @@ pub(super) struct BallFlags {
     mouths: bool,
 
     /// Radii of atoms, also for a mesh or a filtration with weights: protor (united atoms, Tsai et al. 1999),
-    /// bondi (by element), united (Chothia 1976), charmm (CHARMM36m, hydrogens too), or a file with lines
-    /// RESIDUE ATOM RADIUS or ELEMENT RADIUS [default: protor]
+    /// own (those of a PQR file, else protor), bondi (by element), united (Chothia 1976), charmm (CHARMM36m,
+    /// hydrogens too), or a file with lines RESIDUE ATOM RADIUS, ELEMENT RADIUS, table NAME or else RADIUS
+    /// [default: own]
     #[arg(long, value_name = "NAME|FILE")]
     radii: Option<String>,
 
@@ -118,7 +119,7 @@ impl BallFlags {
                 "--contact-areas needs --per atom, residue or chain: a molecule has no pairs",
             ));
         }
-        let NamedRadii { radii, text } = NamedRadii::load(self.radii.as_deref().unwrap_or("protor"))?;
+        let NamedRadii { radii, text } = NamedRadii::load(self.radii.as_deref().unwrap_or("own"))?;
         let probe = self.probe.unwrap_or(if has_weights { 0 } else { 1_400 });
         let mut options = BallOptions {
             radii,
@@ -134,7 +135,7 @@ impl BallFlags {
             threads,
             mouths: self.mouths,
             picture: None,
-            has_united_radii: matches!(&text[..], "protor" | "united"),
+            has_united_radii: matches!(&text[..], "own" | "protor" | "united"),
             text: String::new(),
         };
         options.text = self.text(&options, &text);

@@ -10,8 +10,9 @@ use spmesh_shell::{Names, named, value_name};
 /// Which atoms are triangulated.
 #[derive(Debug, Clone, Args)]
 pub(super) struct SelectionFlags {
-    /// The model of this number, or all models one by one [default: the first model]
-    #[arg(long, value_name = "N|all", allow_hyphen_values = true, value_parser = parse_models)]
+    /// The model of this number; all models one by one; or all joined, as files of assemblies have copies of
+    /// chains as models: chain A of the second model is named A-2 [default: the first model]
+    #[arg(long, value_name = "N|all|joined", allow_hyphen_values = true, value_parser = parse_models)]
     model: Option<Models>,
 
     /// The biological assembly of this name: copies of chains moved by operators. Copies of chain A are named
@@ -82,6 +83,7 @@ impl fmt::Display for SelectionFlags {
             Models::First => {}
             Models::One(number) => write!(f, "--model {number} ")?,
             Models::All => write!(f, "--model all ")?,
+            Models::Joined => write!(f, "--model joined ")?,
         }
         if let Some(assembly) = &self.assembly {
             write!(f, "--assembly {assembly} ")?;
@@ -106,10 +108,14 @@ impl fmt::Display for SelectionFlags {
 }
 
 fn parse_models(text: &str) -> Result<Models, String> {
-    if text == "all" {
-        return Ok(Models::All);
+    match text {
+        "all" => Ok(Models::All),
+        "joined" => Ok(Models::Joined),
+        _ => {
+            let expected = || format!("{text:?} is neither the number of a model nor all or joined");
+            text.parse().map(Models::One).map_err(|_| expected())
+        }
     }
-    text.parse().map(Models::One).map_err(|_| format!("{text:?} is neither the number of a model nor all"))
 }
 
 fn parse_altlocs(text: &str) -> Result<Altlocs, String> {

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::Level;
-use crate::tess3::tables::AtomNames;
+use crate::tess3::tables::{AtomNames, push_residue};
 use data_encoding::HEXLOWER;
 use sha2::{Digest, Sha256};
 use spmesh_base::error::Result;
-use spmesh_formats::molecules::{AtomView, Name, Radii, Residue, Selected};
+use spmesh_formats::molecules::{AtomView, Radii, Selected};
 
 /// The groups of the selected atoms, numbered as they first appear.
 pub(super) struct Groups {
@@ -62,15 +62,15 @@ impl Groups {
 /// What atoms of a group have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Key {
-    Residue(Residue),
-    Chain(Name),
+    Residue(u32),
+    Chain(u32),
     All,
 }
 
 pub(super) fn key(atom: &AtomView<'_>, level: Level) -> Key {
     match level {
-        Level::Residue => Key::Residue(*atom.residue()),
-        Level::Chain => Key::Chain(atom.residue().chain),
+        Level::Residue => Key::Residue(atom.atom.residue),
+        Level::Chain => Key::Chain(atom.residue().chain_number),
         Level::Atom | Level::Molecule => Key::All,
     }
 }
@@ -80,8 +80,9 @@ fn name(atom: &AtomView<'_>, level: Level) -> String {
         Level::Atom | Level::Molecule => "all".to_string(),
         Level::Chain => atom.chain().to_string(),
         Level::Residue => {
-            let number = atom.residue_number().map_or(String::new(), |number| number.to_string());
-            format!("{}/{}/{number}{}", atom.chain(), atom.residue_name(), atom.insertion_code())
+            let mut text = String::new();
+            push_residue(&mut text, atom);
+            text
         }
     }
 }

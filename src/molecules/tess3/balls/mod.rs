@@ -18,7 +18,7 @@ use super::{Product, Report};
 use crate::balls::{Balls, Cells, measure, molecular_surface, pockets};
 use groups::Groups;
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::molecules::{AtomView, Radii, Selected};
+use spmesh_formats::molecules::{AtomView, Radii, RadiusOrigin, Selected};
 use spmesh_formats::sink::TableSink;
 use tables::{CellTable, ContactTable};
 
@@ -105,9 +105,10 @@ impl Molecule<'_> {
             let message = "points have no elements, and so no radii: give a structure (PDB, mmCIF, XYZ)";
             return Err(Error::usage(message));
         };
-        let mut radius = |(atom, steps): (AtomView<'_>, u32)| {
-            let is_hydrogen = atom.structure.is_hydrogen(atom.atom);
-            report.hydrogens += u64::from(is_hydrogen && options.has_united_radii);
+        let mut radius = |(atom, steps, origin): (AtomView<'_>, u32, RadiusOrigin)| {
+            let is_united = options.has_united_radii && origin == RadiusOrigin::Table;
+            report.hydrogens += u64::from(atom.atom.is_hydrogen() && is_united);
+            report.radii.add(origin);
             self.length(steps + options.probe)
         };
         atoms.map(|found| found.map(&mut radius)).collect()

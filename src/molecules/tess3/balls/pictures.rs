@@ -9,7 +9,7 @@ use crate::balls::{Balls, Cell, FINEST, faces, linings, measure, pockets, surfac
 use crate::tess3::Product;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point3;
-use spmesh_formats::molecules::{AtomView, Name};
+use spmesh_formats::molecules::AtomView;
 use spmesh_formats::sink::{Mesh, Shape, Table};
 use spmesh_stream::model::attributes::{Attribute, Attributes, NumberType};
 
@@ -274,14 +274,14 @@ impl<'p> Atoms<'p> {
     fn new(picture: &'p Picture<'p>) -> Self {
         let selected = picture.molecule.selected;
         let views = || (0..selected.points().len()).map(|index| selected.atom(index));
-        let mut numbers: HashMap<Name, u32> = HashMap::new();
+        let mut numbers: HashMap<u32, u32> = HashMap::new();
         let mut number = |atom: AtomView<'_>| {
             let next = numbers.len() as u32 + 1;
-            *numbers.entry(atom.residue().chain).or_insert(next)
+            *numbers.entry(atom.residue().chain_number).or_insert(next)
         };
         Atoms {
             picture,
-            elements: views().map(|atom| atom.map_or(0, |atom| atom.atomic_number())).collect(),
+            elements: views().map(|atom| atom.map_or(0, |atom| atom.atom.atomic_number)).collect(),
             chains: views().map(|atom| atom.map_or(0, &mut number)).collect(),
             are_long: (0..selected.points().len()).any(|index| i32::try_from(selected.label(index)).is_err()),
         }

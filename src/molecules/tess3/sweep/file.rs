@@ -128,8 +128,7 @@ fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model
     let structure = read_structure(job.file, sweep.format)?;
     let read = started.elapsed();
     let has_distinct_numbers = has_distinct_numbers(&structure);
-    let mut of_file = structure.warnings.clone();
-    of_file.extend(structure.missing_location(&sweep.options.selection));
+    let mut of_file = structure.notices(&sweep.options.selection);
     let mut outputs: Vec<PathBuf> = Vec::new();
     let mut open = |model: Option<ModelName>| {
         let model = model.filter(|_| sweep.options.selection.models == Models::All);
@@ -207,8 +206,8 @@ pub(super) fn is_still_there(file: &Path, done: &DoneFile, folder: &Path) -> boo
 }
 
 /// Extensions of inputs that denote a format only.
-const FORMATS: [&str; 12] =
-    ["pdb", "ent", "cif", "mmcif", "xyz", "txt", "csv", "dat", "asc", "spm", "ply", "obj"];
+const FORMATS: [&str; 13] =
+    ["pdb", "ent", "pqr", "cif", "mmcif", "xyz", "txt", "csv", "dat", "asc", "spm", "ply", "obj"];
 
 /// The name of the output of each input, without its extension: relative to the folder of outputs, and none
 /// of `taken`.

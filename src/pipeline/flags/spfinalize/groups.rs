@@ -83,7 +83,7 @@ impl WaterFlags {
 #[command(next_help_heading = "Weights, for spdelaunay3d --weights")]
 pub(super) struct WeightFlags {
     /// Weight = radius squared: the name of an attribute with radii, such as radius of a PLY file; for atoms,
-    /// a table (protor, bondi, united, charmm) or a file of radii, as in tess3
+    /// a table (protor, bondi, united, charmm, own) or a file of radii, as in tess3
     #[arg(long, value_name = "NAME|FILE", requires = "octree")]
     radii: Option<String>,
 

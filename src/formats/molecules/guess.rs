@@ -1,19 +1,45 @@
 //! The element of an atom: as the file states it, or else as the atom's name tells.
 
-use crate::molecules::radii::elements::Element;
-use crate::molecules::radii::residues;
+use std::collections::HashMap;
 
-/// The texts that tell the element of an atom, in upper case.
+use foldhash::fast::FixedState;
+
+use crate::molecules::elements::Element;
+use crate::molecules::names::{Name, Names};
+use crate::molecules::radii::is_known;
+
+/// Atomic numbers of atoms, by the names of residue, atom and element, and by the columns of the name.
+/// Different ones are few.
+#[derive(Debug, Default)]
+pub(crate) struct Elements {
+    known: HashMap<([Name; 3], u8), u8, FixedState>,
+}
+
+impl Elements {
+    /// The atomic number of an atom; 0 if its names do not tell it.
+    pub(crate) fn number(&mut self, names: &Names, texts: [Name; 3], symbol_len: u8) -> u8 {
+        *self.known.entry((texts, symbol_len)).or_insert_with(|| {
+            let [residue, atom, element] = texts.map(|name| looked_up(names.text(name)));
+            let labels = Labels { residue: &residue, atom: &atom };
+            let found = if element.is_empty() { labels.element(symbol_len) } else { stated(&element) };
+            found.map_or(0, Element::number)
+        })
+    }
+}
+
+/// A name of a residue or an atom as it is looked up: in upper case, and with the prime of atoms of sugars
+/// that older files write as an asterisk.
+pub(crate) fn looked_up(name: &str) -> String {
+    name.to_ascii_uppercase().replace('*', "'")
+}
+
+/// The names of an atom, as they are looked up.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Labels<'a> {
     /// Name of the residue.
     pub(crate) residue: &'a str,
     /// Name of the atom.
     pub(crate) atom: &'a str,
-    /// Element as stated by the file; empty if it is not.
-    pub(crate) element: &'a str,
-    /// Letters of the symbol at the start of the name, as the columns of PDB tell; 0 if they do not.
-    pub(crate) symbol_len: u8,
 }
 
 /// Names that CHARMM gives to ions, and their elements.
@@ -43,22 +69,20 @@ impl Labels<'_> {
     ///
     /// A name tells the element if the residue is one of proteins, nucleic acids or water, or if it is also
     /// the name of the residue. Otherwise the columns of a PDB record count, where symbols of two letters
-    /// start one column before others.
-    pub(crate) fn element(&self) -> Option<Element> {
-        if !self.element.is_empty() {
-            return stated(self.element);
-        }
+    /// start one column before others: `symbol_len` has the letters of the symbol, or 0.
+    fn element(&self, symbol_len: u8) -> Option<Element> {
         let name = letters(self.atom);
-        if residues::is_known(self.residue) {
+        if is_known(self.residue) {
             return if name == "SE" { Element::of_symbol(name) } else { of_start(name, 1) };
         }
         if self.is_single() {
             let ion = IONS.iter().find(|(ion, _)| *ion == self.atom);
             return Element::of_symbol(ion.map_or(name, |(_, symbol)| symbol));
         }
-        match self.symbol_len {
+        match symbol_len {
             1 => of_start(name, 1),
-            2 if NO_SYMBOLS.contains(&self.atom) => of_start(name, 1),
+            // Nor do helium and holmium, with any name.
+            2 if NO_SYMBOLS.contains(&self.atom) || matches!(name, "HE" | "HO") => of_start(name, 1),
             2 => of_start(name, 2).or_else(|| of_start(name, 1)),
             // Names that fill their columns are mostly those of hydrogens and of atoms of large ligands.
             _ if name.starts_with(['H', 'C', 'N', 'O', 'P', 'S', 'D']) && !name.starts_with("CL") => {
