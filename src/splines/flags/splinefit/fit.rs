@@ -111,7 +111,7 @@ pub(super) struct Flags {
     weights: Option<PathBuf>,
 
     /// Corners and breaklines in the coordinates of the points: lines of corner, crease, smooth-crease or
-    /// linear and X Y X Y ..., or GeoJSON; - is stdin
+    /// linear and X Y X Y ..., GeoJSON, Shapefile or GeoPackage (FILE.gpkg:LAYER for one layer); - is stdin
     #[arg(long, value_name = "FILE")]
     features: Option<PathBuf>,
 
@@ -169,8 +169,11 @@ impl Flags {
         let mut output = Output::create(&self.output, true)?;
         let residuals = self.residuals.as_ref().map(|path| Output::create(path, false)).transpose()?;
         let rejected = self.rejected.as_ref().map(|path| Output::create(path, false)).transpose()?;
-        let (polylines, system) = self.features.as_deref().map(read_features).transpose()?.unzip();
-        let options = self.options(polylines.unwrap_or_default());
+        let features = self.features.as_deref().map(read_features).transpose()?;
+        let (polylines, system, layers) =
+            features.map_or_else(Default::default, |(lines, system, layers)| (lines, Some(system), layers));
+        layers.iter().for_each(|text| say(common, text));
+        let options = self.options(polylines);
         let points = self.points(common)?;
         if let Some(system) = system {
             // Lines of text are in the system of the points: a notice would tell nothing.
@@ -282,7 +285,7 @@ fn list<T>(output: Option<Output>, write: impl FnOnce(&mut Output) -> Result<T>)
     Ok(Some(written))
 }
 
-fn read_features(path: &Path) -> Result<(Vec<Polyline>, LineSystem)> {
+fn read_features(path: &Path) -> Result<(Vec<Polyline>, LineSystem, Option<String>)> {
     if path.as_os_str() == "-" {
         refuse_terminal()?;
     }
