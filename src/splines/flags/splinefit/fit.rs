@@ -16,12 +16,13 @@ use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
 use spmesh_formats::detect::SPLINEFIT;
 use spmesh_formats::source::{
-    Filters, InvalidAdvice, LineSystem, Opened, Polyline, SourceOptions, Values, name_of, open_knots,
-    read_polylines, read_values,
+    Filters, InvalidAdvice, LineSystem, Opened, Polyline, SourceOptions, TextOptions, Values, name_of,
+    open_knots, read_polylines, read_values,
 };
 use spmesh_shell::compression::Compression;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
+use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{Common, StatsFlag, named, open_held, parse_box, progress::Progress, refuse_terminal};
 use spmesh_stream::model::bounds::Bounds;
 
@@ -148,6 +149,9 @@ pub(super) struct Flags {
     seed: u64,
 
     #[command(flatten)]
+    text: TextFlags,
+
+    #[command(flatten)]
     threads: Threads,
 
     #[command(flatten)]
@@ -254,6 +258,7 @@ impl Flags {
             threads: Some(self.threads.get()),
             crs: self.crs.system()?,
             holds_points: true,
+            text: TextOptions { needs_z: true, ..self.text.options() },
             ..SourceOptions::default()
         };
         let weights = self.weights.as_ref().map(|path| read_weights(path)).transpose()?;
