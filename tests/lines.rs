@@ -250,7 +250,7 @@ fn layers_are_chosen_by_name() {
     assert!(ponds.segments.len() < paths.segments.len() && paths.segments.len() < count("lines.gpkg"));
     let [ponds, paths, other] = ["ponds", "paths", "roads"].map(|layer| format!("{file}:{layer}"));
     let listed = r#"are "paths", "ponds""#;
-    assert_outcome("spfinalize", &["--clip", &ponds, &points], b"", 0, "0 points");
+    assert_outcome("spfinalize", &["--clip", &ponds, &points], b"", 0, "the filters keep none");
     for flag in ["--lines", "--clip", "--drop-inside", "--flatten"] {
         let part = format!(r#"map.gpkg:roads: has no layer "roads": its layers {listed}"#);
         assert_outcome("spfinalize", &[flag, &other, &points], b"", 2, &part);

@@ -80,7 +80,8 @@ fn layers(names: &str, file: &str) -> String {
 const STEPS: u32 = 1000;
 
 /// Functions of views whose work and result are no longer than their arguments.
-const FUNCTIONS: &str = "abs avg coalesce count iif ifnull length lower max min nullif round row_number substr sum total trim upper";
+const FUNCTIONS: &str = "abs avg coalesce count iif ifnull length lower max min nullif round row_number \
+                         substr sum total trim upper";
 
 /// A file of so many bytes may not run code of its own, make values that are longer than itself, or compute
 /// for much longer than it takes to read lines: views are code. A step may take long in few functions, so

@@ -89,7 +89,7 @@ fn missing(rows: Option<u64>, shapes: u64) -> Option<String> {
         Some(rows) if rows != shapes => format!("{rows} rows of attributes (.dbf) for {shapes} shapes"),
         Some(_) => return None,
     };
-    Some(format!("found {found}, which decide here: copy all files of the Shapefile together"))
+    Some(format!("found {found}: attributes decide here, so copy all files of the Shapefile together"))
 }
 
 /// Reads the content of the next record; false at the end of the file.
