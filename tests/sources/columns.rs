@@ -106,7 +106,8 @@ fn the_third_of_three_columns_is_the_value_where_one_is_needed() {
         let (points, notices) = read(&format!("{names}\n1,2,3\n"), needed()).unwrap();
         assert_eq!(points, [place], "{names}");
         let name = names.rsplit(',').next().unwrap();
-        assert_eq!(notices, [format!("column 3, {name:?}, is the value: no column is called z")]);
+        let told = format!("column 3, {name:?}, is the value: no column is called z");
+        assert!(notices.len() == 1 && notices[0].ends_with(&told), "{notices:?}");
     }
     let (points, notices) = read("x,y,zinc\n1,2,3\n", TextOptions::default()).unwrap();
     assert!(
