@@ -332,3 +332,27 @@ fn the_tool_tells_its_figures_to_machines() {
     assert_eq!(figures["cells"]["occupied"], 3);
     assert_eq!(decode(&output.stdout).points.len(), 3);
 }
+
+#[test]
+fn fill_values_are_told() {
+    let text = "0 0 1\n1 0 2\n0 1 -9999\n1 1 3\n2 2 -9999\n";
+    let told = |arguments: &[&str], text: &str| {
+        let (code, message) = outcome(&run_tool("spfinalize", arguments, text.as_bytes()));
+        assert_eq!(code, Some(0), "{message}");
+        message
+    };
+    let expected =
+        "2 points have z = -9999, far from all others (1 to 3): if that stands for no value, drop them";
+    for arguments in
+        [&["-"][..], &["--scale", "0.01,0.01,0.01", "-"], &["--level", "3", "-"], &["--octree", "-"]]
+    {
+        assert!(told(arguments, text).contains(expected), "{arguments:?}");
+    }
+    let great = told(&["-"], &format!("{text}3 3 9.96921e+36\n"));
+    assert!(great.contains("2 points have z = -9999, 1 point has z = 9.96921e36, far"), "{great}");
+    for (arguments, text) in
+        [(&["--keep-z", "1,3", "-"][..], text), (&["-q", "-"], text), (&["-"], "0 0\n1 -9999\n")]
+    {
+        assert!(!told(arguments, text).contains("far from"), "{arguments:?}");
+    }
+}

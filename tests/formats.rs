@@ -177,6 +177,7 @@ fn start_of(format: Format) -> Vec<u8> {
     let mut nifti = vec![0; 400];
     nifti[..4].copy_from_slice(&348u32.to_le_bytes());
     nifti[344..348].copy_from_slice(b"n+1\0");
+    let dicom = [&[0; 128][..], b"DICM\x02"].concat();
     let start: &[u8] = match format {
         Format::Las => b"LASF\0\0",
         Format::Stream => b"\x89SPM\r\n\x1a\n",
@@ -214,6 +215,30 @@ fn start_of(format: Format) -> Vec<u8> {
         Format::BinaryCif => b"\x83\xa7version\xa50.3.0",
         Format::Utf16 => b"\xff\xfe1\0",
         Format::Pcd => b"# .PCD v0.7\n",
+        Format::E57 => b"ASTM-E57\x01\0\0\0",
+        Format::Bpf => b"BPF!0003",
+        Format::Rdbx => b"RIEGL LMS RDB 2 POINTCLOUD FILE",
+        Format::Compound => b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
+        Format::Ptx => {
+            b"2\r\n1\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n0 0 1\r\n1 0 0 0\r\n0 1 0 0\r\n0 0 1 0\r\n0 0 0 1\r\n1 2 3 0.5\r\n"
+        }
+        Format::Stl => b"solid part\n  facet normal 0 0 1\n    outer loop\n",
+        Format::Gltf => b"glTF\x02\0\0\0",
+        Format::Gmsh => b"$MeshFormat\n4.1 0 8\n",
+        Format::Fbx => b"Kaydara FBX Binary  \0",
+        Format::Dwg => b"AC1032\0",
+        Format::DxfDrawing => b"  0\r\nSECTION\r\n  2\r\nHEADER\r\n",
+        Format::Shapefile => b"\0\0\x27\x0a\0\0\0\0",
+        Format::Sqlite => b"SQLite format 3\0",
+        Format::FlatGeobuf => b"fgb\x03fgb\0",
+        Format::Json => b"{ \"type\": \"FeatureCollection\", \"features\": [\n1 2 3\n",
+        Format::Parquet => b"PAR1\x15",
+        Format::AsciiGrid => b"NCOLS 3\nNROWS 2\nXLLCORNER 0\n1 2 3\n",
+        Format::SurferGrid => b"DSAA\n2 2\n0 1\n",
+        Format::MetaImage => b"ObjectType = Image\nNDims = 3\n",
+        Format::Dicom => &dicom,
+        Format::Picture => b"\x89PNG\r\n",
+        Format::Pdf => b"%PDF-1.4\n",
         Format::Hdf5 => b"\x89HDF\r\n",
         Format::Netcdf => b"CDF\x01",
         Format::Medit => b"MeshVersionFormatted 2\n",

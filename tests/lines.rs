@@ -61,7 +61,9 @@ fn other_systems_are_refused() {
     for format in &FORMATS[1..] {
         let read = |name: &str| read(&[sample(format)], &target(name), &Options::default());
         let (_, changes) = read("EPSG:25832").expect("lines");
-        assert!(changes.notices.is_empty(), "{format}: {:?}", changes.notices);
+        let about_layers = |notice: &String| notice.starts_with("the layers of");
+        assert!(changes.notices.iter().all(about_layers), "{format}: {:?}", changes.notices);
+        assert_eq!(changes.notices.len(), usize::from(*format == "lines.gpkg"), "{format}");
         let error = read("EPSG:25833").unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Usage);
         assert!(error.to_string().contains("the points in EPSG:25833"), "{error}");
@@ -206,5 +208,66 @@ fn a_far_vertex_does_not_take_the_shape_of_other_lines() {
     let good = folder.write("good.txt", "line 10 10 1 10.0000001 10 2\nline 30 30 1 4000000 40 2\n");
     assert!(
         !outcome(&crate::programs::run("spfinalize", &["--lines", &good, &points], b"")).1.contains("great")
+    );
+}
+
+#[test]
+fn changes_beside_a_geopackage_are_refused() {
+    let folder = Folder::new();
+    let points = folder.write("points.txt", "0 0 0\n9 0 0\n0 9 0\n");
+    let file = folder.write("lines.gpkg", std::fs::read(sample("lines.gpkg")).expect("a sample"));
+    let link = folder.path("link.gpkg");
+    std::os::unix::fs::symlink(&file, &link).expect("a link");
+    let log = [&[0x37, 0x7f, 6, 0x82][..], &[1; 29]].concat();
+    // A log without frames, an empty journal, and one that SQLite has finished.
+    for (ending, content) in [("-wal", &log[..32]), ("-journal", &[]), ("-journal", &[0; 512])] {
+        folder.write(&format!("lines.gpkg{ending}"), content);
+        assert_outcome("spfinalize", &["--lines", &file, &points], b"", 0, "the layers of");
+    }
+    for (ending, content) in [("-wal", &log[..]), ("-journal", b"\xd9\xd5\x05\xf9")] {
+        folder.write(&format!("lines.gpkg{ending}"), content);
+        let part = format!("lines.gpkg{ending}: close the program that writes it");
+        for file in [&file, &link] {
+            assert_outcome("spfinalize", &["--lines", file, &points], b"", 2, &part);
+        }
+        assert_outcome("spfinalize", &["--clip", &format!("{file}:ponds"), &points], b"", 2, &part);
+        std::fs::remove_file(folder.path(&format!("lines.gpkg{ending}"))).expect("a file");
+    }
+    assert!(folder.names("").len() == 3, "{:?}", folder.names(""));
+}
+
+#[test]
+fn layers_are_chosen_by_name() {
+    let folder = Folder::new();
+    let points = folder.write("points.txt", "0 0 0\n20 0 0\n0 20 0\n20 20 0\n");
+    let file = folder.write("map.gpkg", std::fs::read(sample("lines.gpkg")).expect("a sample"));
+    let count = |name: &str| network(name, &grid(0.001)).0.segments.len();
+    let of = |layer: &str| {
+        read(&[PathBuf::from(format!("{file}:{layer}"))], &grid(0.001), &Options::default()).expect("lines")
+    };
+    let ((paths, about), (ponds, _)) = (of("paths"), of("PONDS"));
+    assert!(about.notices.iter().all(|notice| notice.contains("state no coordinate")), "{:?}", about.notices);
+    assert!(ponds.segments.len() < paths.segments.len() && paths.segments.len() < count("lines.gpkg"));
+    let [ponds, paths, other] = ["ponds", "paths", "roads"].map(|layer| format!("{file}:{layer}"));
+    let listed = r#"are "paths", "ponds""#;
+    assert_outcome("spfinalize", &["--clip", &ponds, &points], b"", 0, "the filters keep none");
+    for flag in ["--lines", "--clip", "--drop-inside", "--flatten"] {
+        let part = format!(r#"map.gpkg:roads: has no layer "roads": its layers {listed}"#);
+        assert_outcome("spfinalize", &[flag, &other, &points], b"", 2, &part);
+    }
+    for flag in ["--clip", "--flatten"] {
+        assert_outcome("spfinalize", &[flag, &paths, &points], b"", 3, "expected polygons");
+        // Whoever gives the whole file reads what to choose from.
+        assert_outcome("spfinalize", &[flag, &file, &points], b"", 3, &format!("map.gpkg {listed}"));
+    }
+    assert_outcome("spfinalize", &["--lines", &paths, "--report", &file, &points], b"", 2, "would replace");
+    let json = folder.write("map.geojson", std::fs::read(sample("lines.geojson")).expect("a sample"));
+    let arguments = ["--lines", &format!("{json}:paths"), &points];
+    assert_outcome("spfinalize", &arguments, b"", 2, "only GeoPackages have layers");
+    // A file may have such a name itself.
+    let json = folder.write("map.gpkg:paths", std::fs::read(sample("lines.geojson")).expect("a sample"));
+    assert_eq!(
+        read(&[json.into()], &grid(0.001), &Options::default()).expect("lines").0.segments.len(),
+        count("lines.geojson")
     );
 }

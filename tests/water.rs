@@ -353,6 +353,33 @@ fn tables_that_were_cut_off_are_errors() {
 }
 
 #[test]
+fn shapefiles_have_all_attributes_where_these_decide() {
+    let folder = Folder::new();
+    let read = |name: &str| std::fs::read(sample(name)).expect("a sample");
+    let [shapes, table] = ["water_lines.shp", "water_lines.dbf"].map(read);
+    let (file, laz) = (folder.write("water.shp", shapes), sample("lareunion.laz"));
+    let lines = ["--lines", &file, &laz, "-o", "/dev/null"];
+    let water = ["--flatten", &file, &laz];
+    assert_outcome("spfinalize", &water, b"", 3, "water.shp: found no table of attributes beside it (.dbf)");
+    assert_outcome("spfinalize", &lines, b"", 0, "");
+    assert_outcome("splinefit", &["fit", "--features", &file, &laz], b"", 3, "found no table of attributes");
+    for rows in [0, table[4] - 1, table[4] + 1] {
+        let mut other = table.clone();
+        other[4] = rows;
+        other.extend(vec![b' '; 1000]);
+        folder.write("water.dbf", other);
+        assert_outcome("spfinalize", &water, b"", 3, &format!("found {rows} rows of attributes (.dbf) for"));
+        assert_outcome("spfinalize", &lines, b"", 0, "");
+    }
+    // Programs mark records as deleted, and leave their shapes where they are.
+    let mut deleted = table;
+    let (start, len) = (usize::from(deleted[8]), usize::from(deleted[10]));
+    (0..usize::from(deleted[4])).for_each(|row| deleted[start + row * len] = b'*');
+    folder.write("water.dbf", deleted);
+    assert_outcome("spfinalize", &water, b"", 3, "water.shp: found no lines");
+}
+
+#[test]
 fn points_on_shores_are_dropped_too() {
     let folder = Folder::new();
     let square = "[[[5,5],[15,5],[15,15],[5,15],[5,5]]]";

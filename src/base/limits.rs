@@ -183,8 +183,11 @@ pub const COPC_ENTRIES_MAX: u64 = 1 << 22;
 /// Most bytes of comments of SPA that are kept.
 pub const SPA_COMMENTS_MAX: usize = 1 << 20;
 
-/// Longest list of a row of PLY: useful polygons and strips are shorter.
+/// Longest list of a row of PLY: useful polygons are shorter.
 pub const PLY_LIST_MAX: u64 = 1 << 16;
+
+/// Longest list of triangle strips of PLY, which often is the only one of a file. It takes 32 bytes for each.
+pub const PLY_STRIPS_MAX: u64 = 1 << 24;
 
 /// Most elements and properties of a header of PLY: far above any real header, and little memory.
 pub const PLY_ITEMS_MAX: usize = 1000;
@@ -199,14 +202,15 @@ pub const WKB_DEPTH_MAX: u32 = 32;
 pub const RADII_LEN_MAX: u64 = 1 << 24;
 
 /// Longest value that SQLite may make of a GeoPackage of so many bytes: a little more than the file.
+/// A file may be sparse, so there is a limit for all: as much as the most vertices take, each as a point.
 pub fn geopackage_value_max(len: u64) -> i32 {
-    i32::try_from(len.saturating_add(1 << 16)).unwrap_or(i32::MAX)
+    len.saturating_add(1 << 16).min(1 << 30) as i32
 }
 
-/// Most steps of SQLite for a GeoPackage of so many bytes. A row takes some ten steps, and at least as many
-/// bytes.
+/// Most steps of SQLite for a GeoPackage of so many bytes. A row with a geometry takes three to seven steps, and
+/// at least 35 bytes; rows beyond [`LINE_VERTICES_MAX`] have too many vertices, whatever the length is.
 pub fn geopackage_steps_max(len: u64) -> u64 {
-    len.saturating_mul(64).saturating_add(1_000_000)
+    len.saturating_add(1_000_000).min(8 * LINE_VERTICES_MAX as u64)
 }
 
 /// Longest index of LAStools, in bytes: it takes five times as much while it is checked.
@@ -221,6 +225,15 @@ mod tests {
         assert!(check_line_vertices(LINE_VERTICES_MAX).is_ok());
         let message = check_line_vertices(LINE_VERTICES_MAX + 1).unwrap_err().to_string();
         assert_eq!(message, "more than 16777216 vertices of lines");
+    }
+
+    #[test]
+    fn sparse_files_bound_nothing() {
+        assert_eq!(geopackage_value_max(0), 1 << 16);
+        assert_eq!(geopackage_value_max(u64::MAX), 1 << 30);
+        assert_eq!(geopackage_steps_max(1000), 1_001_000);
+        // A second or two.
+        assert_eq!(geopackage_steps_max(u64::MAX), 1 << 27);
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! Recognizes outputs that would replace inputs or each other, however their paths are written.
 
 use std::collections::{HashMap, HashSet};
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
+use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
@@ -51,6 +53,18 @@ pub fn is_device(path: &Path) -> bool {
     path.starts_with("/dev") && !path.starts_with("/dev/shm")
 }
 
+/// The file at a path, and the layer of it that the path names: `map.gpkg:rivers` is the layer `rivers` of
+/// `map.gpkg`, unless a file has this whole name.
+pub fn file_and_layer(path: &Path) -> (&Path, Option<String>) {
+    let bytes = path.as_os_str().as_bytes();
+    let colons = (0..bytes.len()).filter(|&at| bytes[at] == b':');
+    let mut parts = colons.map(|at| (Path::new(OsStr::from_bytes(&bytes[..at])), &bytes[at + 1..]));
+    match parts.find(|(file, _)| file.is_file() && !path.exists()) {
+        Some((file, layer)) => (file, Some(String::from_utf8_lossy(layer).into_owned())),
+        None => (path, None),
+    }
+}
+
 /// The files that a run reads.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs {
@@ -61,7 +75,10 @@ impl Inputs {
     /// The files at these paths; "-" is stdin.
     pub fn of<'p>(paths: impl IntoIterator<Item = &'p Path>) -> Inputs {
         let stdin = io::stdin();
-        let place = |path: &'p Path| Some((Place::of(path, stdin.as_fd())?, name_of_input(path)));
+        let place = |path: &'p Path| {
+            let (file, _) = file_and_layer(path);
+            Some((Place::of(file, stdin.as_fd())?, name_of_input(path)))
+        };
         Inputs { names: paths.into_iter().filter_map(place).collect() }
     }
 

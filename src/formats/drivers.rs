@@ -128,6 +128,12 @@ const VALUES: &str = "write its values as NRRD or raw numbers first";
 const TO_POINTS: &str = "make a point stream of its atoms with spfinalize --octree, or use tess3";
 const TO_STRUCTURE: &str = "convert it to PDB or mmCIF first, for example with gemmi or obabel";
 const TO_STREAM: &str = "convert it first with spconvert";
+const BY_PDAL: &str = "convert it first, for example with pdal translate IN OUT.laz";
+const BY_MESHIO: &str = "convert it first, for example with meshio convert IN OUT.ply";
+const AS_LINES: &str = "write its points as lines of x y z first";
+const OF_FEATURES: &str =
+    "it is read where features are, as by spfinalize --lines; write its points as lines of x y z first";
+const OF_CELLS: &str = "list its cells as lines of x y z, for example with gdal2xyz";
 const TO_PLY: &str = "convert it first with spconvert --to ply";
 
 // Of each: its name with an article, its name in lists, how it is recognized, and a hint for tools that do
@@ -148,6 +154,9 @@ formats! {
     Nifti("a NIfTI volume", "NIfTI", Test::Look(binary::is_nifti), "dd4 reads it") {
         sites: Some(|origin, _, head, warnings| nifti::open(origin, head, warnings).map(Supply::of_volume))
     }
+    // Its preamble may look like an SMB mesh.
+    Dicom("a DICOM image", NO_LIST, Test::Look(binary::is_dicom),
+        "write it as NIfTI or NRRD first, for example with dcm2niix") {}
     Stream("a spmesh stream", "spmesh streams", Test::Magic(&[b"\x89S"]), "") {
         value: "spm", ending: "spm", is_binary: true,
         points: Some(|file, _| stream::open(file, open_stream, false)),
@@ -270,15 +279,39 @@ formats! {
     Sdf("an SDF or MOL file", NO_LIST, Test::Look(structures::is_sdf), TO_STRUCTURE) {}
     Utf16("text in UTF-16", NO_LIST, Test::Magic(&[b"\xff\xfe", b"\xfe\xff"]),
         "convert it first, for example with iconv -f utf-16 -t utf-8") {}
-    Pcd("a PCD file", NO_LIST, Test::Magic(&[b"# .PCD", b"VERSION .7", b"VERSION 0.7"]),
-        "convert it first, for example with pdal translate") {}
+    Pcd("a PCD file", NO_LIST, Test::Magic(&[b"# .PCD", b"VERSION .7", b"VERSION 0.7"]), BY_PDAL) {}
+    E57("an E57 file", NO_LIST, Test::Magic(&[b"ASTM-E57"]), BY_PDAL) {}
+    Bpf("a BPF file", NO_LIST, Test::Magic(&[b"BPF!"]), BY_PDAL) {}
+    Rdbx("a RIEGL database (RDBX)", NO_LIST, Test::Magic(&[b"RIEGL LMS RDB"]), BY_PDAL) {}
+    Compound("an OLE file, such as a scan of FARO (FLS)", NO_LIST,
+        Test::Magic(&[b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"]),
+        "export it as LAS, PLY or lines of x y z first, with the program that wrote it") {}
+    Ptx("a PTX scan", NO_LIST, Test::Look(binary::is_ptx), BY_PDAL) {}
+    Stl("an STL surface", NO_LIST, Test::Look(binary::is_stl), BY_MESHIO) {}
+    Gltf("a glTF file", NO_LIST, Test::Magic(&[b"glTF"]), BY_MESHIO) {}
+    Gmsh("a Gmsh mesh", NO_LIST, Test::Magic(&[b"$MeshFormat"]), BY_MESHIO) {}
+    Fbx("an FBX file", NO_LIST, Test::Magic(&[b"Kaydara FBX Binary"]),
+        "export it as PLY or OBJ first, for example with Blender") {}
+    Dwg("a DWG drawing", NO_LIST, Test::Magic(&[b"AC10"]), AS_LINES) {}
+    DxfDrawing("a DXF drawing", NO_LIST, Test::Look(binary::is_dxf), AS_LINES) {}
+    Shapefile("a Shapefile", NO_LIST, Test::Magic(&[b"\0\0\x27\x0a"]), OF_FEATURES) {}
+    Sqlite("an SQLite database, such as a GeoPackage", NO_LIST, Test::Magic(&[b"SQLite format 3\0"]),
+        OF_FEATURES) {}
+    FlatGeobuf("a FlatGeobuf file", NO_LIST, Test::Magic(&[b"fgb\x03"]), OF_FEATURES) {}
+    Json("JSON", NO_LIST, Test::Look(binary::is_json), OF_FEATURES) {}
+    Parquet("a Parquet file", NO_LIST, Test::Magic(&[b"PAR1"]), AS_LINES) {}
+    AsciiGrid("an ASCII grid of Esri", NO_LIST, Test::Look(binary::is_ascii_grid), OF_CELLS) {}
+    SurferGrid("a grid of Surfer", NO_LIST, Test::Magic(&[b"DSAA", b"DSBB", b"DSRB"]), OF_CELLS) {}
+    MetaImage("a MetaImage", NO_LIST, Test::Magic(&[b"ObjectType = Image"]), VALUES) {}
+    Picture("a picture", NO_LIST, Test::Magic(&[b"\x89PNG", b"\xff\xd8\xff"]), "") {}
+    Pdf("a PDF document", NO_LIST, Test::Magic(&[b"%PDF"]), "") {}
     Hdf5("HDF5, netCDF-4 or MINC data", NO_LIST, Test::Magic(&[b"\x89HDF"]),
         "write it as VTU, NRRD or raw numbers first, for example with ParaView or h5dump") {}
     Netcdf("netCDF data", NO_LIST, Test::Magic(&[b"CDF\x01", b"CDF\x02", b"CDF\x05"]), VALUES) {}
     Inrimage("an INRIMAGE, which holds voxels", NO_LIST, Test::Magic(&[b"#INRIMAGE"]),
         "list the wanted ones as lines of x y z") {}
     Tiff("a TIFF image", NO_LIST, Test::Magic(&[b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"]),
-        "list its cells as lines of x y z, for example with gdal2xyz") {}
+        OF_CELLS) {}
     Xml("XML or HTML", NO_LIST, Test::Magic(&[b"<?xml", b"<!DOCTYPE", b"<!doctype", b"<html", b"<HTML"]),
         "it may be the error page of a failed download") {}
     Binary("of no known format", NO_LIST, Test::Look(|head| head.contains(&0)), "") {}

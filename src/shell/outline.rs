@@ -23,8 +23,8 @@ pub struct OutlineFlags {
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     concave: Option<f64>,
 
-    /// Leave out what is outside of these polygons, in the system of the mesh: GeoJSON, Shapefile,
-    /// GeoPackage, or WKT such as POLYGON((0 0,9 0,9 9,0 0))
+    /// Leave out what is outside of these polygons, in the system of the mesh: GeoJSON, Shapefile, GeoPackage
+    /// (FILE.gpkg:LAYER for one layer), or WKT such as POLYGON((0 0,9 0,9 9,0 0))
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
 }

@@ -35,6 +35,7 @@ impl TextFlags {
             separator: self.separator,
             skip_lines: self.skip_lines,
             comment: self.comment.clone(),
+            needs_z: false,
         }
     }
 }

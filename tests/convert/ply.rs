@@ -119,8 +119,26 @@ fn what_is_read_over_may_be_no_number() {
 }
 
 #[test]
-fn triangle_strips_are_not_lost_without_a_word() {
-    let text = TEXT.replace("element face", "element tristrips");
-    let error = converted(text.as_bytes(), Format::Ply, Format::Stream).unwrap_err();
-    assert_eq!(error.kind(), ErrorKind::Usage, "{error}");
+fn triangle_strips_are_triangles() {
+    let head = "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n\
+        property float z\nelement NAME\nproperty list int int vertex_indices\nend_header\n\
+        0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 0 5\n3 1 5\n";
+    let read = |element: &str, rows: &str| {
+        converted(format!("{}{rows}", head.replace("NAME", element)).as_bytes(), Format::Ply, Format::Stream)
+    };
+    let faces = read("face 3", "3 0 1 2\n3 2 1 3\n3 3 4 5\n").unwrap();
+    for rows in ["8 0 1 2 3 -1 3 4 5\n", "9 0 1 2 3 -1 3 4 5 -1\n"] {
+        assert!(read("tristrips 1", rows).unwrap() == faces, "{rows}");
+    }
+    assert!(read("tristrips 2", "4 0 1 2 3\n3 3 4 5\n").unwrap() == faces);
+    // Vertices that are there twice join two strips.
+    assert!(read("tristrips 1", "7 0 1 2 3 3 4 5\n").unwrap() == faces);
+    for (rows, part) in [
+        ("3 0 1 6\n", "face with vertex 6 of 6"),
+        ("3 0 1 -2\n", "vertex number -2"),
+        ("2 0 1\n", "strip of 2 vertices"),
+    ] {
+        let error = read("tristrips 1", rows).unwrap_err();
+        assert!(error.kind() == ErrorKind::Malformed && error.to_string().contains(part), "{error}");
+    }
 }

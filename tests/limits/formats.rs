@@ -5,14 +5,14 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use spmesh_base::limits::{
-    CONFIGURATION_DEGREE_MAX, CRS_DEPTH_MAX, EXPANSION_FREE, PLY_ITEMS_MAX, PLY_LIST_MAX, RADII_LEN_MAX,
-    SPA_COMMENTS_MAX, TEXT_HEADER_LINE_MAX,
+    CONFIGURATION_DEGREE_MAX, CRS_DEPTH_MAX, EXPANSION_FREE, PLY_ITEMS_MAX, PLY_LIST_MAX, PLY_STRIPS_MAX,
+    RADII_LEN_MAX, SPA_COMMENTS_MAX, TEXT_HEADER_LINE_MAX,
 };
 use spmesh_formats::source::{SpReader, SpaReader};
 use spmesh_stream::check_degree;
 
 use super::sides::{assert_sides, padded};
-use crate::programs::{Folder, outcome, run, sample};
+use crate::programs::{Folder, assert_outcome, outcome, run, sample};
 
 const VERTEX: &str = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
 
@@ -26,6 +26,18 @@ fn lists_of_ply() {
     };
     let part = "list of 65537 values, the maximum is 65536";
     assert_sides(&["spfinalize", "-"], PLY_LIST_MAX as usize, part, list);
+}
+
+/// Strips of a length that is stated alone: shorter ones are missing.
+#[test]
+fn strips_of_ply() {
+    let head =
+        "ply\nformat binary_little_endian 1.0\nelement tristrips 1\nproperty list uint int vertex_indices\n";
+    for (len, part) in [(PLY_STRIPS_MAX, "truncated"), (PLY_STRIPS_MAX + 1, "the maximum is 16777216")] {
+        let bytes =
+            [head.as_bytes(), VERTEX.as_bytes(), b"end_header\n", &(len as u32).to_le_bytes()].concat();
+        assert_outcome("spfinalize", &["-"], &bytes, 3, part);
+    }
 }
 
 #[test]

@@ -73,7 +73,8 @@ fn a_series_is_what_nibabel_says() {
 
     let world = read_points4(&Request { spacing: Spacing::World, ..all(sample("functional.nii")) }).unwrap();
     assert_eq!(value_at(&world, [32.0 - 12.0, -40.0 + 20.0, 8.0, 14.0]), 3780.6309475898743);
-    assert!(world.warnings.is_empty());
+    let units = "world coordinates are in the units of the header: lengths are in mm, times are in s";
+    assert_eq!(world.warnings, [units]);
 }
 
 #[test]
@@ -165,6 +166,16 @@ fn world_units_follow_sform_then_qform_then_the_distances() {
     assert!((x - 1.0).abs() + (y - 3f64.sqrt()).abs() + z.abs() < 1e-15, "{x} {y} {z}");
     let flat = Header::new(false).with(80, 0f32.to_le_bytes());
     assert_fails(read_world(&flat.file()), ErrorKind::Usage, &["apart"]);
+}
+
+#[test]
+fn units_are_told_with_world_coordinates() {
+    let warnings = |units: u8| read_world(&Header::new(false).with(123, [units]).file()).unwrap().warnings;
+    let told = "world coordinates are in the units of the header:";
+    assert_eq!(warnings(3 | 16), [format!("{told} lengths are in micrometres, times are in ms")]);
+    assert_eq!(warnings(32), [format!("{told} times are in Hz")]);
+    assert!(warnings(0).is_empty());
+    assert!(read(Header::new(false).with(123, [10]).file()).unwrap().warnings.is_empty());
 }
 
 #[test]

@@ -177,6 +177,42 @@ fn world_units_are_what_the_header_states() {
 }
 
 #[test]
+fn axes_without_directions_have_spacings() {
+    let places = |fields: &str| {
+        let points = read_world(&small(fields)).unwrap_or_else(|e| panic!("{fields}: {e}"));
+        [points.points[0], points.points[7]]
+    };
+    let space = "space directions: (2,0,0) (0,4,0) (0,0,3) none\nspace origin: (1,8,-1)\n";
+    for (fields, [from, to]) in [
+        ("spacings: nan nan nan 2\n", [0.0, 2.0]),
+        ("axis mins: nan nan nan 5\naxis maxs: nan nan nan 8\n", [5.0, 8.0]),
+        ("spacings: nan nan nan 2\naxis mins: nan nan nan 5\ncenters: ??? ??? ??? cell\n", [6.0, 8.0]),
+        ("", [0.0, 1.0]),
+    ] {
+        let expected = [[1.0, 8.0, -1.0, from], [3.0, 12.0, -1.0, to]];
+        assert_eq!(places(&format!("{space}{fields}")), expected, "{fields}");
+    }
+    let none = "space dimension: 3\nspace directions: none none none none\nspacings: 0.25 0.5 2 0.75\n";
+    assert_eq!(places(none), [[0.0; 4], [0.25, 0.5, 0.0, 0.75]]);
+    let first = "kinds: time space space space\nspace directions: none (0,2,0) (4,0,0) (0,0,3)\nspacings: 7 nan nan nan\n";
+    assert_eq!(places(first)[1], [0.0, 2.0, 3.0, 7.0]);
+    // Two axes of the plane, and one that has no direction.
+    let plane = "space dimension: 2\nspace directions: (2,0) (0,4) none none\nspacings: nan nan 5 6\n";
+    assert_eq!(places(plane)[1], [2.0, 4.0, 0.0, 6.0]);
+}
+
+#[test]
+fn units_of_headers_are_told() {
+    let warnings =
+        |fields: &str| read_world(&small(&format!("spacings: 1 1 1 1\n{fields}"))).unwrap().warnings;
+    let told = "world coordinates are in the units of the header:";
+    assert_eq!(warnings("space units: \"mm\" \"mm\" \"mm\"\n"), [format!("{told} lengths are in mm")]);
+    let units = "units: \"cm\" \"cm\" \"mm\" \"ms\"\n";
+    assert_eq!(warnings(units), [format!("{told} lengths are in cm, mm, times are in ms")]);
+    assert!(warnings("units: \"\" \"\" \"\" \"\"\n").is_empty());
+}
+
+#[test]
 fn directions_may_be_oblique_or_in_another_order() {
     let turned = "space directions: (0,2,0) (4,0,0) (0,0,3) none\nspace origin: (1,8,-1)\n";
     let points = read_world(&small(turned)).unwrap();

@@ -98,3 +98,27 @@ fn separators_comments_and_lines_to_skip_are_chosen() {
         assert_outcome("spfinalize", &[flag, &path], &[], 2, part);
     }
 }
+
+#[test]
+fn the_third_of_three_columns_is_the_value_where_one_is_needed() {
+    let needed = || TextOptions { needs_z: true, ..TextOptions::default() };
+    for (names, place) in [("x,y,zinc", [1.0, 2.0, 3.0]), ("lat,lon,precip", [2.0, 1.0, 3.0])] {
+        let (points, notices) = read(&format!("{names}\n1,2,3\n"), needed()).unwrap();
+        assert_eq!(points, [place], "{names}");
+        let name = names.rsplit(',').next().unwrap();
+        let told = format!("column 3, {name:?}, is the value: no column is called z");
+        assert!(notices.len() == 1 && notices[0].ends_with(&told), "{notices:?}");
+    }
+    let (points, notices) = read("x,y,zinc\n1,2,3\n", TextOptions::default()).unwrap();
+    assert!(
+        points == [[1.0, 2.0, 0.0]] && notices[0].contains("--columns x,y,zinc takes the third"),
+        "{notices:?}"
+    );
+    for text in ["x,y,lead,zinc\n1,2,3,4\n", "id,x,y\n1,2,3\n"] {
+        assert_fails(read(text, needed()), ErrorKind::Usage, &["line 1 names", "which one is the value"]);
+    }
+    let (points, notices) = read("x,y,z,zinc\n1,2,3,4\n", needed()).unwrap();
+    assert!(points == [[1.0, 2.0, 3.0]] && notices.is_empty());
+    let chosen = TextOptions { needs_z: true, ..columns("x,y,zinc") };
+    assert_eq!(read("x,y,lead,zinc\n1,2,3,4\n", chosen).unwrap().0, [[1.0, 2.0, 4.0]]);
+}

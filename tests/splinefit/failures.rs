@@ -15,11 +15,20 @@ fn each_failure_has_its_exit_code() {
         (folder.write("line.txt", "0 0\n1 1\n2 2\n3 3\n"), folder.write("far.txt", "0 0\n1e6 0\n0 1e6\n"));
     let pairs = folder.write("pairs.txt", "1 2\n");
     let plane = points(500, 1, plane);
-    let cases: [(&[&str], &[u8], i32, &str); 30] = [
+    let filled = format!("{plane}5 5 1e30\n6 6 -9999\n7 7 -9999\n");
+    let table = format!("x,y,lead,zinc\n{}", plane.replace(' ', ",").replace('\n', ",1\n"));
+    let cases: [(&[&str], &[u8], i32, &str); 32] = [
         (&["fit", "no/such/file"], b"", 1, "no/such/file"),
         (&["fit"], b"", 3, "stdin: empty"),
         (&["fit"], b"0 0 1\n1 x 2\n", 3, "stdin: line 2"),
         (&["fit"], b"0 0\n1 1\n", 2, "stdin: points have no elevation"),
+        (
+            &["fit"],
+            filled.as_bytes(),
+            3,
+            "2 points have z = -9999, 1 point has z = 1e30, far from all others (",
+        ),
+        (&["fit"], table.as_bytes(), 2, "stdin: line 1 names x, y, lead, zinc: which one is the value?"),
         (&["fit"], b"0 0 1\n1 0 2\n2 0 3\n", 2, "stdin: all observations have the same x or y"),
         (&["fit", "--knots", &knots, "--lambda", "1"], b"11 11 0\n22 22 0\n33 33 1\n", 2, "are on one line"),
         (&["fit", "--knots", &knots], b"11 11 1e200\n22 23 0\n33 32 1\n", 2, "too great for f64"),

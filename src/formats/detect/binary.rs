@@ -43,3 +43,46 @@ pub(crate) fn is_spb(head: &[u8]) -> bool {
 pub(crate) fn is_smb(head: &[u8]) -> bool {
     matches!(head, [0, 0 | 1, 0, 0, ..]) && head.iter().any(|&byte| byte != 0)
 }
+
+/// Whether `head` is an STL surface as text. Those of bytes have no mark.
+pub(crate) fn is_stl(head: &[u8]) -> bool {
+    const FACET: &[u8] = b"facet normal";
+    head.starts_with(b"solid") && head.windows(FACET.len()).any(|window| window == FACET)
+}
+
+/// Whether `head` starts as DXF does: the number 0, and a section on a line of its own.
+pub(crate) fn is_dxf(head: &[u8]) -> bool {
+    let mut lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    head.starts_with(b"AutoCAD Binary DXF") || lines.next() == Some(b"0") && lines.next() == Some(b"SECTION")
+}
+
+/// Whether `head` is a PTX scan: numbers of columns and rows, then the place and the axes of the scanner in
+/// lines of three numbers, and a matrix of four by four.
+pub(crate) fn is_ptx(head: &[u8]) -> bool {
+    let counts = head
+        .split(|&byte| byte == b'\n')
+        .take(10)
+        .map(|line| line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count());
+    counts.eq([1, 1, 3, 3, 3, 3, 4, 4, 4, 4])
+}
+
+/// Whether `head` is JSON: an object that starts with a name.
+pub(crate) fn is_json(head: &[u8]) -> bool {
+    let text = head.trim_ascii_start();
+    text.strip_prefix(b"{").is_some_and(|rest| rest.trim_ascii_start().starts_with(b"\""))
+}
+
+/// Whether `head` is an ASCII grid: its first two lines state numbers of columns and rows.
+pub(crate) fn is_ascii_grid(head: &[u8]) -> bool {
+    let starts = |line: Option<&[u8]>, name: &[u8]| {
+        line.and_then(|line| line.trim_ascii_start().get(..name.len()))
+            .is_some_and(|word| word.eq_ignore_ascii_case(name))
+    };
+    let mut lines = head.split(|&byte| byte == b'\n');
+    starts(lines.next(), b"ncols") && starts(lines.next(), b"nrows")
+}
+
+/// Whether `head` is DICOM, behind a preamble of 128 bytes.
+pub(crate) fn is_dicom(head: &[u8]) -> bool {
+    head.get(128..132) == Some(b"DICM")
+}

@@ -82,6 +82,7 @@ impl Collector {
         if self.lines.is_empty() {
             return Err(Error::malformed("found no lines"));
         }
-        Ok(Breaklines { lines: self.lines, system: LineSystem { crs, may_be_degrees: false } })
+        let system = LineSystem { crs, may_be_degrees: false };
+        Ok(Breaklines { lines: self.lines, system, ..Breaklines::default() })
     }
 }

@@ -15,6 +15,8 @@ const HEADER_LEN: usize = 32;
 const FIELD_LEN: usize = 32;
 /// Ends the list of fields.
 const FIELDS_END: u8 = 0x0d;
+/// First byte of a record that was deleted, and whose place is not yet used again.
+const DELETED: u8 = b'*';
 
 /// A column: its name, and its bytes in a record.
 struct Column {
@@ -25,19 +27,20 @@ struct Column {
 /// A table that is read record by record.
 pub(crate) struct Table {
     name: String,
+    /// Number of its records.
+    pub(crate) len: u64,
     input: BufReader<File>,
     columns: Vec<Column>,
     record: Vec<u8>,
 }
 
 impl Table {
-    /// The table beside a Shapefile; `None` if there is none, or none of its columns has a meaning.
+    /// The table beside a Shapefile; `None` if there is none.
     pub(crate) fn beside(path: &Path) -> Result<Option<Table>> {
         let Some((file, beside)) = inputs::open_beside(path, &["dbf", "DBF"])? else { return Ok(None) };
         let name = beside.display().to_string();
         let table = Table::read_header(BufReader::new(file), name.clone());
-        let table = table.map_err(|error| error.of_input(name))?;
-        Ok(Some(table).filter(|table| !table.columns.is_empty()))
+        table.map(Some).map_err(|error| error.of_input(name))
     }
 
     fn read_header(mut input: BufReader<File>, name: String) -> Result<Table> {
@@ -45,6 +48,7 @@ impl Table {
         fill(&mut input, &mut header)?;
         let number = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
         let (header_len, record_len) = (number(8), number(10));
+        let len = (number(4) | number(6) << 16) as u64;
         let mut fields = vec![0; header_len.saturating_sub(HEADER_LEN)];
         fill(&mut input, &mut fields)?;
         let (mut columns, mut start) = (Vec::new(), 1);
@@ -61,15 +65,18 @@ impl Table {
             let message = format!("fields of {start} bytes in records of {record_len}");
             return Err(Error::malformed(message));
         }
-        Ok(Table { name, input, columns, record: vec![0; record_len] })
+        Ok(Table { name, len, input, columns, record: vec![0; record_len] })
     }
 
-    /// The properties of the next record.
-    pub(crate) fn next(&mut self) -> Result<Properties> {
+    /// The properties of the next record; `None` if it was deleted, and its shape with it.
+    pub(crate) fn next(&mut self) -> Result<Option<Properties>> {
         fill(&mut self.input, &mut self.record).map_err(|error| error.of_input(&self.name))?;
+        if self.record.first() == Some(&DELETED) {
+            return Ok(None);
+        }
         let mut found = Properties::default();
         for column in &self.columns {
-            let text = String::from_utf8_lossy(&self.record[column.bytes.clone()]);
+            let text = text(&self.record[column.bytes.clone()]);
             let text = text.trim_matches([' ', '\0']);
             // Asterisks stand for a number that is not known.
             let is_known = !text.is_empty() && !text.bytes().all(|byte| byte == b'*');
@@ -77,8 +84,14 @@ impl Table {
                 *property = is_known.then(|| text.to_string());
             }
         }
-        Ok(found)
+        Ok(Some(found))
     }
+}
+
+/// Text of any code page: different bytes stay different.
+fn text(bytes: &[u8]) -> String {
+    str::from_utf8(bytes)
+        .map_or_else(|_| bytes.iter().map(|&byte| char::from(byte)).collect(), str::to_string)
 }
 
 fn fill(input: &mut impl Read, bytes: &mut [u8]) -> Result<()> {

@@ -26,6 +26,7 @@ use crate::detect::{self, BYTE_ORDER_MARK, Format, read_head};
 use crate::source::gzip::Plain;
 use crate::source::origin::{name_of, open_file, open_stdin};
 use spmesh_base::error::{Error, Result};
+use spmesh_base::places::file_and_layer;
 use spmesh_stream::model::points::Point2;
 
 use collect::Collector;
@@ -87,6 +88,25 @@ pub struct Breaklines {
     pub lines: Vec<Breakline>,
     /// What the file says about their coordinate reference system.
     pub system: LineSystem,
+    /// What to say to the user about the layers of the file, if it has several and none was chosen.
+    pub layers: Option<String>,
+    /// Of a Shapefile: that its table of attributes is missing.
+    pub missing: Option<String>,
+}
+
+impl Breaklines {
+    /// Checks that features have properties, where these decide.
+    ///
+    /// # Errors
+    /// Malformed, if the file should have a table of them beside it, and has none.
+    pub fn check_properties(&self) -> Result<()> {
+        self.missing.as_ref().map_or(Ok(()), |message| Err(Error::malformed(message)))
+    }
+
+    /// An error about the lines, with the layers that the user can choose.
+    pub fn noting_layers(&self, error: Error) -> Error {
+        self.layers.iter().fold(error, |error, layers| error.noting(layers))
+    }
 }
 
 /// Reads the lines of a file; `-` is stdin, from which text and GeoJSON are read. Both may be compressed with
@@ -96,7 +116,8 @@ pub struct Breaklines {
 /// Y. The vertices of a line may continue on the next lines of text. `nan` stands for an unknown Z.
 ///
 /// In GeoJSON, third coordinates are elevations. Points are lines of one vertex. A Shapefile may have Z; its
-/// system is in the `.prj` file beside it. Of a GeoPackage, all tables of features are read.
+/// system is in the `.prj` file beside it. Of a GeoPackage, all tables of features are read, or one layer: the
+/// layer `rivers` of `map.gpkg` is `map.gpkg:rivers`.
 ///
 /// # Errors
 /// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a
@@ -118,6 +139,7 @@ fn text_or_wkt(head: &[u8], input: &mut dyn Read) -> Result<Breaklines> {
 }
 
 fn read(path: &Path, read_text: ReadText) -> Result<Breaklines> {
+    let (path, layer) = file_and_layer(path);
     let (input, is_file): (Box<dyn Read>, bool) = if path.as_os_str() == "-" {
         (Box::new(open_stdin()?), false)
     } else {
@@ -132,7 +154,11 @@ fn read(path: &Path, read_text: ReadText) -> Result<Breaklines> {
     let check_plain = |format: &str| if is_plain { Ok(()) } else { Err(not_in_pipe(format)) };
     if head.starts_with(SQLITE_MAGIC) {
         check_plain("GeoPackage")?;
-        return read_geopackage(path);
+        return read_geopackage(path, layer.as_deref());
+    }
+    if let Some(layer) = layer {
+        let message = format!("only GeoPackages have layers: give the file without \":{layer}\"");
+        return Err(Error::usage(message));
     }
     if head.starts_with(SHAPEFILE_MAGIC) {
         check_plain("Shapefile")?;
@@ -163,12 +189,12 @@ fn not_in_pipe(format: &str) -> Error {
 }
 
 #[cfg(feature = "geopackage")]
-fn read_geopackage(path: &Path) -> Result<Breaklines> {
-    geopackage::read(path)
+fn read_geopackage(path: &Path, layer: Option<&str>) -> Result<Breaklines> {
+    geopackage::read(path, layer)
 }
 
 #[cfg(not(feature = "geopackage"))]
-fn read_geopackage(_: &Path) -> Result<Breaklines> {
+fn read_geopackage(_: &Path, _: Option<&str>) -> Result<Breaklines> {
     Err(Error::usage(
         "this program was built without the feature `geopackage`: convert the file first, for example with ogr2ogr \
          lines.geojson lines.gpkg",

@@ -46,7 +46,7 @@ const NAMES: [(&str, PolylineKind); 4] = [
     ("linear", PolylineKind::Linear),
 ];
 
-/// Reads the polylines of a file, and what it says about their system. A line of text is a word, `corner`,
+/// Reads the polylines of a file, and what it says about their system and its layers. A line of text is a word, `corner`,
 /// `crease`, `smooth-crease` or `linear`, and coordinates X Y X Y ... Other formats are those of
 /// [`super::read_breaklines`]: points are corners, and lines and rings of polygons are creases, unless a
 /// feature has a property `spline` with one of these words.
@@ -55,11 +55,13 @@ const NAMES: [(&str, PolylineKind); 4] = [
 ///
 /// # Errors
 /// If reading fails, a line or geometry is not of these forms, or there is none at all.
-pub fn read_polylines(path: &Path) -> Result<(Vec<Polyline>, LineSystem)> {
+pub fn read_polylines(path: &Path) -> Result<(Vec<Polyline>, LineSystem, Option<String>)> {
     let of_text = |head: &[u8], input: &mut dyn Read| check_text(head).and_then(|()| text(input));
-    let Breaklines { lines, system } = read(path, of_text).map_err(|error| error.of_input(name_of(path)))?;
-    let polylines = polylines(&lines).map_err(|error| error.of_input(name_of(path)))?;
-    Ok((polylines, system))
+    let name = |error: Error| error.of_input(name_of(path));
+    let file = read(path, of_text).map_err(name)?;
+    file.check_properties().map_err(name)?;
+    let polylines = polylines(&file.lines).map_err(|error| name(file.noting_layers(error)))?;
+    Ok((polylines, file.system, file.layers))
 }
 
 fn polylines(lines: &[Breakline]) -> Result<Vec<Polyline>> {

@@ -31,10 +31,11 @@ pub fn read_polygons(
         let name = name_of(path);
         let file = read(path, text_or_wkt).map_err(|error| error.of_input(&name))?;
         notices.extend(file.system.check(&name, crs)?);
+        notices.extend(file.layers.clone());
         for same in file.lines.chunk_by(|a, b| a.polygon == b.polygon) {
             let ring = |line: &Breakline| {
                 let ring = line.ring(coordinates);
-                ring.map_err(|error| error.at(&*line.position).of_input(&name))
+                ring.map_err(|error| file.noting_layers(error.at(&*line.position).of_input(&name)))
             };
             polygons.push(same.iter().map(ring).collect::<Result<_>>()?);
         }

@@ -62,6 +62,7 @@ pub(crate) fn read(mut input: impl Read, path: &Path) -> Result<Breaklines> {
     let stated = 2 * i64::from(i32::from_be_bytes([header[24], header[25], header[26], header[27]]));
     let mut found = HEADER_LEN as i64;
     let mut table = Table::beside(path)?;
+    let mut shapes = 0;
     for number in 1u64.. {
         if !next_record(&mut input, &mut content).map_err(|e| e.at(format!("record {number}")))? {
             // A file that was cut off behind a record.
@@ -71,12 +72,25 @@ pub(crate) fn read(mut input: impl Read, path: &Path) -> Result<Breaklines> {
             break;
         }
         found += 8 + content.len() as i64;
-        if let Some(table) = &mut table {
-            lines.feature(table.next()?);
+        shapes = number;
+        if let Some(table) = table.as_mut().filter(|table| number <= table.len) {
+            let Some(properties) = table.next()? else { continue };
+            lines.feature(properties);
         }
         record(&content, &mut lines, number).map_err(|e| e.at(format!("record {number}")))?;
     }
-    lines.finish(system(path)?)
+    let missing = missing(table.map(|table| table.len), shapes);
+    Ok(Breaklines { missing, ..lines.finish(system(path)?)? })
+}
+
+/// What is wrong with a table of so many rows, if anything is.
+fn missing(rows: Option<u64>, shapes: u64) -> Option<String> {
+    let found = match rows {
+        None => "no table of attributes beside it (.dbf)".to_string(),
+        Some(rows) if rows != shapes => format!("{rows} rows of attributes (.dbf) for {shapes} shapes"),
+        Some(_) => return None,
+    };
+    Some(format!("found {found}: attributes decide here, so copy all files of the Shapefile together"))
 }
 
 /// Reads the content of the next record; false at the end of the file.

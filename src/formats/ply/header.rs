@@ -24,6 +24,8 @@ pub(crate) enum Role {
     Axis(usize),
     /// Vertices of a face.
     Corners,
+    /// Vertices of triangle strips, with -1 between strips.
+    Strips,
     /// Length of a list.
     Length,
     /// A single number of a vertex that is none of its coordinates, or of a face.
@@ -46,7 +48,7 @@ pub(crate) struct Property {
 pub(crate) enum Sort {
     Vertex,
     Face,
-    /// Triangle strips, which are not read.
+    /// Triangle strips.
     Strip,
     Other,
 }
@@ -146,13 +148,14 @@ impl PlyHeader {
         if !(0..3).all(|axis| has(Role::Axis(axis))) {
             return Err(Error::malformed("vertices without properties x, y and z"));
         }
-        if self.rows(Sort::Strip) > 0 {
-            return Err(Error::usage("triangle strips of PLY are not read: write them as faces"));
-        }
         for table in self.tables.iter().filter(|table| table.rows > 0) {
-            let lists = table.properties.iter().filter(|property| property.role == Role::Corners).count();
-            if table.sort == Sort::Face && lists != 1 {
-                return Err(Error::malformed(format!("faces with {lists} lists vertex_indices, expected 1")));
+            let is_list = |property: &&Property| matches!(property.role, Role::Corners | Role::Strips);
+            let lists = table.properties.iter().filter(is_list).count();
+            if matches!(table.sort, Sort::Face | Sort::Strip) && lists != 1 {
+                let what = if table.sort == Sort::Face { "faces" } else { "strips" };
+                return Err(Error::malformed(format!(
+                    "{what} with {lists} lists vertex_indices, expected 1"
+                )));
             }
             // Rows of zero bytes could be stated 2^64 - 1 times and would never end.
             if table.properties.is_empty() {
@@ -216,6 +219,7 @@ fn parse_property<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, sort: Sort) -
         (Sort::Vertex, false, b"y") => Role::Axis(1),
         (Sort::Vertex, false, b"z") => Role::Axis(2),
         (Sort::Face, true, b"vertex_indices" | b"vertex_index") => Role::Corners,
+        (Sort::Strip, true, b"vertex_indices" | b"vertex_index") => Role::Strips,
         (Sort::Vertex | Sort::Face, false, _) => Role::Attribute,
         _ => Role::Other,
     };

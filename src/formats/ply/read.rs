@@ -1,10 +1,11 @@
-//! Reads PLY, text or binary of either byte order: a triangle mesh if it has faces, else points.
+//! Reads PLY, text or binary of either byte order: a triangle mesh if it has faces or triangle strips, else
+//! points.
 
 use std::collections::VecDeque;
 use std::io::Read;
 
 use crate::drivers::{AnyInput, Events};
-use crate::lines::polygon::fan;
+use crate::lines::polygon::{RESTART, fan, strips};
 use crate::ply::header::{Encoding, PlyHeader, Property, Role, Sort};
 use crate::raw::byte_order::ByteOrder;
 use crate::raw::sample::SampleType;
@@ -14,7 +15,7 @@ use crate::source::vertices::{VertexPoints, Vertices};
 use crate::text::lines::Lines;
 use crate::twin::tokens::{expect_no_field, fields, next_field, parse_decimal};
 use spmesh_base::error::{Error, Result};
-use spmesh_base::limits::PLY_LIST_MAX;
+use spmesh_base::limits::{PLY_LIST_MAX, PLY_STRIPS_MAX};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind};
 
@@ -24,11 +25,11 @@ use spmesh_stream::{Coordinates, Header, Kind};
 /// Memory: one patch or batch, and triangles that precede their vertices.
 ///
 /// # Errors
-/// If the header is damaged or states no vertices with x, y and z; usage, if it states triangle strips. Every
-/// later error is [`spmesh_base::error::ErrorKind::Malformed`] (or I/O) and names input and place.
+/// If the header is damaged or states no vertices with x, y and z. Every later error is
+/// [`spmesh_base::error::ErrorKind::Malformed`] (or I/O) and names input and place.
 pub fn open_ply(input: AnyInput, name: &str, dims: u8) -> Result<Events> {
     let rows = Rows::open(input, name)?;
-    if rows.header.rows(Sort::Face) > 0 {
+    if rows.header.rows(Sort::Face) > 0 || rows.header.rows(Sort::Strip) > 0 {
         return Ok(Box::new(MeshEvents::new(PlyElements { rows, triangles: VecDeque::new() })));
     }
     Ok(points(rows, dims))
@@ -60,7 +61,7 @@ impl Vertices for PlyVertices {
         loop {
             match self.rows.next()? {
                 Some(Row::Vertex(point)) => return Ok(Some(point)),
-                Some(Row::Face(_)) => {}
+                Some(Row::Face(_) | Row::Strips(_)) => {}
                 None => return Ok(None),
             }
         }
@@ -77,8 +78,18 @@ impl Vertices for PlyVertices {
 
 struct PlyElements {
     rows: Rows<AnyInput>,
-    /// Remaining triangles of the last polygon read.
+    /// Remaining triangles of the last polygon or strip read.
     triangles: VecDeque<[u64; 3]>,
+}
+
+impl PlyElements {
+    fn check(&self, corners: &[u64]) -> Result<()> {
+        let vertices = self.rows.header.rows(Sort::Vertex);
+        match corners.iter().find(|&&corner| corner >= vertices && corner != RESTART) {
+            Some(corner) => Err(Error::malformed(format!("face with vertex {corner} of {vertices}"))),
+            None => Ok(()),
+        }
+    }
 }
 
 impl Elements for PlyElements {
@@ -95,11 +106,12 @@ impl Elements for PlyElements {
                 None => return Ok(None),
                 Some(Row::Vertex(point)) => return Ok(Some(Element::Vertex(point))),
                 Some(Row::Face(corners)) => {
-                    let vertices = self.rows.header.rows(Sort::Vertex);
-                    if let Some(corner) = corners.iter().find(|&&corner| corner >= vertices) {
-                        return Err(Error::malformed(format!("face with vertex {corner} of {vertices}")));
-                    }
+                    self.check(&corners)?;
                     self.triangles = fan(&corners)?;
+                }
+                Some(Row::Strips(corners)) => {
+                    self.check(&corners)?;
+                    self.triangles = strips(&corners)?;
                 }
             }
         }
@@ -124,6 +136,7 @@ impl Elements for PlyElements {
 pub(crate) enum Row {
     Vertex(Point),
     Face(Vec<u64>),
+    Strips(Vec<u64>),
 }
 
 /// The rows after the header, in the order of the file.
@@ -153,7 +166,7 @@ impl<R: Read> Rows<R> {
         Ok(Rows { lines, header, table: 0, row: 0, kept: Kept::None, attributes: Vec::new() })
     }
 
-    /// The next vertex or face; rows of other elements are skipped.
+    /// The next vertex, face or row of strips; rows of other elements are skipped.
     pub(crate) fn next(&mut self) -> Result<Option<Row>> {
         while let Some(table) = self.header.tables.get(self.table) {
             if self.row == table.rows {
@@ -177,7 +190,8 @@ impl<R: Read> Rows<R> {
             match table.sort {
                 Sort::Vertex => return Ok(Some(Row::Vertex(point))),
                 Sort::Face => return Ok(Some(Row::Face(corners))),
-                Sort::Strip | Sort::Other => {}
+                Sort::Strip => return Ok(Some(Row::Strips(corners))),
+                Sort::Other => {}
             }
         }
         self.expect_end_of_input()?;
@@ -231,11 +245,17 @@ impl RowValues {
                 self.point[axis] = value;
                 Ok(())
             }
-            Role::Corners if value >= 0.0 && value.fract() == 0.0 => {
+            Role::Strips if value == -1.0 => {
+                self.corners.push(RESTART);
+                Ok(())
+            }
+            Role::Corners | Role::Strips
+                if (0.0..RESTART as f64).contains(&value) && value.fract() == 0.0 =>
+            {
                 self.corners.push(value as u64);
                 Ok(())
             }
-            Role::Corners => Err(Error::malformed(format!("vertex number {value}"))),
+            Role::Corners | Role::Strips => Err(Error::malformed(format!("vertex number {value}"))),
             Role::Length | Role::Attribute | Role::Other => Ok(()),
         }
     }
@@ -249,8 +269,9 @@ impl RowValues {
         let &Property { role, length, scalar } = property;
         let Some(length) = length else { return self.add(role, next(role, scalar)?) };
         let length = next(Role::Length, length)?;
-        if !(length >= 0.0 && length <= PLY_LIST_MAX as f64 && length.fract() == 0.0) {
-            return Err(Error::malformed(format!("list of {length} values, the maximum is {PLY_LIST_MAX}")));
+        let most = if role == Role::Strips { PLY_STRIPS_MAX } else { PLY_LIST_MAX };
+        if !(length >= 0.0 && length <= most as f64 && length.fract() == 0.0) {
+            return Err(Error::malformed(format!("list of {length} values, the maximum is {most}")));
         }
         (0..length as u64).try_for_each(|_| self.add(role, next(role, scalar)?))
     }

@@ -1,8 +1,9 @@
 //! Reads the surface in a PLY file into memory, with its normals and colours, to be drawn.
 
+use std::collections::VecDeque;
 use std::io::Read;
 
-use crate::lines::polygon::fan;
+use crate::lines::polygon::{fan, strips};
 use crate::ply::header::Sort;
 use crate::ply::read::{Kept, Row, Rows};
 use spmesh_base::error::{Error, Result};
@@ -23,7 +24,16 @@ pub struct Surface {
     pub colours: Vec<Option<[u8; 3]>>,
 }
 
-/// Reads the vertices and faces of PLY with normals and colours. Polygons become fans.
+impl Surface {
+    fn add(&mut self, triangles: &VecDeque<[u64; 3]>, colour: Option<[u8; 3]>) {
+        for triangle in triangles {
+            self.triangles.push(triangle.map(|corner| u32::try_from(corner).unwrap_or(u32::MAX)));
+            self.colours.push(colour);
+        }
+    }
+}
+
+/// Reads the vertices, faces and triangle strips of PLY with normals and colours. Polygons become fans.
 ///
 /// # Errors
 /// As [`crate::ply::read::open_ply`]; also if a face has a vertex that does not exist.
@@ -46,12 +56,10 @@ pub fn read_ply_surface<R: Read>(input: R, name: impl Into<String>) -> Result<Su
                 of_vertices.push(vertex.colour(&rows.attributes));
             }
             Row::Face(corners) => {
-                let colour = face.colour(&rows.attributes);
-                for triangle in fan(&corners).map_err(|e| rows.locate(e))? {
-                    surface.triangles.push(triangle.map(|corner| u32::try_from(corner).unwrap_or(u32::MAX)));
-                    surface.colours.push(colour);
-                }
+                let triangles = fan(&corners).map_err(|e| rows.locate(e))?;
+                surface.add(&triangles, face.colour(&rows.attributes));
             }
+            Row::Strips(corners) => surface.add(&strips(&corners).map_err(|e| rows.locate(e))?, None),
         }
     }
     for (triangle, colour) in surface.triangles.iter().zip(&mut surface.colours) {

@@ -88,7 +88,7 @@ pub(crate) fn state(
         only_two: false,
         layout: layout.clone(),
     };
-    let (columns, names) = match (&found, &start.names) {
+    let (mut columns, names) = match (&found, &start.names) {
         (Some(found), _) => choose(delimiter, found, &start, layout)?,
         (None, Some(names)) if layout.columns.is_empty() && named_axes(&names.fields).is_none() => {
             return Err(no_text_of_points(names.line));
@@ -97,6 +97,9 @@ pub(crate) fn state(
         (None, Some(names)) => choose(names.delimiter, &[], &start, layout)?,
         (None, None) => (blank(), None),
     };
+    if let Some(names) = names.filter(|_| layout.columns.is_empty() && columns.axes.len() == 2) {
+        notices.extend(value_of(&mut columns, names)?);
+    }
     if layout.columns.is_empty() && names.is_none() && columns.axes == [0, 1, 2] && !columns.others.is_empty()
     {
         notices.extend(numbering(&mut lines, &columns, found.as_deref().unwrap_or_default())?);
@@ -192,6 +195,34 @@ fn choose<'a>(
         return Err(Error::malformed(reason).at(format!("line {}", names.line)));
     }
     Ok((columns(delimiter, usual, found.len(), found.len() == 2), Some(names)))
+}
+
+/// Takes the third of three columns as the value, if points need one and no column is called z; returns a notice.
+///
+/// # Errors
+/// Usage, if points need a value, and several columns may have it.
+fn value_of(columns: &mut Columns, names: &Names) -> Result<Option<String>> {
+    let [x, y] = [columns.axes[0], columns.axes[1]].map(|axis| String::from_utf8_lossy(&names.fields[axis]));
+    match columns.others[..] {
+        [2] if columns.layout.needs_z => {
+            columns.axes.push(2);
+            columns.others.clear();
+            let value = String::from_utf8_lossy(&names.fields[2]);
+            Ok(Some(format!("column 3, {value:?}, is the value: no column is called z")))
+        }
+        [2] => {
+            let value = String::from_utf8_lossy(&names.fields[2]);
+            Ok(Some(format!(
+                "points have no elevation, as no column is called z: --columns {x},{y},{value} takes the third one"
+            )))
+        }
+        [_, ..] if columns.layout.needs_z => Err(Error::usage(format!(
+            "line {} names {}: which one is the value? Choose it with --columns {x},{y},NAME",
+            names.line,
+            names.list()
+        ))),
+        _ => Ok(None),
+    }
 }
 
 /// The columns that the user chose, of `count`.

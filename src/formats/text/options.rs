@@ -18,12 +18,14 @@ pub struct TextOptions {
     pub skip_lines: u64,
     /// Lines that start with this are comments, as are those that start with `#` or `//`.
     pub comment: Option<String>,
+    /// Whether points need a value in the third place.
+    pub needs_z: bool,
 }
 
 impl TextOptions {
     /// Whether the user said anything.
     pub(crate) fn is_given(&self) -> bool {
-        let TextOptions { columns, separator, skip_lines, comment } = self;
+        let TextOptions { columns, separator, skip_lines, comment, needs_z: _ } = self;
         !columns.is_empty() || separator.is_some() || *skip_lines > 0 || comment.is_some()
     }
 

@@ -164,8 +164,9 @@ fn read(mut supply: Supply, request: &Request, name: String, warnings: Vec<Strin
     let budget = Budget::of(&supply, request.in_memory);
     let selected = select::select(&supply, &request.selection, orientation.as_ref(), budget);
     let mut points = selected.map_err(|e| e.of_input(&name))?;
-    if request.spacing == Spacing::World && supply.is_rounded() {
-        points.warnings.push(ROUNDED.to_string());
+    if request.spacing == Spacing::World {
+        points.warnings.extend(supply.units());
+        points.warnings.extend(supply.is_rounded().then(|| ROUNDED.to_string()));
     }
     points.warnings.splice(0..0, warnings);
     Ok(Selected4 { name, orientation, ..points })

@@ -8,7 +8,7 @@ use crate::raw::sample::SampleType;
 use crate::source::origin::Origin;
 use crate::volumes::data::{Data, Encoding, Part, Skip};
 use crate::volumes::lattice::Lattice;
-use crate::volumes::volume::Volume;
+use crate::volumes::volume::{Volume, units_of};
 use crate::volumes::world::World;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
@@ -53,6 +53,7 @@ pub(crate) fn open(origin: Origin, head: &[u8], warnings: &mut Vec<String>) -> R
         },
         scaling: header.scaling()?,
         world: header.world(),
+        units: header.units(),
     })
 }
 
@@ -165,6 +166,22 @@ impl Header<'_> {
             step => step,
         };
         World::new(origin, steps, Some(sizes.map(f64::abs)), [self.f32(136).into(), dt])
+    }
+
+    /// The units of lengths and times (`xyzt_units`). The last ones are of a fourth axis that is no time.
+    fn units(&self) -> Option<String> {
+        const LENGTHS: [&str; 4] = ["", "m", "mm", "micrometres"];
+        const TIMES: [&str; 7] = ["", "s", "ms", "microseconds", "Hz", "ppm", "rad/s"];
+        let stated = self.bytes[123];
+        let of = |names: &[&str], code: u8| -> Vec<String> {
+            names
+                .get(usize::from(code))
+                .filter(|name| !name.is_empty())
+                .map(|name| name.to_string())
+                .into_iter()
+                .collect()
+        };
+        units_of(of(&LENGTHS, stated & 7), &of(&TIMES, stated >> 3 & 7))
     }
 
     /// Distance between sites along an axis (`pixdim`).

@@ -64,6 +64,7 @@ pub fn parse_sizes(text: &str) -> std::result::Result<[u64; 4], String> {
 pub(crate) fn open(origin: Origin, path: Option<&Path>, layout: &RawLayout) -> Result<Volume> {
     let is_gzip = path.and_then(Path::extension).is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
     Ok(Volume {
+        units: None,
         lattice: Lattice::new(layout.lens)?,
         data: Data {
             parts: vec![Part { origin, name: None, is_gzip, header_len: 0 }],

@@ -22,6 +22,14 @@ impl Supply {
         Supply::Volume(Box::new(volume))
     }
 
+    /// The units of world coordinates, for a notice.
+    pub(crate) fn units(&self) -> Option<String> {
+        match self {
+            Supply::Volume(volume) => volume.units.clone(),
+            _ => None,
+        }
+    }
+
     /// Passes every point, with its value if there are values, to `visit`. Returns a warning if the input
     /// holds more than the points.
     pub(crate) fn scan(

@@ -16,6 +16,20 @@ pub(crate) struct Volume {
     pub scaling: Option<[f64; 2]>,
     /// World coordinates of the sites, or why they are not known.
     pub world: std::result::Result<World, String>,
+    /// The units of world coordinates, for a notice, if the header states any.
+    pub units: Option<String>,
+}
+
+/// What to say about units, of lengths along several axes and of times.
+pub(crate) fn units_of(mut lengths: Vec<String>, times: &[String]) -> Option<String> {
+    lengths.dedup();
+    let list = |units: &[String]| Some(units.join(", ")).filter(|units| !units.is_empty());
+    let (lengths, times) = (list(&lengths), list(times));
+    let lengths = lengths.map(|units| format!("lengths are in {units}"));
+    let times = times.map(|units| format!("times are in {units}"));
+    let both: Vec<String> = lengths.into_iter().chain(times).collect();
+    (!both.is_empty())
+        .then(|| format!("world coordinates are in the units of the header: {}", both.join(", ")))
 }
 
 impl Volume {

@@ -8,6 +8,7 @@ use super::passes::Pass;
 use super::passes::input_changed;
 use super::work::Work;
 use spmesh_base::error::Result;
+use spmesh_formats::source::FillValues;
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::model::cells::{CellCode, CellTree};
@@ -70,6 +71,7 @@ struct Count {
     points: u64,
     outside: u64,
     sums: CellSums,
+    fill_values: FillValues,
 }
 
 impl Work<'_> {
@@ -128,8 +130,11 @@ impl Work<'_> {
     }
 
     fn finish_count(&mut self, tree: CellTree, count: Count, options: &Options) -> Result<PointCounts> {
-        let Count { bounds, points, sums, .. } = count;
+        let Count { bounds, points, sums, fill_values, .. } = count;
         self.stats.points = points;
+        if !fill_values.is_empty() {
+            self.observer.notice(&fill_values.to_string());
+        }
         if bounds.is_none() {
             return Ok(PointCounts { bounds, points, cells: None });
         }
@@ -167,6 +172,7 @@ impl Work<'_> {
             Leaves::Collapsed { .. } => Counters::adaptive(tree, tree.depth(), options.budget.counters()),
         };
         let (mut bounds, mut points, mut outside) = (None, 0, 0);
+        let (coordinates, mut fill_values) = (self.input.description().coordinates, FillValues::default());
         let prepare = |batch: &PointBatch, found: &mut BatchCells| {
             found.prepare(&tree, &batch.points);
             Ok(())
@@ -175,9 +181,13 @@ impl Work<'_> {
             points += batch.points.len() as u64;
             bounds = union(bounds, found.bounds);
             outside += found.outside;
+            if let Some(Bounds { min, max }) = found.bounds {
+                let stored = batch.points.iter().map(|point| point[2]);
+                fill_values.add_stored(&coordinates, [min[2], max[2]], stored);
+            }
             counters.add(&found.cells)
         })?;
-        Ok(Count { bounds, points, outside, sums: counters.into_sums() })
+        Ok(Count { bounds, points, outside, sums: counters.into_sums(), fill_values })
     }
 
     /// Counts crowded cells again on finer grids, until no cell is crowded or a finer grid does not fit.

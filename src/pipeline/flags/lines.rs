@@ -13,8 +13,8 @@ use spmesh_shell::parse_numbers;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Lines")]
 pub struct LineFlags {
-    /// Read lines from this file: GeoJSON, Shapefile, GeoPackage or text; may be given several times. A line
-    /// of text is the word line with X Y Z of each vertex, or soft with X Y
+    /// Read lines from this file: GeoJSON, Shapefile, GeoPackage (FILE.gpkg:LAYER for one layer) or text; may
+    /// be given several times. A line of text is the word line with X Y Z of each vertex, or soft with X Y
     #[arg(long = "lines", value_name = "FILE")]
     pub files: Vec<PathBuf>,
 

@@ -27,6 +27,7 @@ use spmesh_delaunay::noding::{LineVertex, Noded, NodingOptions, node_lines};
 use spmesh_formats::source::{Breaklines, Description, name_of, read_breaklines};
 use spmesh_stream::{Coordinates, Crs, Header};
 
+use areas::Role;
 pub use areas::{Areas, Sources};
 pub use changes::{Change, ChangeKind, Changes};
 use grid::Grid;
@@ -105,6 +106,10 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
         let mut file = read_breaklines(path)?;
         let name = name_of(path);
         changes.notices.extend(file.system.check(&name, &target.crs)?);
+        changes.notices.extend(file.layers.clone());
+        if role == Role::Water {
+            file.check_properties().map_err(|error| error.of_input(&name))?;
+        }
         if !target.has_elevation {
             file.lines.iter_mut().for_each(|line| line.elevations.fill(None));
         }
@@ -113,8 +118,9 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     banks::close(&mut files);
     let grid = Grid::of(target, files.iter().flat_map(|(_, _, file)| &file.lines));
     changes.notices.extend(grid.notice());
-    let rings = areas::rings(&files)?;
-    let features = features::features(&files, target)?;
+    let noting = |error| files.iter().fold(error, |error, (_, _, file)| file.noting_layers(error));
+    let rings = areas::rings(&files).map_err(noting)?;
+    let features = features::features(&files, target).map_err(noting)?;
     let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
     let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
     let noding = noding(target);

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use spmesh_base::error::{Error, Result};
+use spmesh_base::places::file_and_layer;
 use spmesh_formats::source::Extent;
 use spmesh_stream::model::bounds::Bounds;
 
@@ -68,7 +69,8 @@ impl PlannedFile {
 
 /// Length of a file in bytes, and when it was last changed in nanoseconds since 1970.
 fn state_of(path: &Path) -> Result<(u64, i64)> {
-    let metadata = fs::metadata(path).map_err(|e| Error::io("reading", e))?;
+    let (file, _) = file_and_layer(path);
+    let metadata = fs::metadata(file).map_err(|e| Error::io("reading", e))?;
     if !metadata.is_file() {
         return Err(Error::usage("is no regular file, which plans need: jobs read it later"));
     }

@@ -7,7 +7,7 @@ use super::frame::Frame;
 use crate::fitting::{Observation, ObservationReader, Observations};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point2;
-use spmesh_formats::source::{Input, PointReader, SourceOptions};
+use spmesh_formats::source::{FillValues, Input, PointReader, SourceOptions};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Crs};
 
@@ -42,7 +42,8 @@ impl Points {
     /// points are not held, but read again in each pass.
     ///
     /// # Errors
-    /// As [`Input::open`]; no elevation; another number of weights.
+    /// As [`Input::open`]; no elevation; another number of weights; malformed, if elevations are
+    /// [`FillValues`].
     pub fn open(
         paths: &[PathBuf],
         options: &SourceOptions,
@@ -55,7 +56,7 @@ impl Points {
         let mut held = Some(Vec::new());
         let (mut reader, mut batch) = (points.read_world()?, Vec::new());
         let held_max = if often { HELD_OFTEN } else { HELD_SELDOM };
-        let (mut count, mut sample) = (0, Sample::default());
+        let (mut count, mut sample, mut fill_values) = (0, Sample::default(), FillValues::default());
         loop {
             batch.clear();
             reader.append(&mut batch)?;
@@ -64,6 +65,7 @@ impl Points {
             }
             count += batch.len() as u64;
             batch.iter().for_each(|one| sample.add(one.value));
+            fill_values.add([f64::NEG_INFINITY, f64::INFINITY], batch.iter().map(|one| one.value));
             match &mut held {
                 Some(all) if all.len() + batch.len() <= held_max => all.extend_from_slice(&batch),
                 _ => held = None,
@@ -72,6 +74,9 @@ impl Points {
         }
         drop(reader);
         points.check_weights(count)?;
+        if !fill_values.is_empty() {
+            return Err(Error::malformed(fill_values.to_string()).of_input(points.name()));
+        }
         (points.held, points.sample, points.count) = (held, sample.in_order(), count);
         Ok(points)
     }

@@ -70,8 +70,8 @@ pub struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// Keep only what is inside of these polygons (GeoJSON, Shapefile or GeoPackage). May be given several
-    /// times
+    /// Keep only what is inside of these polygons: GeoJSON, Shapefile or GeoPackage (FILE.gpkg:LAYER for one
+    /// layer). May be given several times
     #[arg(long, value_name = "FILE")]
     hull: Vec<PathBuf>,
 

@@ -229,7 +229,7 @@ pub fn volume(bytes: &[u8]) {
 
 /// Polylines as text or GeoJSON, and values beside points.
 pub fn polylines(bytes: &[u8]) {
-    if let Ok((polylines, _)) = read_polylines(&file(bytes)) {
+    if let Ok((polylines, ..)) = read_polylines(&file(bytes)) {
         assert!(polylines.iter().flat_map(|line| line.vertices.as_flattened()).all(|c| c.is_finite()));
     }
     drop(read_values(bytes));

@@ -59,15 +59,19 @@ fn coordinates(fields: &Fields, dimension: usize) -> Result<[usize; 4]> {
     Ok([0, 1, 2, 3].map(|axis| if axis == time { 3 } else { space.next().unwrap_or(3) }))
 }
 
-/// World coordinates of samples, or why they are not known: by `space directions` and `space origin`, or by
-/// `spacings`, `axis mins` and `axis maxs`. Axes without such data keep their indices.
+/// World coordinates of samples, or why they are not known: by `space directions` and `space origin`; along
+/// axes without a direction, such as time, by `spacings`, `axis mins` and `axis maxs`. Axes without such data
+/// keep their indices.
 pub(crate) fn world(fields: &Fields) -> std::result::Result<World, String> {
     let text = |e: Error| e.to_string();
     let coordinates = dimension(fields).and_then(|dimension| coordinates(fields, dimension)).map_err(text)?;
+    let scalar = by_spacings(fields)?;
     if let Some((origin, steps)) = in_space(fields, &coordinates)? {
-        return World::new(origin, steps, None, [0.0, 1.0]);
+        let time = coordinates.iter().position(|&coordinate| coordinate == 3);
+        let along = time.zip(scalar).and_then(|(axis, scalar)| scalar.get(axis).copied());
+        return World::new(origin, steps, None, along.unwrap_or(INDICES));
     }
-    let axes = by_directions(fields)?.map_or_else(|| by_spacings(fields), Ok)?;
+    let axes = by_directions(fields, scalar.as_deref())?.or(scalar);
     let Some(axes) = axes else { return Err("the header states no spacing".to_string()) };
     let mut frame = Frame::default();
     for ([min, step], coordinate) in axes.into_iter().zip(coordinates) {
@@ -112,8 +116,12 @@ fn dimension(fields: &Fields) -> Result<usize> {
 /// First sample and step of each axis.
 type Axes = Option<Vec<[f64; 2]>>;
 
-/// By vectors: each may have a component along its own axis only. `none` marks axes that are not spatial.
-fn by_directions(fields: &Fields) -> std::result::Result<Option<Axes>, String> {
+/// Those of an axis that keeps its indices.
+const INDICES: [f64; 2] = [0.0, 1.0];
+
+/// By vectors: each may have a component along its own axis only. `none` marks axes that are not spatial, which
+/// `scalar` tells of.
+fn by_directions(fields: &Fields, scalar: Option<&[[f64; 2]]>) -> std::result::Result<Axes, String> {
     let Some(directions) = fields.get("space directions") else { return Ok(None) };
     let directions = vectors(directions)?;
     if directions.len() != dimension(fields).map_err(|e| e.to_string())? {
@@ -129,9 +137,9 @@ fn by_directions(fields: &Fields) -> std::result::Result<Option<Axes>, String> {
     }
     let mut axes = Vec::new();
     let mut next = 0;
-    for direction in &directions {
+    for (axis, direction) in directions.iter().enumerate() {
         let Some(direction) = direction else {
-            axes.push([0.0, 1.0]);
+            axes.push(scalar.map_or(INDICES, |scalar| scalar[axis]));
             continue;
         };
         if next == rank || direction.iter().enumerate().any(|(at, &part)| at != next && part != 0.0) {
@@ -140,7 +148,7 @@ fn by_directions(fields: &Fields) -> std::result::Result<Option<Axes>, String> {
         axes.push([origin[next], direction[next]]);
         next += 1;
     }
-    Ok(Some(Some(axes)))
+    Ok(Some(axes))
 }
 
 /// By distances: `nan` marks axes without data.
@@ -174,6 +182,26 @@ fn by_spacings(fields: &Fields) -> std::result::Result<Axes, String> {
         axes.push([min, step]);
     }
     Ok(Some(axes))
+}
+
+/// The units that the header states: of lengths, and of times.
+pub(crate) fn units(fields: &Fields) -> Result<[Vec<String>; 2]> {
+    let coordinates = coordinates(fields, dimension(fields)?)?;
+    let quoted = |name: &str| -> Vec<String> {
+        let units = fields.get(name).unwrap_or("").split('"').skip(1).step_by(2);
+        units.map(|unit| unit.trim().to_string()).collect()
+    };
+    let (mut lengths, mut times) = (quoted("space units"), Vec::new());
+    let has_space = !lengths.is_empty();
+    for (unit, coordinate) in quoted("units").into_iter().zip(coordinates) {
+        match coordinate {
+            3 => times.push(unit),
+            _ if has_space => {}
+            _ => lengths.push(unit),
+        }
+    }
+    Ok([lengths, times]
+        .map(|units| units.into_iter().filter(|unit| !unit.is_empty() && unit != "???").collect()))
 }
 
 /// Parses vectors such as `(1,0,0) none (0, 2, 0)`.

@@ -16,7 +16,7 @@ use crate::raw::byte_order::ByteOrder;
 use crate::raw::sample::SampleType;
 use crate::source::origin::Origin;
 use crate::volumes::data::{Data, Encoding, Skip};
-use crate::volumes::volume::Volume;
+use crate::volumes::volume::{Volume, units_of};
 use spmesh_base::error::{Error, Result};
 
 /// Reads the header of a volume; `path` is the file's path, if it has one.
@@ -37,7 +37,8 @@ pub(crate) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<Strin
         return Err(fields.locate("byte skip", Error::malformed(message)));
     }
     let data = Data { parts, sample, encoding, line_skip, byte_skip, is_exact: false };
-    Ok(Volume { lattice, data, scaling: None, world })
+    let [lengths, times] = axes::units(&fields)?;
+    Ok(Volume { lattice, data, scaling: None, world, units: units_of(lengths, &times) })
 }
 
 fn parse_type(text: &str) -> Result<SampleType> {

@@ -12,8 +12,8 @@ use spmesh_shell::parse_numbers;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Polygons")]
 pub(super) struct AreaFlags {
-    /// Keep only points inside of these polygons or on their border: GeoJSON, Shapefile, GeoPackage or WKT.
-    /// May be given several times: one of the polygons must have the point
+    /// Keep only points inside of these polygons or on their border: GeoJSON, Shapefile, GeoPackage
+    /// (FILE.gpkg:LAYER for one layer) or WKT. May be given several times: one of the polygons must have the point
     #[arg(long, value_name = "FILE")]
     pub(super) clip: Vec<PathBuf>,
 
@@ -39,7 +39,7 @@ pub(super) struct WaterFlags {
     /// their vertices, or the property level, or else that of points near the shore. Polygons with the
     /// property river are rivers; a line with the same one is their centre line, and leads downstream. Two
     /// lines with the same river, and with the property bank left and right, are a river without a polygon.
-    /// GeoJSON, Shapefile or GeoPackage. May be given several times
+    /// GeoJSON, Shapefile or GeoPackage (FILE.gpkg:LAYER for one layer). May be given several times
     #[arg(long, value_name = "FILE")]
     flatten: Vec<PathBuf>,
 

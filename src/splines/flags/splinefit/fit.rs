@@ -14,12 +14,13 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_formats::detect::SPLINEFIT;
 use spmesh_formats::source::{
-    Filters, InvalidAdvice, LineSystem, Opened, Polyline, SourceOptions, Values, name_of, open_knots,
-    read_polylines, read_values,
+    Filters, InvalidAdvice, LineSystem, Opened, Polyline, SourceOptions, TextOptions, Values, name_of,
+    open_knots, read_polylines, read_values,
 };
 use spmesh_shell::compression::Compression;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
+use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{Common, StatsFlag, named, open_held, parse_box, progress::Progress, refuse_terminal};
 use spmesh_stream::model::bounds::Bounds;
 
@@ -109,7 +110,7 @@ pub(super) struct Flags {
     weights: Option<PathBuf>,
 
     /// Corners and breaklines in the coordinates of the points: lines of corner, crease, smooth-crease or
-    /// linear and X Y X Y ..., or GeoJSON; - is stdin
+    /// linear and X Y X Y ..., GeoJSON, Shapefile or GeoPackage (FILE.gpkg:LAYER for one layer); - is stdin
     #[arg(long, value_name = "FILE")]
     features: Option<PathBuf>,
 
@@ -146,6 +147,9 @@ pub(super) struct Flags {
     seed: u64,
 
     #[command(flatten)]
+    text: TextFlags,
+
+    #[command(flatten)]
     threads: Threads,
 
     #[command(flatten)]
@@ -166,8 +170,11 @@ impl Flags {
         let mut output = Output::create(&self.output, true)?;
         let residuals = self.residuals.as_ref().map(|path| Output::create(path, false)).transpose()?;
         let rejected = self.rejected.as_ref().map(|path| Output::create(path, false)).transpose()?;
-        let (polylines, system) = self.features.as_deref().map(read_features).transpose()?.unzip();
-        let options = self.options(polylines.unwrap_or_default());
+        let features = self.features.as_deref().map(read_features).transpose()?;
+        let (polylines, system, layers) =
+            features.map_or_else(Default::default, |(lines, system, layers)| (lines, Some(system), layers));
+        layers.iter().for_each(|text| say(common, text));
+        let options = self.options(polylines);
         let points = self.points(common)?;
         if let Some(system) = system {
             // Lines of text are in the system of the points: a notice would tell nothing.
@@ -240,6 +247,7 @@ impl Flags {
             threads: Some(self.threads.get()),
             crs: self.crs.system()?,
             holds_points: true,
+            text: TextOptions { needs_z: true, ..self.text.options() },
             ..SourceOptions::default()
         };
         let weights = self.weights.as_ref().map(|path| read_weights(path)).transpose()?;
@@ -271,7 +279,7 @@ fn list<T>(output: Option<Output>, write: impl FnOnce(&mut Output) -> Result<T>)
     Ok(Some(written))
 }
 
-fn read_features(path: &Path) -> Result<(Vec<Polyline>, LineSystem)> {
+fn read_features(path: &Path) -> Result<(Vec<Polyline>, LineSystem, Option<String>)> {
     if path.as_os_str() == "-" {
         refuse_terminal()?;
     }
