@@ -17,6 +17,7 @@ use crate::reduce::{
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::system;
+use spmesh_base::temporary::remove_orphans;
 use spmesh_formats::source::Plain;
 use spmesh_stream::StreamReader;
 use spmesh_stream::model::bounds::Region;
@@ -76,6 +77,7 @@ impl<'a> Maker<'a> {
             return Err(Error::usage("points of space have no elevation: --duplicates first or error"));
         }
         create_folder(&work.folder)?;
+        remove_orphans(&work.folder);
         let folder = Folder { path: &work.folder, plan };
         Ok(Maker { folder, work, options: options_text(work.duplicates), recipe, note })
     }
