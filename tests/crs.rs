@@ -250,3 +250,60 @@ fn programs_say_what_they_cannot_hold() {
     let bytes = fs::read(&tif).unwrap();
     assert!(!bytes.windows(2).any(|tag| tag == 34735u16.to_le_bytes()));
 }
+
+/// Keys of the system that the name is all that is known of, in metres or feet.
+fn local(unit: u16) -> System {
+    let name = "Lambert-93|";
+    let keys = [[1024, 0, 1, 1], [1026, 34737, name.len() as u16, 0], [2048, 0, 1, 4171], [3076, 0, 1, unit]];
+    of_keys(&keys, &[], name)
+}
+
+#[test]
+fn projected_coordinates_without_a_projection_are_no_degrees() {
+    let system = local(9001);
+    let horizontal = system.horizontal.as_ref().unwrap();
+    assert_eq!((&horizontal.name[..], horizontal.is_angular()), ("Lambert-93", false));
+    assert_eq!(horizontal.unit, Unit::metre());
+    assert_eq!(system.remarks.len(), 1, "{:?}", system.remarks);
+    // What GDAL reads as a local system of this name.
+    let (keys, losses) = written(&system);
+    assert_eq!((short(&keys, 1024), short(&keys, 3076), losses), (Some(1), Some(9001), Vec::new()));
+    assert_eq!(differences(&system, &local(9001)), [""; 0]);
+    assert_eq!(differences(&system, &local(9003)), ["unit: metre and US survey foot"]);
+    assert_eq!(differences(&system, &code("EPSG:2154")).len(), 1);
+    // Without a name, and without the type of the model.
+    let bare = of_keys(&[[1024, 0, 1, 1], [2048, 0, 1, 4171]], &[], "");
+    assert!(bare.horizontal.is_none() && bare.remarks.len() == 1);
+    let of = |model: u16, unit: u16| {
+        let keys = [[1024, 0, 1, model], [1026, 34737, 5, 0], [2048, 0, 1, 4171], [3076, 0, 1, unit]];
+        of_keys(&keys, &[], "here|").horizontal.unwrap()
+    };
+    assert!(of(0, 0).is_angular() && of(2, 9001).is_angular());
+    assert!(!of(0, 9001).is_angular() && !of(32767, 9001).is_angular());
+}
+
+/// Systems that state the unit of heights, but not from where they count.
+fn units_of_heights() -> [System; 3] {
+    let head = [[1024, 0, 1, 1], [3072, 0, 1, 32617]];
+    let of = |more: &[[u16; 4]], texts: &str| of_keys(&[&head[..], more].concat(), &[], texts);
+    let datum = "VERT_DATUM[\"unknown\",2005],UNIT[\"US survey foot\",0.304800609601219]";
+    let projected = epsg_text("EPSG:32617");
+    [
+        of(&[[4099, 0, 1, 9003]], ""),
+        of(&[[4096, 0, 1, 32767], [4097, 34737, 8, 0], [4098, 0, 1, 32767], [4099, 0, 1, 9003]], "unknown|"),
+        wkt(&format!("COMPD_CS[\"a + unknown\",{projected},VERT_CS[\"unknown\",{datum}]]")),
+    ]
+}
+
+#[test]
+fn a_unit_of_heights_is_no_system_of_heights() {
+    for system in units_of_heights() {
+        assert_eq!(system.name().as_deref(), Some("EPSG:32617"));
+        assert_eq!(system.vertical.as_ref().map(|heights| heights.unit.code), Some(Some(9003)));
+        let (keys, losses) = written(&system);
+        let found = [3072, 4096, 4097, 4098, 4099].map(|key| short(&keys, key));
+        assert_eq!((found, losses), ([Some(32617), None, None, None, None], Vec::new()));
+        assert_eq!(differences(&system, &code("EPSG:32617+6360")), [""; 0]);
+        assert_eq!(differences(&system, &code("EPSG:32617+5703")).len(), 1);
+    }
+}

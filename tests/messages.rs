@@ -113,3 +113,23 @@ fn messages_hold_no_rust() {
         }
     }
 }
+
+/// Of points that coincide, the first one stays: a notice says how many others have another elevation.
+#[test]
+fn elevations_that_depend_on_the_order_are_counted() {
+    let mesh = |points: &str, flags: &[&str]| {
+        let stream = run("spfinalize", &["-"], points.as_bytes()).stdout;
+        outcome(&run("spdelaunay2d", flags, &stream))
+    };
+    let corners = "0 0 1\n10 0 1\n0 10 1\n5 5 1\n";
+    for (others, expected) in
+        [("5 5 9\n", "1 point coincides"), ("5 5 9\n5 5 1\n0 0 2\n", "2 points coincide")]
+    {
+        let (code, message) = mesh(&format!("{corners}{others}"), &[]);
+        assert!(code == Some(0) && message.contains(expected), "{message}");
+        assert!(message.contains("--duplicates lowest, highest or mean"), "{message}");
+        let lowest = mesh(&format!("{corners}{others}"), &["--duplicates", "lowest"]);
+        assert_eq!(lowest, (Some(0), String::new()));
+    }
+    assert_eq!(mesh(&format!("{corners}5 5 1\n"), &[]), (Some(0), String::new()));
+}

@@ -157,3 +157,8 @@ impl fmt::Display for Error {
 
 /// `source` stays `None`: the message includes the cause, which would otherwise be printed twice.
 impl std::error::Error for Error {}
+
+/// A count with the word for what is counted, in the singular or the plural: "1 point", "0 points".
+pub fn counted(number: u64, one: &str, many: &str) -> String {
+    format!("{number} {}", if number == 1 { one } else { many })
+}

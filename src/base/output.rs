@@ -14,7 +14,7 @@ use rustix::fs::{Mode, OFlags};
 use crate::error::{Error, ErrorKind, Result};
 use crate::inputs::{self, Claim};
 use crate::system;
-use crate::temporary::{Name, without_path};
+use crate::temporary::{Name, own_prefix, without_path};
 use crate::upstream;
 
 /// Bytes of the write buffer.
@@ -32,15 +32,13 @@ const LINKS_MAX: usize = 40;
 /// Write-back to the disk starts after every so many bytes, so that the commit waits for few bytes only.
 const WRITE_BACK_LEN: u64 = 8 << 20;
 
-/// Prefix of the name of an incomplete file, if it needs a name.
-const TEMPORARY_PREFIX: &str = ".spmesh-";
-
 /// An output that leaves nothing behind unless it is committed.
 ///
 /// Invariant: the final name exists only after [`Output::commit`]. The data go to an unnamed file
 /// (`O_TMPFILE`) in the same folder, so that even a killed process leaves nothing behind. If the system has
 /// no unnamed files, the data go to a temporary name, which is removed on every exit except a kill that
-/// cannot be caught, if the program has called [`crate::temporary::remove_names_at_signals`].
+/// cannot be caught, if the program has called [`crate::temporary::remove_names_at_signals`]; after such a
+/// kill, [`crate::temporary::remove_orphans`] removes it.
 pub struct Output {
     name: String,
     /// Keeps inputs from its place until it is complete.
@@ -239,7 +237,8 @@ fn with_temporary_name<F>(
 ) -> io::Result<(tempfile::NamedTempFile<F>, Name)> {
     let mut name = None;
     let mut builder = tempfile::Builder::new();
-    let file = builder.prefix(TEMPORARY_PREFIX).make_in(folder_of(target), |path| {
+    let prefix = own_prefix();
+    let file = builder.prefix(&prefix).make_in(folder_of(target), |path| {
         // The name of an earlier attempt belongs to another file.
         drop(name.take());
         name = Some(Name::new(path));
@@ -278,7 +277,7 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
 
 /// A file without a name that can get one later; `None` if the system or the file system does not support it.
 #[cfg(target_os = "linux")]
-fn open_unnamed(folder: &Path) -> Option<File> {
+pub(crate) fn open_unnamed(folder: &Path) -> Option<File> {
     let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
     let file = File::from(rustix::fs::open(folder, flags, Mode::from_raw_mode(FILE_MODE)).ok()?);
     // The file gets its name through /proc: check that it is mounted before the work begins.
@@ -287,7 +286,7 @@ fn open_unnamed(folder: &Path) -> Option<File> {
 
 /// A file without a name that can get one later; `None` if the system or the file system does not support it.
 #[cfg(not(target_os = "linux"))]
-fn open_unnamed(_folder: &Path) -> Option<File> {
+pub(crate) fn open_unnamed(_folder: &Path) -> Option<File> {
     None
 }
 
@@ -394,7 +393,7 @@ mod tests {
             let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
             assert!(lines.any(|line| line.unwrap().ends_with("ready")));
             let names = || fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
-            assert!(names().next().unwrap().to_string_lossy().starts_with(TEMPORARY_PREFIX));
+            assert!(names().next().unwrap().to_string_lossy().starts_with(".spmesh-"));
             match signal {
                 // SAFETY: the call takes integers.
                 Some(signal) => drop(unsafe { libc::kill(child.id() as i32, signal) }),

@@ -83,6 +83,35 @@ fn heights_may_not_overflow() {
     assert!(code == Some(2) && message.contains("record 0") && message.contains("32 bits"), "{message}");
 }
 
+/// Coordinates that are no finite numbers in the world, or in steps of the ground. Each program refuses the former.
+#[test]
+fn coordinates_may_not_overflow() {
+    let folder = Folder::new();
+    let points = LasFile::of(&[[0, 0, 0], [9, 0, 0], [0, i32::MAX, 0], [1, 1, 5]]);
+    folder.file("ground.spm", mesh_of(&points.bytes()));
+    let fine = LasFile { scale: [1e-307; 3], ..points.clone() };
+    folder.file("fine.spm", mesh_of(&fine.bytes()));
+    folder.file("points.las", points.bytes());
+    let (ground, out, raster) = (folder.path("ground.spm"), folder.path("out.las"), folder.path("out.tif"));
+    for (scale, offset) in [([1e300, 1e300, 1.0], 0.0), ([0.01, 0.01, 8e292], 0.0), ([1e292; 3], -1.797e308)]
+    {
+        let far = LasFile { scale, offset: [offset; 3], ..points.clone() };
+        folder.file("far.las", far.bytes());
+        let far = folder.path("far.las");
+        let heights = refused(&folder, &["--ground", &ground, &far, "-o", &out]);
+        let flags = ["--ground", &ground, &far, "--step", "1", "-o", &raster];
+        let canopy = outcome(&run("spcanopy", &flags, &[]));
+        let stream = outcome(&run("spfinalize", &[&far], &[]));
+        for (code, message) in [heights, canopy, stream] {
+            assert!(code == Some(2) && message.contains("beyond numbers of 64 bits"), "{message}");
+            assert!(message.len() < 300, "{message}");
+        }
+    }
+    let (fine, points) = (folder.path("fine.spm"), folder.path("points.las"));
+    let (code, message) = refused(&folder, &["--ground", &fine, &points, "-o", &out]);
+    assert!(code == Some(2) && message.contains("too great or too small"), "{message}");
+}
+
 /// Every cut of a ground and of points, and bits that are flipped.
 #[test]
 fn damage_is_an_error_and_leaves_no_file() {

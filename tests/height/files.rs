@@ -225,8 +225,37 @@ fn nothing_is_a_result_too() {
     let points = scattered(20, 100, 2).bytes();
     let after = Parts::of(&heights_in(&folder, &no_mesh, &points, "out.las", &[]));
     assert_eq!(after.heights(), vec![i32::MIN; 20]);
-    let after = Parts::of(&heights_in(&folder, &no_mesh, &points, "out.las", &["--outside", "nearest"]));
-    assert_eq!(after.heights(), vec![i32::MIN; 20]);
+    folder.file("no.spm", no_mesh);
+    let points = folder.write("points.las", points);
+    let out = folder.path("out.las");
+    let arguments = ["--ground", &folder.path("no.spm"), &points, "-o", &out, "--outside", "nearest"];
+    let (code, message) = outcome(&run("spheight", &arguments, &[]));
+    assert!(code == Some(0) && message.contains("they have no height, as it has no triangles"), "{message}");
+    assert_eq!(Parts::of(&std::fs::read(out).unwrap()).heights(), vec![i32::MIN; 20]);
+}
+
+/// A header as short as those of LAS 1.2 has no fields of a later version that it names: there are records.
+#[test]
+fn short_headers_have_no_later_fields() {
+    let folder = Folder::new();
+    let points = LasFile { projection: vec![geo_keys(2154)], ..scattered(50, 100, 1) }.bytes();
+    let mesh = mesh_of(&points);
+    let mut named = points.clone();
+    named[25] = 4;
+    let after = Parts::of(&heights_in(&folder, &mesh, &named, "out.las", &[]));
+    assert_kept(&Parts::of(&named), &after, "version 1.4");
+    assert_eq!(mesh_of(&named), mesh);
+}
+
+/// Of two numbers of points, one is read, and both are written as that one.
+#[test]
+fn the_number_of_points_is_that_of_the_points() {
+    let folder = Folder::new();
+    let points = LasFile { format: 6, ..scattered(50, 100, 1) }.bytes();
+    let mut both = points.clone();
+    both[107] = 7;
+    let after = Parts::of(&heights_in(&folder, &mesh_of(&points), &both, "out.las", &[]));
+    assert_eq!((u32_at(&after.header, 107), u64_at(&after.header, 247)), (50, 50));
 }
 
 /// Heights that are taken for elevations are mostly below the ground.

@@ -191,3 +191,25 @@ fn text_twins_are_streams_too() {
         assert_eq!(points(&[converted(format)], &flat()).unwrap().len(), 8, "{format}");
     }
 }
+
+/// A file without points has a grid that no point needs.
+#[test]
+fn files_without_points_need_no_common_grid() {
+    let folder = Folder::new();
+    let grid = |scale: f64, offset: f64| LasFile {
+        scale: [scale; 3],
+        offset: [offset, 0.0, 0.0],
+        ..LasFile::of(&[[1, 1, 1]])
+    };
+    let points = folder.file("points.las", grid(0.01, 0.0).bytes());
+    let nothing = LasFile { records: Vec::new(), ..grid(0.001, 0.00512345678) };
+    let nothing = folder.file("nothing.las", nothing.bytes());
+    for paths in [[&points, &nothing], [&nothing, &points]] {
+        let input = Input::open(&paths.map(Clone::clone), &flat()).unwrap();
+        let expected = Coordinates::I32 { scale: [0.01; 3], offset: [0.0; 3] };
+        assert_eq!(input.description().coordinates, expected);
+        assert_eq!(pass(&input).unwrap(), [[1.0; 3]]);
+    }
+    let input = Input::open(&[nothing.clone(), nothing], &flat()).unwrap();
+    assert!(pass(&input).unwrap().is_empty());
+}

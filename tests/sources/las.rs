@@ -10,7 +10,7 @@ use spmesh_stream::{Coordinates, Crs};
 
 use super::las_file::{LasFile, Record, geo_keys};
 use super::{assert_fails, flat, pass, points, points_of, sample};
-use crate::programs::Folder;
+use crate::programs::{Folder, outcome, run};
 
 #[test]
 fn samples_have_the_points_and_the_box_that_their_headers_state() {
@@ -348,4 +348,36 @@ fn wrong_kinds_of_files_get_advice() {
     assert_fails(Input::open(&[folder.root().to_path_buf()], &flat()), ErrorKind::Usage, &["folder"]);
     assert_fails(Input::open(&["no/such.laz".into()], &flat()), ErrorKind::Io, &["no/such.laz"]);
     assert_fails(Input::open(&["-".into(), "-".into()], &flat()), ErrorKind::Usage, &["more than once"]);
+}
+
+/// The order of files decides nothing about their common system, nor about a raster of their points.
+#[test]
+fn the_common_system_is_the_one_that_states_most() {
+    let folder = Folder::new();
+    let keys = |more: &[u16]| {
+        let keys = [&[1, 1, 0, 2 + more.len() as u16 / 4, 1024, 0, 1, 1, 3072, 0, 1, 32617], more].concat();
+        (34735, keys.iter().flat_map(|key| key.to_le_bytes()).collect::<Vec<u8>>())
+    };
+    let file = |name: &str, more: &[u16]| {
+        let las = LasFile { projection: vec![keys(more)], ..LasFile::of(&[[0, 0, 0], [9, 0, 0], [0, 9, 9]]) };
+        folder.write(name, las.bytes())
+    };
+    let bare = file("bare.las", &[]);
+    let unit = file("unit.las", &[4099, 0, 1, 9001]);
+    let whole = file("whole.las", &[4096, 0, 1, 5703]);
+    let name_of = |files: &[&str]| {
+        let paths: Vec<_> = files.iter().map(|file| file.into()).collect();
+        crs_name(&Input::open(&paths, &flat()).unwrap().description().crs)
+    };
+    for files in
+        [[&bare, &unit, &whole], [&whole, &unit, &bare], [&unit, &whole, &bare], [&bare, &whole, &unit]]
+    {
+        assert_eq!(name_of(&files.map(|file| &file[..])).as_deref(), Some("EPSG:32617+5703"), "{files:?}");
+    }
+    assert_eq!(name_of(&[&bare, &unit]).as_deref(), Some("EPSG:32617"));
+    let mesh = run("spdelaunay2d", &[], &run("spfinalize", &[&unit], &[]).stdout).stdout;
+    let raster = run("spdem", &["--step", "0.01", "-o", "-"], &mesh);
+    assert_eq!(outcome(&raster).0, Some(0), "{:?}", outcome(&raster));
+    let item = b"role=\"unittype\">metre</Item>";
+    assert!(raster.stdout.windows(item.len()).any(|bytes| bytes == item));
 }

@@ -1,7 +1,7 @@
 //! Of files that were cut off, `--salvage` takes the whole points before the cut.
 
 use super::las_file::LasFile;
-use crate::programs::{Folder, assert_outcome, outcome, run};
+use crate::programs::{Folder, assert_outcome, outcome, run, sample};
 
 const POINTS: i32 = 10_000;
 
@@ -106,4 +106,38 @@ fn whole_lines_and_whole_numbers_before_the_cut_are_read() {
     let flags = ["--salvage", "--raw", "f64le", "--quiet", &two[0], &two[1]];
     assert_outcome("spfinalize", &flags, &[], 7, "a.raw was cut off: read 2 points");
     assert_outcome("spfinalize", &flags, &[], 7, "b.raw was cut off: read 2 points");
+}
+
+/// The header of a file tells that it was cut off, so no job of a plan finds it out.
+#[test]
+fn plans_name_files_that_were_cut_off() {
+    let folder = Folder::new();
+    let plan = |content: &[u8]| {
+        let path = folder.write("cut.laz", content);
+        outcome(&run("spfinalize", &["--plan", &folder.path("plan.json"), &path], &[]))
+    };
+    let copc = std::fs::read(sample("autzen.copc.laz")).unwrap();
+    // In front of the index of COPC, the table of chunks is at the end.
+    for (whole, after) in [(file(1).compressed(1000), 0), (file(6).compressed(1000), 0), (copc, 92)] {
+        assert_eq!(plan(&whole).0, Some(0));
+        for lost in [12, 20, 200].map(|lost| after + lost) {
+            let (code, message) = plan(&whole[..whole.len() - lost]);
+            assert!(code == Some(3) && message.contains("truncated"), "{lost} bytes less: {message}");
+            assert!(message.contains("cut.laz: ") && message.contains("--salvage takes"), "{message}");
+        }
+    }
+}
+
+/// All points of a COPC file are there, but not its index.
+#[test]
+fn points_before_a_cut_index_are_read() {
+    let folder = Folder::new();
+    let whole = std::fs::read(sample("autzen.copc.laz")).unwrap();
+    let cut = folder.write("cut.copc.laz", &whole[..whole.len() - 50]);
+    let box_of = "--bounds=637000,850000,638000,852000";
+    let of = |path: &str| run("spfinalize", &["--preserve", box_of, path], &[]);
+    let (found, expected) = (of(&cut), of(&sample("autzen.copc.laz")));
+    let (code, message) = outcome(&found);
+    assert!(code == Some(0) && message.contains("the COPC index is left out"), "{message}");
+    assert_eq!(found.stdout, expected.stdout);
 }

@@ -87,14 +87,14 @@ fn a_sweep_has_tables_of_the_format_asked_for() {
     let out = folder.path("out");
     let file = sample("1aki.pdb");
     let flags = ["--contacts", "--alpha", "3", "--format", "jsonl", "--out-dir", &out, &file, "--resume"];
-    assert!(outcome(&run("tess3", &flags, &[])).1.contains("1 files done;"));
+    assert!(outcome(&run("tess3", &flags, &[])).1.contains("1 file done;"));
     assert!(outcome(&run("tess3", &flags, &[])).1.contains("1 had been done before"));
     let made = fs::read(folder.path("out/1aki.contacts.jsonl")).unwrap();
     let alone = run("tess3", &["--contacts", "--alpha", "3", "--format", "jsonl", "-q", &file], &[]);
     assert_eq!(made, alone.stdout);
     let others = ["--contacts", "--alpha", "3", "--out-dir", &out, &file, "--resume"];
     assert!(
-        outcome(&run("tess3", &others, &[])).1.contains("1 files done;"),
+        outcome(&run("tess3", &others, &[])).1.contains("1 file done;"),
         "another format is another sweep"
     );
     let summary = Rows::new(&fs::read_to_string(folder.path("out/summary.tsv")).unwrap());

@@ -38,7 +38,7 @@ fn spfinalize_says_which_atoms_it_leaves_out() {
     let (code, message) = outcome(&output);
     assert_eq!(code, Some(0), "{message}");
     assert!(message.contains("first of 2 models"), "{message}");
-    assert!(message.contains("1 atoms at other alternate locations"), "{message}");
+    assert!(message.contains("1 atom at another alternate location is left out"), "{message}");
     let (code, message) = outcome(&run("spfinalize", &["--octree", "-"], b"ATOM  none\n"));
     assert_eq!(code, Some(3), "{message}");
     assert!(message.contains("line 1"), "{message}");

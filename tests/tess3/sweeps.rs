@@ -233,7 +233,7 @@ fn a_sweep_that_was_killed_goes_on() {
     fs::write(&path, &text[..text.len() - 10]).unwrap();
     let (code, message) = sweep(&folder, &["--resume"], &files);
     assert_eq!(code, Some(0), "{message}");
-    assert!(message.contains("1 files done, 2 had been done before"), "{message}");
+    assert!(message.contains("1 file done, 2 had been done before"), "{message}");
     assert_eq!(summary(&folder).len(), 3);
     // Without a summary, or without --resume, all files are done again.
     fs::remove_file(&path).unwrap();
@@ -248,7 +248,7 @@ fn a_resumed_sweep_does_not_take_the_name_of_what_is_there() {
     assert_eq!(sweep(&folder, &["--resume"], &files[2..]).0, Some(0));
     assert_eq!(folder.names("out"), ["1abc.pdb.spm", "1abc.spm", "summary.tsv"]);
     let (_, message) = sweep(&folder, &["--resume"], &files);
-    assert!(message.contains("1 files done, 2 had been done before"), "{message}");
+    assert!(message.contains("1 file done, 2 had been done before"), "{message}");
     assert_eq!(summary(&folder).len(), 3);
 }
 

@@ -2,6 +2,7 @@
 
 mod frozen;
 mod names;
+mod orphans;
 mod records;
 
 use std::fs::File;
@@ -13,6 +14,8 @@ use crate::error::{Error, Result};
 pub use frozen::{FrozenFile, Windows};
 pub(crate) use names::Name;
 pub use names::remove_names_at_signals;
+pub(crate) use orphans::own_prefix;
+pub use orphans::remove_orphans;
 pub use records::Records;
 
 /// The cause of a failure of `tempfile`, which adds a made-up path to it.

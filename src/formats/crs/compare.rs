@@ -1,7 +1,7 @@
 //! Whether two systems mean the same, and in what they differ.
 
 use crate::crs::epsg;
-use crate::crs::names::is_same_datum;
+use crate::crs::names::{is_same_datum, letters};
 use crate::crs::system::{Ellipsoid, Geographic, Horizontal, Kind, Projection, System, Vertical};
 
 /// Degrees: a tenth of a millimetre on the ground.
@@ -58,8 +58,10 @@ impl Differences {
         }
         match (&a.kind, &b.kind) {
             (Kind::Unresolved, _) | (_, Kind::Unresolved) => {
-                if a.code != b.code || a.code.is_none() {
+                if a.code != b.code || a.code.is_none() && letters(&a.name) != letters(&b.name) {
                     self.add("system", a.short_name(), b.short_name());
+                } else if !a.unit.is_same(&b.unit) {
+                    self.add("unit", &a.unit, &b.unit);
                 }
             }
             _ => {
@@ -128,6 +130,9 @@ impl Differences {
     fn vertical(&mut self, a: &Vertical, b: &Vertical) {
         if !a.unit.is_same(&b.unit) {
             self.add("unit of heights", &a.unit, &b.unit);
+        }
+        if a.is_only_unit() || b.is_only_unit() {
+            return;
         }
         if a.is_depth != b.is_depth {
             let word = |one: &Vertical| if one.is_depth { "depths" } else { "heights" };

@@ -13,7 +13,8 @@ const ELLIPSOIDAL_HEIGHTS: std::ops::RangeInclusive<u16> = 5001..=5033;
 /// Codes of datums that GeoTIFF 1.0 used for heights, with the codes of the EPSG dataset.
 const OLD_HEIGHTS: [(u16, u16); 6] =
     [(5101, 5701), (5102, 5702), (5103, 5703), (5104, 5736), (5105, 5705), (5106, 5706)];
-/// The model type of geocentric systems.
+/// The model types of geographic and of geocentric systems.
+const GEOGRAPHIC: u16 = 2;
 const GEOCENTRIC: u16 = 3;
 
 /// The system that `keys` define.
@@ -38,6 +39,17 @@ impl System {
         let method = keys.short(keys::METHOD);
         if keys.short(keys::PROJECTED).is_some() || method.is_some() {
             return self.user_defined(keys);
+        }
+        let model = keys.short(keys::MODEL_TYPE);
+        if model == Some(keys::PROJECTED_MODEL) {
+            return self.local(keys);
+        }
+        // Without a type, coordinates that have a unit of lengths are no degrees either.
+        if !matches!(model, Some(GEOGRAPHIC | GEOCENTRIC))
+            && length_unit(keys).is_some()
+            && let Some(local) = self.local(keys)
+        {
+            return Some(local);
         }
         if let Some(code) = keys.code(keys::GEODETIC) {
             return Some(self.of_code(keys, code));
@@ -124,6 +136,15 @@ impl System {
             method.map_or_else(|| format!("method {number} of GeoTIFF"), |method| method.name.into());
         let projection = Projection { method_name, method, parameters, others: Vec::new() };
         Some(Horizontal { name, code: None, kind: Kind::Projected(base, projection), unit })
+    }
+
+    /// A projected system of which no projection is known, as GDAL takes it: with a name and a unit.
+    fn local(&mut self, keys: &GeoKeys) -> Option<Horizontal> {
+        let name = keys.text(keys::PROJECTED_CITATION).or_else(|| keys.text(keys::CITATION))?;
+        self.remarks
+            .push(format!("its GeoTIFF keys name the projected system {name:?}, but do not define it"));
+        let unit = length_unit(keys).unwrap_or_else(Unit::metre);
+        Some(Horizontal { name, code: None, kind: Kind::Unresolved, unit })
     }
 
     fn vertical_of(&mut self, keys: &GeoKeys) -> Option<Vertical> {

@@ -42,6 +42,9 @@ pub(crate) const VERTICAL_CITATION: u16 = 4097;
 pub(crate) const VERTICAL_DATUM: u16 = 4098;
 pub(crate) const VERTICAL_UNIT: u16 = 4099;
 
+/// The value of [`MODEL_TYPE`] of projected systems.
+pub(crate) const PROJECTED_MODEL: u16 = 1;
+
 /// The value of a key for what other keys define.
 pub(crate) const USER_DEFINED: u16 = 32767;
 /// The value of [`RASTER_TYPE`] for cells whose coordinates are those of their centres.

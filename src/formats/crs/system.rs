@@ -1,6 +1,7 @@
 //! What a coordinate reference system means, whatever it is written in.
 
 use crate::crs::methods::{Method, Role};
+use crate::crs::names::is_empty;
 use crate::crs::units::Unit;
 
 /// The meaning of a coordinate reference system.
@@ -111,7 +112,8 @@ impl System {
     /// A short name: codes as in `EPSG:2991+5703` where they are known, else names.
     pub fn name(&self) -> Option<String> {
         let horizontal = self.horizontal.as_ref().map(Horizontal::short_name);
-        let Some(vertical) = self.vertical.as_ref().filter(|vertical| !vertical.is_part_of(self)) else {
+        let says_more = |vertical: &&Vertical| !vertical.is_part_of(self) && !vertical.is_only_unit();
+        let Some(vertical) = self.vertical.as_ref().filter(says_more) else {
             return horizontal.or_else(|| self.title.clone());
         };
         Some(match (self.horizontal.as_ref().and_then(|known| known.code), vertical.code) {
@@ -121,6 +123,15 @@ impl System {
                 None => vertical.short_name(),
             },
         })
+    }
+
+    /// A space and the codes, as an argument of commands of GDAL; nothing without a code of x and y.
+    pub(crate) fn argument(&self) -> String {
+        let Some(code) = self.horizontal.as_ref().and_then(|horizontal| horizontal.code) else {
+            return String::new();
+        };
+        let vertical = self.vertical.as_ref().and_then(|vertical| vertical.code);
+        format!(" EPSG:{code}{}", vertical.map_or(String::new(), |code| format!("+{code}")))
     }
 
     /// How many units of x and y one unit of z is, where both are lengths or x and y are degrees on the
@@ -169,6 +180,13 @@ impl Vertical {
     /// three dimensions does.
     fn is_part_of(&self, system: &System) -> bool {
         self.is_ellipsoidal && system.horizontal.as_ref().is_some_and(Horizontal::is_angular)
+    }
+
+    /// Whether nothing but the unit of z is known.
+    pub fn is_only_unit(&self) -> bool {
+        let has_code = self.code.is_some() || self.datum_code.is_some();
+        let has_name = !is_empty(&self.name) || !is_empty(&self.datum);
+        !(has_code || has_name || self.is_ellipsoidal || self.is_depth)
     }
 
     fn short_name(&self) -> String {

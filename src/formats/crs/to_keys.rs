@@ -15,19 +15,19 @@ use crate::crs::units::Unit;
 const HEADER: [u16; 3] = [1, 1, 1];
 /// Codes that keys can hold.
 const CODES: std::ops::RangeInclusive<u32> = 1024..=32766;
-const PROJECTED: u16 = 1;
 const GEOGRAPHIC: u16 = 2;
 const GEOCENTRIC: u16 = 3;
 const PIXEL_IS_AREA: u16 = 1;
 /// EPSG code of the meridian of Greenwich.
 const GREENWICH: u16 = 8901;
 
-/// The keys of `system`, for cells as areas, with those of its vertical part if values are elevations; and
-/// what they leave out, each as a sentence for users. There are no keys if they cannot hold the system of x and
-/// y.
+/// The keys of `system`, for cells as areas, with those of its vertical part if values are elevations and it
+/// is more than a unit, which a raster states of its values; and what they leave out, each as a sentence for
+/// users. There are no keys if they cannot hold the system of x and y.
 pub fn keys(system: &System, are_elevations: bool) -> (GeoKeys, Vec<String>) {
     let mut writer = Writer::default();
-    match (&system.horizontal, system.vertical.as_ref().filter(|_| are_elevations)) {
+    let is_stated = |vertical: &&Vertical| are_elevations && !vertical.is_only_unit();
+    match (&system.horizontal, system.vertical.as_ref().filter(is_stated)) {
         (Some(horizontal), vertical) => writer.both(horizontal, vertical),
         (None, Some(vertical)) => writer.lose(format!(
             "a GeoTIFF cannot hold the system of elevations ({}) without that of x and y",
@@ -67,14 +67,14 @@ impl Writer {
             Kind::Geographic(_) => GEOGRAPHIC,
             Kind::Geocentric(_) => GEOCENTRIC,
             Kind::Unresolved if system.is_angular() => GEOGRAPHIC,
-            Kind::Projected(..) | Kind::Unresolved => PROJECTED,
+            Kind::Projected(..) | Kind::Unresolved => keys::PROJECTED_MODEL,
         };
         if model == GEOCENTRIC {
             return self.lose(format!("a GeoTIFF cannot hold the geocentric system {:?}", system.name));
         }
         let contradictions = contradictions(system);
         if let Some(code) = system.code.filter(|code| CODES.contains(code) && contradictions.is_empty()) {
-            let key = if model == PROJECTED { keys::PROJECTED } else { keys::GEODETIC };
+            let key = if model == keys::PROJECTED_MODEL { keys::PROJECTED } else { keys::GEODETIC };
             self.keys.add_short(keys::MODEL_TYPE, model);
             return self.keys.add_short(key, code as u16);
         }
@@ -92,6 +92,12 @@ impl Writer {
                 self.geographic(base);
             }
             Kind::Projected(base, projection) => self.projected(system, base, projection),
+            // A local system, of which only the name is known.
+            Kind::Unresolved if model == keys::PROJECTED_MODEL && system.code.is_none() => {
+                self.keys.add_short(keys::MODEL_TYPE, model);
+                self.keys.add_text(keys::CITATION, std::slice::from_ref(name));
+                self.unit(&system.unit, keys::LENGTH_UNIT, keys::LENGTH_UNIT_SIZE);
+            }
             Kind::Geocentric(_) | Kind::Unresolved => {
                 self.lose(format!("a GeoTIFF cannot hold {name:?}, of which only the name is known"))
             }
@@ -109,7 +115,7 @@ impl Writer {
             let others = projection.others.join(", ");
             self.lose(format!("a GeoTIFF cannot hold these parameters of {name:?}: {others}"));
         }
-        self.keys.add_short(keys::MODEL_TYPE, PROJECTED);
+        self.keys.add_short(keys::MODEL_TYPE, keys::PROJECTED_MODEL);
         self.keys.add_short(keys::PROJECTED, USER_DEFINED);
         self.keys.add_text(keys::PROJECTED_CITATION, std::slice::from_ref(name));
         self.geographic(base);

@@ -8,7 +8,7 @@ use crate::sink::spool::Spool;
 use crate::sink::triangles::{Corner, final_corners};
 use crate::sink::world::{world_bounds, world_of};
 use crate::sink::{EventSink, expect_kind, lost_attributes, lost_of_header, write_error};
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind, Patch};
 
@@ -114,8 +114,8 @@ impl<W: Write> EventSink for SmbSink<W> {
         }
         if self.open > 0 {
             notices.push(format!(
-                "{} vertices are final only at the end: SMB finalizes a vertex with its last triangle",
-                self.open
+                "{} final only at the end: SMB finalizes a vertex with its last triangle",
+                counted(self.open, "vertex is", "vertices are")
             ));
         }
         notices

@@ -5,22 +5,23 @@ use std::io::{Seek, SeekFrom, Write};
 use crate::las::chunks::{ChunkWriter, laszip};
 use crate::las::field::{ExtraField, with_field};
 use crate::las::file::LasFile;
+use crate::las::raw::RawHeader;
 use crate::las::records::{RecordList, copy_range};
 use crate::source::origin::FileView;
 use spmesh_base::error::{Error, Result};
 
 /// Places in the header of a file.
-const HEADER_LEN: usize = 94;
 const POINTS_START: usize = 96;
 const VLR_COUNT: usize = 100;
 const FORMAT: usize = 104;
 const RECORD_LEN: usize = 105;
-const SCALE_Z: usize = 147;
+const LEGACY_POINTS: usize = 107;
 const OFFSET_Z: usize = 171;
 const MAX_Z: usize = 211;
 const WAVEFORM_START: usize = 227;
 const EVLR_START: usize = 235;
 const EVLR_COUNT: usize = 243;
+const POINTS: usize = 247;
 
 /// The bit of the format that says that points are compressed.
 const COMPRESSED: u8 = 0x80;
@@ -45,6 +46,8 @@ pub struct Changes {
 pub struct LasCopy<W: Write + Seek> {
     output: W,
     file: FileView,
+    /// The header of the file, and that of the output.
+    raw: RawHeader,
     header: Vec<u8>,
     extended: RecordList,
     /// Bytes after the points that are no records.
@@ -79,12 +82,12 @@ impl<W: Write + Seek> LasCopy<W> {
             Error::usage("LAS and LAZ files cannot be written to a pipe: their header is completed last")
         })?;
         let file = source.view()?;
-        let mut header = read_header(&file)?;
-        let points_start = u64::from(u32_at(&header, POINTS_START));
-        let first = u64::from(u16_at(&header, HEADER_LEN));
-        let mut vlrs = RecordList::read(&file, first, points_start, u32_at(&header, VLR_COUNT), false)?;
+        let raw = source.header.raw;
+        let mut header = read_header(&file, raw.header_len)?;
+        let (first, points_start) = (u64::from(raw.header_len), source.header.points_start);
+        let mut vlrs = RecordList::read(&file, first, points_start, raw.records, false)?;
         let padding = vlrs.end..points_start;
-        let list = extended_records(&file, &header)?;
+        let list = extended_records(&file, &raw)?;
         // Records that are cut off, or older than their count in the header, are copied as they are.
         let tail = if list.is_some() { 0..0 } else { source.header.points_end..source.header.file_len };
         let mut extended = list.unwrap_or_default();
@@ -124,6 +127,7 @@ impl<W: Write + Seek> LasCopy<W> {
         let mut copy = LasCopy {
             output,
             file,
+            raw,
             header,
             tail,
             extended,
@@ -203,11 +207,11 @@ impl<W: Write + Seek> LasCopy<W> {
         Ok(self.output)
     }
 
-    /// Sets the positions of what now starts at byte `start`, and the range of z.
+    /// Sets the positions of what now starts at byte `start`, the number of points, and the range of z.
     fn complete_header(&mut self, start: u64) {
-        let header = &mut self.header;
-        if header.len() >= WAVEFORM_START + 8 {
-            let old = u64_at(header, WAVEFORM_START);
+        let (header, raw) = (&mut self.header, self.raw);
+        if raw.waveforms_start > 0 {
+            let old = raw.waveforms_start;
             let mut at = start;
             let moved = self.extended.records.iter().find_map(|record| {
                 let found = (record.start == old).then_some(at);
@@ -219,7 +223,7 @@ impl<W: Write + Seek> LasCopy<W> {
                 put(header, WAVEFORM_START, &moved.to_le_bytes());
             }
         }
-        if header.len() >= EVLR_COUNT + 4 && u32_at(header, EVLR_COUNT) > 0 {
+        if raw.extended > 0 {
             let count = self.extended.records.len() as u32;
             let is_list = self.tail.is_empty();
             if is_list {
@@ -227,9 +231,13 @@ impl<W: Write + Seek> LasCopy<W> {
             }
             put(header, EVLR_START, &if is_list && count == 0 { 0 } else { start }.to_le_bytes());
         }
+        if raw.points > 0 && raw.legacy_points > 0 {
+            // Both numbers, of which only one counted, become that one.
+            put(header, POINTS, &self.points.to_le_bytes());
+            put(header, LEGACY_POINTS, &u32::try_from(self.points).unwrap_or(0).to_le_bytes());
+        }
         if self.has_new_z {
-            let scale = f64::from_le_bytes(*header[SCALE_Z..].first_chunk().expect("checked"));
-            let [min, max] = self.range_z.unwrap_or_default().map(|z| f64::from(z) * scale);
+            let [min, max] = self.range_z.unwrap_or_default().map(|z| f64::from(z) * raw.scale[2]);
             put(header, MAX_Z, &max.to_le_bytes());
             put(header, MAX_Z + 8, &min.to_le_bytes());
         }
@@ -250,38 +258,21 @@ impl<W: Write + Seek> LasCopy<W> {
 }
 
 /// The bytes of the header, up to the first record.
-fn read_header(file: &FileView) -> Result<Vec<u8>> {
-    let reading = |e| Error::io("reading", e).at("header at byte 0");
-    let mut start = [0; HEADER_LEN + 2];
-    file.read_at(0, &mut start).map_err(reading)?;
-    let mut header = vec![0; usize::from(u16_at(&start, HEADER_LEN))];
-    file.read_at(0, &mut header).map_err(reading)?;
+fn read_header(file: &FileView, len: u16) -> Result<Vec<u8>> {
+    let mut header = vec![0; usize::from(len)];
+    file.read_at(0, &mut header).map_err(|e| Error::io("reading", e).at("header at byte 0"))?;
     Ok(header)
 }
 
-/// The extended records that the header counts; `None` if not all of them are in the file, or the header is
-/// older than they are.
-fn extended_records(file: &FileView, header: &[u8]) -> Result<Option<RecordList>> {
-    if header.len() < EVLR_COUNT + 4 {
+/// The extended records that the header counts; `None` if there are none, or not all of them are in the file.
+fn extended_records(file: &FileView, raw: &RawHeader) -> Result<Option<RecordList>> {
+    if raw.extended == 0 {
         return Ok(None);
     }
-    let (start, count) = (u64_at(header, EVLR_START), u32_at(header, EVLR_COUNT));
-    let list = RecordList::read(file, start, file.len(), count, true)?;
-    Ok((list.records.len() == count as usize).then_some(list))
+    let list = RecordList::read(file, raw.extended_start, file.len(), raw.extended, true)?;
+    Ok((list.records.len() == raw.extended as usize).then_some(list))
 }
 
 fn put(header: &mut [u8], at: usize, value: &[u8]) {
     header[at..at + value.len()].copy_from_slice(value);
-}
-
-fn u16_at(bytes: &[u8], at: usize) -> u16 {
-    u16::from_le_bytes(*bytes[at..].first_chunk().expect("the header is longer"))
-}
-
-fn u32_at(bytes: &[u8], at: usize) -> u32 {
-    u32::from_le_bytes(*bytes[at..].first_chunk().expect("the header is longer"))
-}
-
-fn u64_at(bytes: &[u8], at: usize) -> u64 {
-    u64::from_le_bytes(*bytes[at..].first_chunk().expect("the header is longer"))
 }

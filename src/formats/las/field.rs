@@ -18,6 +18,10 @@ const TEXT: usize = 160;
 /// Its bits of options.
 const HAS_NO_DATA: u8 = 1;
 const HAS_SCALE: u8 = 8;
+const HAS_OFFSET: u8 = 16;
+
+/// The name of bytes without a meaning, as readers here call them.
+const UNKNOWN_NAME: &str = "extra_bytes";
 
 /// Kinds of fields: bytes without a meaning, and integers of 32 bits.
 const KIND_BYTES: u8 = 0;
@@ -84,8 +88,7 @@ pub(crate) fn with_field(
             ));
             break;
         };
-        let name = description[NAME..NAME + TEXT_LEN].split(|&byte| byte == 0).next().unwrap_or_default();
-        if name == short(&field.name) {
+        if name_of(description) == short(&field.name) {
             let what =
                 format!("the points have a field {} already: give the new one another --name", field.name);
             return Err(Error::usage(what));
@@ -93,15 +96,40 @@ pub(crate) fn with_field(
         all.extend_from_slice(description);
         left = after;
     }
-    while left > 0 {
-        let len = left.min(usize::from(u8::MAX));
-        let mut bytes = [0; DESCRIPTION_LEN];
-        (bytes[KIND], bytes[OPTIONS]) = (KIND_BYTES, len as u8);
-        all.extend_from_slice(&bytes);
-        left -= len;
-    }
+    describe_unknown(&mut all, left, field);
     all.extend_from_slice(&field.description());
     Ok(all)
+}
+
+fn name_of(description: &[u8]) -> &[u8] {
+    description[NAME..NAME + TEXT_LEN].split(|&byte| byte == 0).next().unwrap_or_default()
+}
+
+/// Appends descriptions of `left` bytes without a meaning. Their names are unused: readers tell fields apart
+/// by their names.
+fn describe_unknown(all: &mut Vec<u8>, mut left: usize, field: &ExtraField) {
+    let numbered = (2..).map(|number| format!("{UNKNOWN_NAME}_{number}"));
+    let mut names = std::iter::once(UNKNOWN_NAME.to_string()).chain(numbered);
+    while left > 0 {
+        let is_used = |name: &str| {
+            name == field.name || all.chunks_exact(DESCRIPTION_LEN).any(|one| name_of(one) == name.as_bytes())
+        };
+        let name = names.find(|name| !is_used(name)).unwrap_or_default();
+        let mut bytes = [0; DESCRIPTION_LEN];
+        let len = unknown_len(left);
+        (bytes[KIND], bytes[OPTIONS]) = (KIND_BYTES, len);
+        bytes[NAME..NAME + name.len()].copy_from_slice(name.as_bytes());
+        all.extend_from_slice(&bytes);
+        left -= usize::from(len);
+    }
+}
+
+/// The most bytes without a meaning, at most `left`, that one description may count. The count is where other
+/// kinds have their options, and laspy (2.7) takes it for these too: it must not look like scale or offset.
+fn unknown_len(left: usize) -> u8 {
+    let len = left.min(usize::from(u8::MAX)) as u8;
+    let taken_for = HAS_SCALE | HAS_OFFSET;
+    if len & taken_for == 0 { len } else { len & !(2 * HAS_OFFSET - 1) | (HAS_SCALE - 1) }
 }
 
 /// Bytes in a record of the field that a description tells of; `None` if its kind is unknown.
@@ -134,9 +162,31 @@ mod tests {
     fn bytes_without_a_description_get_one() {
         let (all, notices) = with(&[], 300, &field()).unwrap();
         let found: Vec<_> = all.chunks(DESCRIPTION_LEN).map(|one| (one[KIND], one[OPTIONS])).collect();
-        assert_eq!(found, [(KIND_BYTES, 255), (KIND_BYTES, 45), (KIND_I32, HAS_NO_DATA | HAS_SCALE)]);
-        assert!(all[2 * DESCRIPTION_LEN + NAME..].starts_with(b"height\0"));
+        let bytes = |len| (KIND_BYTES, len);
+        let height = (KIND_I32, HAS_NO_DATA | HAS_SCALE);
+        assert_eq!(found, [bytes(231), bytes(69), height]);
+        let names: Vec<_> = all.chunks(DESCRIPTION_LEN).map(name_of).collect();
+        assert_eq!(names, [&b"extra_bytes"[..], b"extra_bytes_2", b"height"]);
         assert_eq!(notices, 0);
+    }
+
+    #[test]
+    fn counts_of_bytes_look_like_no_options() {
+        for len in 1..=600 {
+            let (all, _) = with(&[], len, &field()).unwrap();
+            let (_, bytes) = all.as_chunks::<DESCRIPTION_LEN>().0.split_last().unwrap();
+            assert!(bytes.iter().all(|one| one[OPTIONS] & (HAS_SCALE | HAS_OFFSET) == 0), "{len}");
+            assert_eq!(bytes.iter().map(|one| usize::from(one[OPTIONS])).sum::<usize>(), len);
+        }
+    }
+
+    #[test]
+    fn names_of_bytes_are_unused() {
+        let named = |name: &str| ExtraField { name: name.into(), ..field() };
+        let one = named("extra_bytes_2").description();
+        let (all, _) = with(&one, 4 + 9, &named("extra_bytes")).unwrap();
+        let names: Vec<_> = all.chunks(DESCRIPTION_LEN).map(name_of).collect();
+        assert_eq!(names, [&b"extra_bytes_2"[..], b"extra_bytes_3", b"extra_bytes_4", b"extra_bytes"]);
     }
 
     #[test]

@@ -3,10 +3,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use laz::LazVlr;
+use laz::{DecompressionSelection, LazVlr};
 
 use crate::las::fields;
 use crate::las::index::Part;
+use crate::las::laz_chunks::Chunks;
+use crate::las::laz_codec::Codec;
 use crate::las::laz_salvage;
 use crate::las::laz_table;
 use crate::las::raw::{HEADER_LEN_MIN, RawHeader};
@@ -28,11 +30,15 @@ const EXTRA_BYTES: (&[u8], u16) = (b"LASF_Spec", 4);
 /// User and number of the records with an index: COPC, and LAStools.
 const COPC: (&[u8], u16) = (b"copc", 1);
 pub(crate) const LAX: (&[u8], u16) = (b"LAStools", 30);
+/// Steps from the offset that must be finite numbers: as many as grids of streams need.
+const STEPS_MAX: f64 = (1u64 << 51) as f64;
 const GLOBAL_ENCODING_WKT: u16 = 1 << 4;
 
 /// What reading the points needs.
 #[derive(Debug, Clone)]
 pub(crate) struct LasHeader {
+    /// The fields as the file states them.
+    pub(crate) raw: RawHeader,
     /// Point data record format, 0 to 10.
     pub(crate) format: u8,
     /// Length of a point record in bytes.
@@ -107,6 +113,7 @@ impl LasHeader {
         let records = Records::read(file, &raw, notices)?;
         let coordinates = coordinates(&raw)?;
         let mut header = LasHeader {
+            raw,
             format,
             record_len,
             points: count(&raw, format, notices),
@@ -161,9 +168,9 @@ impl LasHeader {
             }
             return Ok(());
         }
-        if self.laz.is_some() {
+        if let Some(laszip) = &self.laz {
             // How many points there are is known when they are decompressed.
-            return if room == 0 { Err(self.truncated(file)) } else { Ok(()) };
+            return if room == 0 { Err(self.truncated(file)) } else { self.check_chunks(file, laszip) };
         }
         let whole = room / record_len;
         if whole < self.points {
@@ -179,6 +186,19 @@ impl LasHeader {
             ));
         }
         Ok(())
+    }
+
+    /// Checks how points are compressed, and that the chunks and their table are in the file. Whether there
+    /// are all points without a table is known when they are decompressed.
+    fn check_chunks(&self, file: &FileView, laszip: &Laszip) -> Result<()> {
+        Codec::new(laszip.vlr.clone(), self, DecompressionSelection::all())?;
+        if self.is_salvaged || !laszip.is_chunked {
+            return Ok(());
+        }
+        if let Some(table) = laz_table::stated_beyond(file, self.points_start)? {
+            return Err(self.truncated(file).at(format!("chunk table stated at byte {table}")));
+        }
+        Chunks::find(file, self, laszip).map(drop)
     }
 
     /// Keeps the first points, if there are any and they are wanted.
@@ -197,10 +217,18 @@ impl LasHeader {
             true => "the file ends",
             false => "other data start",
         };
-        Error::malformed(format!(
+        self.cut(Error::malformed(format!(
             "truncated: the header states {} points of {} bytes from byte {} on, {end} at byte {}",
             self.points, self.record_len, self.points_start, self.points_end
-        ))
+        )))
+    }
+
+    /// The error of a file that was cut off, with a remedy.
+    pub(crate) fn cut(&self, error: Error) -> Error {
+        match self.is_salvaged {
+            true => error,
+            false => error.noting("spfinalize --salvage takes the points before the cut"),
+        }
     }
 }
 
@@ -234,15 +262,24 @@ fn coordinates(raw: &RawHeader) -> Result<Coordinates> {
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
         if !(scale[axis] > 0.0 && scale[axis].is_finite()) {
             return Err(Error::malformed(format!(
-                "header at byte {}: scale of {name} is {}, expected a positive number",
+                "header at byte {}: scale of {name} is {:?}, expected a positive number",
                 131 + 8 * axis,
                 scale[axis]
             )));
         }
         if !offset[axis].is_finite() {
             return Err(Error::malformed(format!(
-                "header at byte {}: offset of {name} is {}, expected a finite number",
+                "header at byte {}: offset of {name} is {:?}, expected a finite number",
                 155 + 8 * axis,
+                offset[axis]
+            )));
+        }
+        if !(offset[axis].abs() + scale[axis] * STEPS_MAX).is_finite() {
+            return Err(Error::usage(format!(
+                "header at byte {}: a scale of {name} of {:?} with an offset of {:?} leads beyond numbers of \
+                 64 bits: correct the header",
+                131 + 8 * axis,
+                scale[axis],
                 offset[axis]
             )));
         }
@@ -286,8 +323,13 @@ impl Records {
         let mut at = raw.extended_start;
         for index in 0..raw.extended {
             let Some(next) = records.read_one(file, at, file.len(), true, notices)? else {
+                let without_index = match records.indices.copc.take() {
+                    Some(_) => ", and the COPC index is left out: all points are read",
+                    None => "",
+                };
                 notices.push(format!(
-                    "the header states {} extended variable length records, only {index} fit into the file",
+                    "the header states {} extended variable length records, only {index} fit into the file: \
+                     it was cut off after its points, or the header is wrong{without_index}",
                     raw.extended
                 ));
                 break;

@@ -1,6 +1,6 @@
 //! Where the chunks of a LAZ file are: its chunk table, checked against the file.
 
-use std::io::{BufReader, Seek, SeekFrom};
+use std::io::{BufReader, ErrorKind, Seek, SeekFrom};
 
 use laz::laszip::ChunkTable;
 
@@ -116,7 +116,10 @@ fn read_table(file: &FileView, header: &LasHeader, laszip: &Laszip, table: u64) 
     input.seek(SeekFrom::Start(table)).map_err(|e| Error::io("reading", e))?;
     let entries = guarded(|| ChunkTable::read(&mut &mut input, fixed.is_none()))
         .map_err(|panic| Error::malformed(format!("damaged ({panic})")))?
-        .map_err(|e| Error::io("reading", e))?;
+        .map_err(|e| match e.kind() {
+            ErrorKind::UnexpectedEof => header.cut(Error::malformed("truncated: the file ends inside")),
+            _ => Error::io("reading", e),
+        })?;
     let mut chunks = Vec::with_capacity(count as usize);
     let (mut at, mut left) = (start, header.points);
     for (index, entry) in entries.as_ref().iter().enumerate() {

@@ -17,20 +17,32 @@ pub(crate) fn room(file: &FileView, points_start: u64, points_end: u64) -> Resul
     Ok(end.saturating_sub(start))
 }
 
+/// The position of the chunk table that is stated before the points, if it is beyond the end of the file and
+/// there is no other one: then the file was cut off.
+pub(crate) fn stated_beyond(file: &FileView, points_start: u64) -> Result<Option<u64>> {
+    let is_missing = table_position(file, points_start)?.is_none();
+    let stated = u64::try_from(stated_at(file, points_start)?).ok();
+    Ok(stated.filter(|&position| is_missing && position > points_start))
+}
+
 /// The position of the chunk table, read from before the points or, if the writer could not seek back, from
 /// the end of the file. `None` if neither position lies between the points and the end of the file.
 pub(crate) fn table_position(file: &FileView, points_start: u64) -> Result<Option<u64>> {
     let start = points_start + TABLE_POSITION_LEN;
     for at in [points_start, file.len().saturating_sub(TABLE_POSITION_LEN)] {
-        let mut bytes = [0; TABLE_POSITION_LEN as usize];
-        file.read_at(at, &mut bytes)
-            .map_err(|e| Error::io("reading the position of the chunk table", e).at(format!("byte {at}")))?;
-        let position = i64::from_le_bytes(bytes);
-        if let Ok(position) = u64::try_from(position)
+        if let Ok(position) = u64::try_from(stated_at(file, at)?)
             && (start..file.len().saturating_sub(7)).contains(&position)
         {
             return Ok(Some(position));
         }
     }
     Ok(None)
+}
+
+/// The position stated at a byte; negative if its writer could not seek back.
+fn stated_at(file: &FileView, at: u64) -> Result<i64> {
+    let mut bytes = [0; TABLE_POSITION_LEN as usize];
+    file.read_at(at, &mut bytes)
+        .map_err(|e| Error::io("reading the position of the chunk table", e).at(format!("byte {at}")))?;
+    Ok(i64::from_le_bytes(bytes))
 }

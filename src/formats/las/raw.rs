@@ -17,6 +17,9 @@ const HEADER_LEN_MAX: usize = 375;
 /// Bytes up to the end of the version.
 const VERSION_END: usize = 26;
 
+/// Where the header states its length.
+const HEADER_LEN_AT: usize = 94;
+
 /// The header in messages.
 const PLACE: &str = "header at byte 0";
 
@@ -63,6 +66,10 @@ impl RawHeader {
                 return Err(Error::malformed(format!("LAS {major}.{minor}, expected 1.0 to 1.4")));
             }
         };
+        read_start(file, &mut bytes[..HEADER_LEN_MIN])?;
+        // A header that states to be shorter than those of its version has none of the fields after its end.
+        let stated = usize::from(LE::read_u16(&bytes[HEADER_LEN_AT..]));
+        let len = if len <= stated { len } else { HEADER_LEN_MIN };
         read_start(file, &mut bytes[..len])?;
         let header = RawHeader::of(&bytes);
         if u64::from(header.header_len) > file.len() {
@@ -76,7 +83,7 @@ impl RawHeader {
         let numbers = |at: [usize; 3]| at.map(|at| LE::read_f64(&bytes[at..]));
         RawHeader {
             global_encoding: LE::read_u16(&bytes[6..]),
-            header_len: LE::read_u16(&bytes[94..]),
+            header_len: LE::read_u16(&bytes[HEADER_LEN_AT..]),
             points_start: LE::read_u32(&bytes[96..]),
             records: LE::read_u32(&bytes[100..]),
             format: bytes[104],

@@ -47,11 +47,13 @@ impl LineSystem {
         if found.is_empty() {
             return Ok(None);
         }
-        let (of_lines, of_points) = (name(&of_lines), name(&of_points));
         Err(Error::usage(format!(
-            "the lines are in {of_lines}{remark}, the points in {of_points} ({}): transform the lines, for \
-             example with ogr2ogr -t_srs {of_points}",
-            found.join(", ")
+            "the lines are in {}{remark}, the points in {} ({}): transform the lines, for example with \
+             ogr2ogr -t_srs{}",
+            name(&of_lines),
+            name(&of_points),
+            found.join(", "),
+            of_points.argument()
         ))
         .of_input(file))
     }

@@ -6,7 +6,7 @@ use crate::molecules::{Radii, RadiusCounts, Selected, Selection, read_structure_
 use crate::source::pass::{BATCH_POINTS, Content, Opening, Pass, Sort, Stated};
 use crate::source::placement::Placement;
 use crate::source::row_plan::{RowPlan, offers_of};
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_stream::Crs;
 use spmesh_stream::model::attributes::{Attribute, NumberType};
 use spmesh_stream::model::bounds::{Bounds, Point};
@@ -39,7 +39,12 @@ pub(crate) fn open(file: &Opening, notices: &mut Vec<String>) -> Result<Content>
     }
     let others = structure.models[0].points.len() - points.len();
     if others > 0 {
-        notices.push(format!("{others} atoms at other alternate locations are left out"));
+        let others = counted(
+            others as u64,
+            "atom at another alternate location is",
+            "atoms at other alternate locations are",
+        );
+        notices.push(format!("{others} left out"));
     }
     let stated = Stated {
         coordinates: structure.coordinates,

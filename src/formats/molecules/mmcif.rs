@@ -9,7 +9,7 @@ use crate::molecules::decimal::Number;
 use crate::molecules::mmcif_tables::{Column, Tables, column};
 use crate::text::lines::Lines;
 use crate::twin::tokens::unexpected;
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted};
 
 /// The items of `_atom_site` that are used, in the order of [`ITEMS`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,8 +122,8 @@ impl<R: Read> MmcifReader<'_, R> {
         self.builder.end(self.tokens.unended());
         if self.blocks > 1 {
             let others = self.blocks - 1;
-            self.builder
-                .warn(format!("{others} more data blocks have atoms; only those of the first are read"));
+            let others = counted(others as u64, "more data block has", "more data blocks have");
+            self.builder.warn(format!("{others} atoms; only those of the first are read"));
         }
         if self.blocks == 0 && self.is_core {
             return Err(Error::malformed(

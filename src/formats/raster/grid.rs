@@ -112,9 +112,11 @@ impl Grid {
         // A window of width zero gets one column, and likewise one row.
         let counts = [0, 1].map(|axis| (high[axis] - low[axis]).max(1.0));
         if counts.iter().any(|&count| count.is_nan() || count > CELLS_MAX) {
+            // A count beyond all rasters in few digits.
+            let [columns, rows] =
+                counts.map(|count| if count < 1e15 { count.to_string() } else { format!("{count:.0e}") });
             return Err(Error::usage(format!(
-                "{} by {} cells of size {step} are more than a raster can have: take larger cells",
-                counts[0], counts[1]
+                "{columns} by {rows} cells of size {step} are more than a raster can have: take larger cells"
             )));
         }
         Ok(Grid {

@@ -31,11 +31,12 @@ impl Grid {
             return Ok(grid);
         }
         let name = |system: &System| system.name().unwrap_or_else(|| "a system without a name".to_string());
-        let (of_file, of_data) = (name(&of_file), name(&of_data));
         let message = format!(
-            "its cells are in {of_file}, the data in {of_data} ({}): warp it first, for example with gdalwarp -t_srs \
-             {of_data}",
-            found.join(", ")
+            "its cells are in {}, the data in {} ({}): warp it first, for example with gdalwarp -t_srs{}",
+            name(&of_file),
+            name(&of_data),
+            found.join(", "),
+            of_data.argument()
         );
         located(path, Err(Error::usage(message)))
     }

@@ -86,12 +86,14 @@ pub(crate) fn common<'s>(
             continue;
         };
         first.check(&member)?;
-        if first.has_heights() == member.has_heights() {
-            continue;
+        let (of_first, of_member) = (first.heights(), member.heights());
+        if of_first != of_member {
+            let without = if of_first < of_member { first } else { &member };
+            without_heights = without_heights.or(Some(without.name));
         }
-        let (with, without) = if member.has_heights() { (&member, first) } else { (first, &member) };
-        without_heights = without_heights.or(Some(without.name));
-        found = Some(with.clone());
+        if first.rank() < member.rank() {
+            found = Some(member);
+        }
     }
     let Some(member) = found.as_ref().or(silent.as_ref()) else { return Ok(Crs::Unknown) };
     if let (Some(first), Some(silent)) = (&found, &silent) {
@@ -125,8 +127,15 @@ impl Member<'_> {
         }
     }
 
-    fn has_heights(&self) -> bool {
-        self.system.vertical.is_some()
+    /// How much it says of heights: nothing, their unit, or what they are.
+    fn heights(&self) -> u8 {
+        self.system.vertical.as_ref().map_or(0, |vertical| if vertical.is_only_unit() { 1 } else { 2 })
+    }
+
+    /// How much it says: of heights, and whether x and y have a code. So the order of files does not matter.
+    fn rank(&self) -> (u8, bool) {
+        let has_code = self.system.horizontal.as_ref().is_some_and(|horizontal| horizontal.code.is_some());
+        (self.heights(), has_code)
     }
 
     fn check(&self, other: &Member) -> Result<()> {
@@ -139,7 +148,7 @@ impl Member<'_> {
         let what = if found.is_empty() { String::new() } else { format!(" ({})", found.join("; ")) };
         Err(Error::usage(format!(
             "the coordinate reference systems differ: {} in {}, {} in {}{what}: transform one of them, or state the \
-             system of all with --crs",
+             system of all with spfinalize --crs",
             name(self),
             self.name,
             name(other),

@@ -1,5 +1,7 @@
 //! What is left of a file that was cut off.
 
+use spmesh_base::error::counted;
+
 /// What a file has before it was cut off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Cut {
@@ -12,9 +14,8 @@ pub(crate) struct Cut {
 impl Cut {
     /// A message for the user.
     pub(crate) fn describe(&self, file: &str) -> String {
-        match self.lost {
-            Some(lost) => format!("{file} was cut off: read {} points, lost {lost}", self.read),
-            None => format!("{file} was cut off: read {} points, lost an unknown number", self.read),
-        }
+        let read = counted(self.read, "point", "points");
+        let lost = self.lost.map_or("an unknown number".to_string(), |lost| lost.to_string());
+        format!("{file} was cut off: read {read}, lost {lost}")
     }
 }

@@ -32,7 +32,13 @@ pub(crate) fn describe(
                 let Stated { coordinates, bounds, .. } = *file.stated;
                 Member { name: file.name.to_string(), coordinates, bounds }
             };
-            grid::common(&files.iter().map(member).collect::<Vec<_>>(), options.dims)?
+            // Files without points need no grid, unless all are.
+            let has_points = |file: &&File| file.stated.points != Some(0);
+            let mut members: Vec<Member> = files.iter().filter(has_points).map(member).collect();
+            if members.is_empty() {
+                members.extend(files.first().map(member));
+            }
+            grid::common(&members, options.dims)?
         }
     };
     let offers: Vec<_> = files.iter().map(|file| (file.name, &file.stated.offers[..])).collect();

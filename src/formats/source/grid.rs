@@ -135,7 +135,7 @@ fn conflict(members: &[Member], dims: u8) -> Error {
     let last = last.min(members.len() - 1);
     let other = &members[last];
     let pair = |first: &Member| [first.clone(), other.clone()];
-    let remedy = "choose one with --scale and --offset";
+    let remedy = "choose one with --scale and --offset of spfinalize";
     match members[..last].iter().find(|first| joint(&pair(first), dims).is_none()) {
         Some(first) => Error::usage(format!(
             "{} and {} have no common grid of 32 bits ({}; {}): {remedy}",

@@ -135,7 +135,7 @@ impl Placement {
         {
             return Err(Error::usage(format!(
                 "coordinates {stored:?} are {placed:?} steps of the common grid, beyond 32 bits: \
-                 give a coarser --scale or another --offset"
+                 give spfinalize a coarser --scale or another --offset"
             )));
         }
         batch.push(placed);

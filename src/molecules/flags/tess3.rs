@@ -21,7 +21,7 @@ use balls::BallFlags;
 use method::MethodFlags;
 use picture::PictureFlags;
 use selection::SelectionFlags;
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_base::parallel::available_threads;
 use spmesh_formats::drivers::Format;
@@ -307,11 +307,11 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
     let before = if skipped > 0 { format!(", {skipped} had been done before") } else { String::new() };
     let summary = if shown == Path::new("-") { String::new() } else { format!("; see {}", shown.display()) };
     if failed > 0 {
-        let files = done + skipped + failed;
-        let message = format!("{failed} of {files} files failed{before}{summary}");
+        let files = counted(done + skipped + failed, "file", "files");
+        let message = format!("{failed} of {files} failed{before}{summary}");
         return Ok(Finished { stats, failure: Some(Error::new(ErrorKind::Io, message)) });
     }
-    flags.notice(&format!("{done} files done{before}{summary}"));
+    flags.notice(&format!("{} done{before}{summary}", counted(done, "file", "files")));
     Ok(Finished { stats, failure: None })
 }
 

@@ -27,6 +27,7 @@ pub use spheres::{Measure, measure};
 
 use std::time::Duration;
 
+use spmesh_base::error::counted;
 use spmesh_delaunay::predicates::PredicateCounts;
 use spmesh_formats::molecules::{RadiusCounts, Selection};
 use spmesh_formats::sink::TableFormat;
@@ -154,7 +155,8 @@ impl Report {
         }
         if self.left_out > 0 {
             let reason = "rounding leaves the border of their surface in doubt";
-            texts.push(format!("{} atoms are left out of the mesh: {reason}", self.left_out));
+            let atoms = counted(self.left_out, "atom is", "atoms are");
+            texts.push(format!("{atoms} left out of the mesh: {reason}"));
         }
         if self.is_of_cells {
             return texts;
@@ -172,7 +174,8 @@ impl Report {
         if self.hull_facets == 0 {
             let few = self.vertices < 4;
             let reason = if few { "fewer than four different points" } else { "all points in a plane" };
-            texts.push(format!("no tetrahedra: {reason} ({} points)", self.atoms));
+            let points = counted(self.atoms, "point", "points");
+            texts.push(format!("no tetrahedra: {reason} ({points})"));
         }
         texts
     }

@@ -10,7 +10,7 @@ use std::time::Instant;
 use clap::Args;
 
 use crate::reduce::{Duplicates, Options, Part, Stats, missing_region};
-use spmesh_base::error::Error;
+use spmesh_base::error::{Error, counted};
 use spmesh_base::output::Output;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
@@ -182,7 +182,8 @@ impl<const D: usize> Tool<D> {
         let say = |message: String| notice(self.name, &flags.common, &message);
         if stats.simplices == 0 && !is_partial {
             let reason = self.reasons[usize::from(stats.vertices > D as u64)];
-            say(format!("no {}: {reason} ({} points)", self.simplices, stats.points));
+            let points = counted(stats.points, "point", "points");
+            say(format!("no {}: {reason} ({points})", self.simplices));
         }
         if stats.root_points >= MANY && 2 * stats.root_points > stats.points {
             let (waited, points) = (stats.root_points, stats.points);
@@ -191,10 +192,17 @@ impl<const D: usize> Tool<D> {
                 "{waited} of {points} points waited in memory for the end, as points on {places} do"
             ));
         }
+        if stats.by_order > 0 {
+            let points = counted(stats.by_order, "point coincides", "points coincide");
+            say(format!(
+                "{points} in x and y with an earlier one that has another elevation, which stays: it depends \
+                 on the order of points (with --duplicates lowest, highest or mean, it does not)"
+            ));
+        }
         if stats.outside > 0 {
-            let points = stats.outside + stats.points;
+            let points = counted(stats.outside + stats.points, "point", "points");
             let outside = stats.outside;
-            say(format!("{outside} of {points} points lie outside of the region: left to other regions"));
+            say(format!("{outside} of {points} lie outside of the region: left to other regions"));
         }
     }
 }

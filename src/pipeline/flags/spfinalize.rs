@@ -17,7 +17,7 @@ use crate::finalize::{
 use crate::lines::write_report;
 use groups::{AreaFlags, WaterFlags, WeightFlags};
 use planning::PlanFlags;
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_base::parallel::available_threads;
 use spmesh_base::system;
@@ -232,7 +232,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     let lacking = stats.spilled_points - stats.cold_points;
     if lacking > 0 {
-        let message = format!("{lacking} points waited in a temporary file, for lack of --memory");
+        let lacking = counted(lacking, "point", "points");
+        let message = format!("{lacking} waited in a temporary file, for lack of --memory");
         notice(TOOL, &flags.common, &message);
     }
     flags.stats.print(|| figures::report(&stats, &dropped, &lines));

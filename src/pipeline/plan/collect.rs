@@ -8,7 +8,7 @@ use super::make::options_text;
 use super::{Maker, NodeReport, Plan, Work};
 use crate::finalize::Recipe;
 use crate::reduce::Duplicates;
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_formats::source::{Manifest, ManifestPart};
 
@@ -71,8 +71,11 @@ pub fn collect(
     let simplices: u64 = reports.iter().map(|report| report.simplices).sum();
     let dropped: u64 = reports.iter().map(|report| report.dropped).sum();
     let (points, parts) = (plan.points, reports.len());
+    let (parts, simplices) =
+        (counted(parts as u64, "part", "parts"), counted(simplices, "simplex", "simplices"));
+    let points = counted(points, "point", "points");
     note(&format!(
-        "{parts} parts, {simplices} simplices; {points} points, all accounted for ({dropped} dropped, {} merged)",
+        "{parts}, {simplices}; {points}, all accounted for ({dropped} dropped, {} merged)",
         manifest.merged
     ));
     Ok(())

@@ -18,6 +18,7 @@ use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::inputs;
 use spmesh_base::output::{Output, create_folder, remove_earlier};
 use spmesh_base::system;
+use spmesh_base::temporary::remove_orphans;
 use spmesh_formats::source::Plain;
 use spmesh_stream::StreamReader;
 use spmesh_stream::model::bounds::Region;
@@ -77,6 +78,7 @@ impl<'a> Maker<'a> {
             return Err(Error::usage("points of space have no elevation: --duplicates first or error"));
         }
         create_folder(&work.folder)?;
+        remove_orphans(&work.folder);
         let folder = Folder { path: &work.folder, plan };
         Ok(Maker { folder, work, options: options_text(work.duplicates), recipe, note })
     }

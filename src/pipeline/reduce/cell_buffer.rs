@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::duplicates::Merged;
 use super::merging::Merging;
 use super::residual::Residual;
 use spmesh_base::error::{Error, Result};
@@ -34,7 +35,7 @@ pub(super) struct CellBuffer<const D: usize> {
     held_max: usize,
     accepted: u64,
     outside: u64,
-    merged: u64,
+    merged: Merged,
 }
 
 impl<const D: usize> CellBuffer<D> {
@@ -51,7 +52,7 @@ impl<const D: usize> CellBuffer<D> {
             held_max: 0,
             accepted: 0,
             outside: 0,
-            merged: 0,
+            merged: Merged::default(),
         }
     }
 
@@ -74,7 +75,7 @@ impl<const D: usize> CellBuffer<D> {
         self.bounds = Some(self.bounds.map_or(*bounds, |all| all.union(*bounds)));
         self.held_max = self.held_max.max(self.held());
         let merged = self.merging.merge(&mut self.current)?;
-        self.accepted += merged;
+        self.accepted += merged.points;
         self.merged += merged;
         Ok(())
     }
@@ -113,7 +114,7 @@ impl<const D: usize> CellBuffer<D> {
     }
 
     /// Points merged with others that they coincide with.
-    pub(super) fn merged(&self) -> u64 {
+    pub(super) fn merged(&self) -> Merged {
         self.merged
     }
 

@@ -25,6 +25,23 @@ pub enum Duplicates {
     Error,
 }
 
+/// Points that became part of the vertex of others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Merged {
+    /// Their number.
+    pub(super) points: u64,
+    /// Those whose elevation is lost only because they are not the first, which depends on the order of
+    /// points.
+    pub(super) by_order: u64,
+}
+
+impl std::ops::AddAssign for Merged {
+    fn add_assign(&mut self, other: Merged) {
+        self.points += other.points;
+        self.by_order += other.by_order;
+    }
+}
+
 impl Duplicates {
     /// Sets the elevation of each vertex. `duplicates` are pairs of a point and the vertex that it coincides
     /// with. The vertex is the first of the coinciding points. With `weights`, it gets the row of the
@@ -39,7 +56,8 @@ impl Duplicates {
         duplicates: &mut [[u32; 2]],
         coordinates: &Coordinates,
         weights: Option<Weights>,
-    ) -> Result<()> {
+    ) -> Result<Merged> {
+        let merged = Merged { points: duplicates.len() as u64, by_order: 0 };
         if self == Duplicates::Error
             && let Some(&[_, vertex]) = duplicates.first()
         {
@@ -54,10 +72,10 @@ impl Duplicates {
         }
         if let Some(weights) = weights {
             keep_heaviest(points, duplicates, weights);
-            return Ok(());
+            return Ok(merged);
         }
         if matches!(self, Duplicates::First | Duplicates::Error) {
-            return Ok(());
+            return Ok(Merged { by_order: unequal(points, duplicates), ..merged });
         }
         duplicates.sort_unstable_by_key(|&[point, vertex]| (vertex, point));
         let mut group = Vec::new();
@@ -77,7 +95,7 @@ impl Duplicates {
             }
             points.elevation[vertex] = chosen;
         }
-        Ok(())
+        Ok(merged)
     }
 
     /// The elevation of a group, independent of the order of its points.
@@ -90,6 +108,12 @@ impl Duplicates {
             Duplicates::Mean => mean(group, coordinates),
         }
     }
+}
+
+/// How many points have another elevation than the vertex that they coincide with.
+fn unequal<const D: usize>(points: &Residual<D>, duplicates: &[[u32; 2]]) -> u64 {
+    let elevation = |index: u32| points.elevation.get(index as usize);
+    duplicates.iter().filter(|&&[point, vertex]| elevation(point) != elevation(vertex)).count() as u64
 }
 
 /// Gives each vertex the row of the first of the heaviest points at its place.
@@ -125,7 +149,11 @@ mod tests {
         elevations.iter().for_each(|&z| points.extend_raw(&[[3.0, 4.0, z]], &[]));
         let mut pairs: Vec<_> = (1..elevations.len() as u32).rev().map(|i| [i, 0]).collect();
         let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
-        policy.settle(&mut points, &mut pairs, &grid, None).map(|()| points.elevation[0])
+        let merged = policy.settle(&mut points, &mut pairs, &grid, None)?;
+        assert_eq!(merged.points, pairs.len() as u64);
+        let differ = elevations.iter().filter(|&&z| z != elevations[0]).count();
+        assert_eq!(merged.by_order, if policy == Duplicates::First { differ as u64 } else { 0 });
+        Ok(points.elevation[0])
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Points that coincide are merged while they wait, so that a cell of a few places, each with any number of
 //! points, takes little memory.
 
-use super::duplicates::Duplicates;
+use super::duplicates::{Duplicates, Merged};
 use super::residual::Residual;
 use spmesh_base::error::Result;
 use spmesh_stream::{Coordinates, Weights};
@@ -28,17 +28,17 @@ impl Merging {
         self.next = FEW;
     }
 
-    /// Merges raw points that coincide, if they are twice as many as after the last time; returns how many
+    /// Merges raw points that coincide, if they are twice as many as after the last time; returns those that
     /// are gone. The mean of elevations needs all of them, so with that policy none is merged here.
-    pub(super) fn merge<const D: usize>(&mut self, points: &mut Residual<D>) -> Result<u64> {
+    pub(super) fn merge<const D: usize>(&mut self, points: &mut Residual<D>) -> Result<Merged> {
         if points.len() < self.next || self.policy == Duplicates::Mean {
-            return Ok(0);
+            return Ok(Merged::default());
         }
         let mut pairs = coinciding(&points.at);
-        self.policy.settle(points, &mut pairs, &self.coordinates, self.weights)?;
+        let merged = self.policy.settle(points, &mut pairs, &self.coordinates, self.weights)?;
         points.remove(pairs.iter().map(|pair| pair[0]));
         self.next = FEW.max(2 * points.len());
-        Ok(pairs.len() as u64)
+        Ok(merged)
     }
 }
 
@@ -60,7 +60,7 @@ mod tests {
         raw.extend_raw(points, &[]);
         let mut merging = Merging::new(policy, Coordinates::F64, None);
         let gone = merging.merge(&mut raw).expect("a policy that allows them");
-        ((0..raw.len()).map(|i| raw.point(i)).collect(), gone)
+        ((0..raw.len()).map(|i| raw.point(i)).collect(), gone.points)
     }
 
     #[test]

@@ -3,6 +3,7 @@
 mod written;
 
 use super::bulk::{Bulk, Facet, WallSide};
+use super::duplicates::Merged;
 use super::misfit::{Misfit, overlap};
 use super::patches::{Flush, PatchBuilder};
 use super::residual::Residual;
@@ -57,8 +58,8 @@ pub(super) struct Solved<const D: usize> {
     pub(super) residual: Residual<D>,
     /// For each point of the residual that is not raw, the reference that stands for its id.
     pub(super) references: Vec<u64>,
-    /// Number of points merged into others.
-    pub(super) merged: u64,
+    /// Points merged into others.
+    pub(super) merged: Merged,
 }
 
 impl<const D: usize> Solved<D> {
@@ -139,7 +140,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             return Err(overlap(points, pair[0], pair[1]));
         }
         let Rules { coordinates, weights, .. } = &self.rules;
-        self.rules.duplicates.settle(points, duplicates, coordinates, *weights)?;
+        let merged = self.rules.duplicates.settle(points, duplicates, coordinates, *weights)?;
         self.find_holes(&points.walls)?;
         let everything = *region == Region::EVERYTHING && !self.rules.is_partial;
         self.builder.start(points.len(), self.rules.code, self.bulk.hidden().len(), flush.is_some());
@@ -149,8 +150,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             let written = self.bulk.take_written(|simplex| states[simplex] == SimplexState::Open)?;
             if let Some(mut written) = written {
                 self.write_all(&mut written, points, &mut blocks, flush)?;
-                let merged_at_root = self.bulk.duplicates().len();
-                return Ok(Solved { blocks, merged: merged_at_root as u64, ..Solved::default() });
+                return Ok(Solved { blocks, merged, ..Solved::default() });
             }
         }
         self.bulk.arrange();
@@ -166,7 +166,6 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         self.write_rest(points, &mut blocks, flush)?;
         self.find_walls(points, everything);
         let (residual, references) = self.residual(number, points);
-        let merged = self.bulk.duplicates().len() as u64;
         Ok(Solved { blocks, residual, references, merged })
     }
 

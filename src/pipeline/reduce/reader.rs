@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::io::Read;
 
 use super::cell_buffer::CellBuffer;
+use super::duplicates::Merged;
 use super::merging::Merging;
 use super::residual::Residual;
 use spmesh_base::error::Result;
@@ -41,7 +42,7 @@ pub(super) struct InputSummary<const D: usize> {
     pub(super) accepted: u64,
     pub(super) outside: u64,
     /// Points merged with others that they coincide with.
-    pub(super) merged: u64,
+    pub(super) merged: Merged,
     /// Most points held at once.
     pub(super) held_max: usize,
     pub(super) cells: u64,

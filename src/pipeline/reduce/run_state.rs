@@ -130,7 +130,7 @@ impl<const D: usize> Run<D> {
         sequencer.add_to(&mut stats);
         stats.level = self.level;
         stats.points = ended.accepted;
-        stats.merged += ended.merged;
+        stats.count(ended.merged);
         stats.outside = ended.outside;
         stats.held_max = ended.held_max as u64;
         stats.cells = ended.cells;

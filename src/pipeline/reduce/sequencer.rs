@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::Write;
 
+use super::duplicates::Merged;
 use super::node::Solved;
 use super::patches::OWN;
 use super::residual::{Residual, UNWRITTEN, foreign_id};
@@ -53,7 +54,7 @@ pub(super) struct Sequencer<W: Write> {
     shared: Shared,
     /// Where the residual goes, if not into the stream itself.
     residual: Option<StreamWriter<W>>,
-    merged: u64,
+    merged: Merged,
     live: u64,
     live_max: u64,
     points: usize,
@@ -72,7 +73,7 @@ impl<W: Write> Sequencer<W> {
             left: BTreeMap::new(),
             ids: Vec::new(),
             first: 0,
-            merged: 0,
+            merged: Merged::default(),
             live: 0,
             live_max: 0,
             points: 0,
@@ -185,7 +186,7 @@ impl<W: Write> Sequencer<W> {
 
     /// Adds the figures of the output to `stats`.
     pub(super) fn add_to(&self, stats: &mut Stats) {
-        stats.merged += self.merged;
+        stats.count(self.merged);
         stats.width = self.live_max;
         stats.residual_max = self.points_max as u64;
         stats.active_max = self.active_max as u64;

@@ -1,5 +1,6 @@
 //! Figures of a run, for `--stats`.
 
+use super::duplicates::Merged;
 use spmesh_delaunay::predicates::PredicateCounts;
 
 /// Figures of one run of the reduction.
@@ -10,6 +11,9 @@ pub struct Stats {
     pub points: u64,
     /// Points merged with another one that they coincide with (in the plane: in x and y).
     pub merged: u64,
+    /// Those of them that lost their elevation to that of a point that comes before, with
+    /// [`Duplicates::First`](crate::reduce::Duplicates::First).
+    pub by_order: u64,
     /// Points left out because they lie outside of the region.
     pub outside: u64,
     /// Vertices written.
@@ -48,4 +52,12 @@ pub struct Stats {
     pub width: u64,
     /// Decisions of the predicates, by stage.
     pub predicates: PredicateCounts,
+}
+
+impl Stats {
+    /// Adds merged points.
+    pub(super) fn count(&mut self, merged: Merged) {
+        self.merged += merged.points;
+        self.by_order += merged.by_order;
+    }
 }

@@ -1,6 +1,7 @@
 //! One worker: triangulates one node after the other.
 
 use super::bulk::Bulk;
+use super::duplicates::Merged;
 use super::node::{Solved, Solver};
 use super::patches::Flush;
 use super::residual::{Residual, UNWRITTEN};
@@ -77,5 +78,5 @@ fn passed_up<const D: usize>(residual: Residual<D>, mut blocks: PatchBlocks) -> 
     blocks.clear();
     let reference = |(number, &key): (u64, &u64)| if key == UNWRITTEN { UNWRITTEN } else { number };
     let references = (0..).zip(&residual.keys).map(reference).collect();
-    Solved { blocks, residual, references, merged: 0 }
+    Solved { blocks, residual, references, merged: Merged::default() }
 }

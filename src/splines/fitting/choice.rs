@@ -225,7 +225,7 @@ impl<S: FnMut(f64) -> Result<f64>> Walk<S> {
                 return score;
             }
             Ok(_) => Error::usage(
-                "there are no more observations than effective coefficients: give fewer knots, or a \
+                "there are no more observations than effective coefficients: give more observations, or a \
                  number as --lambda",
             ),
             Err(error) => error,

@@ -67,7 +67,7 @@ pub fn bounds<O: Observations + ?Sized>(observations: &O) -> Result<[Point2; 2]>
     }
     if !(lower[0] < upper[0] && lower[1] < upper[1]) {
         return Err(Error::usage(format!(
-            "all observations have the same x or y: they are between {} {} and {} {}, which is no area",
+            "all observations have the same x or y: {:?} {:?} to {:?} {:?}, which is no area",
             lower[0], lower[1], upper[0], upper[1]
         )));
     }

@@ -281,7 +281,7 @@ impl<'a> Equations<'a> {
             "knots that are on one line except for rounding leave narrow functions between them: smooth with \
              a lambda above zero, or move these knots off the line"
         } else if self.energy.is_some() && lambda > self.unit() {
-            "smooth with a lesser lambda, which leaves observations some weight"
+            "the lambda of this fit leaves observations no weight, a lesser one (--lambda) leaves them some"
         } else if self.energy.is_some() {
             "smooth with a greater lambda, or give more observations"
         } else {

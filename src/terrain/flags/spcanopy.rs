@@ -10,7 +10,7 @@ use super::sheets::SheetFlags;
 use crate::canopy::{Settings, draw, thresholds};
 use crate::dem::{Method, Options, Quantity, Sample};
 use crate::height::{Ground, HeightPoints, about_below};
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result, counted};
 use spmesh_formats::detect::SPCANOPY;
 use spmesh_formats::raster::{Grid, RasterFormat, Window};
 use spmesh_formats::source::{Filters, Input, SourceOptions};
@@ -176,7 +176,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let committed = output.commit()?;
     notices.iter().for_each(|text| flags.notice(text));
     if points.outside() > 0 {
-        flags.notice(&format!("{} points outside of the ground were left out", points.outside()));
+        let outside =
+            counted(points.outside(), "point outside of the ground was", "points outside of the ground were");
+        flags.notice(&format!("{outside} left out"));
     }
     let below = about_below(points.below(), points.points());
     below.iter().for_each(|text| flags.notice(text));

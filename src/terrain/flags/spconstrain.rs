@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Parser;
 
 use crate::constrain::{CutOptions, Options, Stats, constrain};
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_base::system;
 use spmesh_pipeline::flags::lines::{LineFlags, summary};
@@ -161,10 +161,10 @@ fn about_open(stats: &Stats) -> String {
 /// The notice about vertices that do not have the elevation of their line.
 fn about_draped(stats: &Stats) -> String {
     format!(
-        "{} vertices that divide lines between vertices of the mesh took the elevation of the surface: \
+        "{} lines between vertices of the mesh took the elevation of the surface: \
          shores of water are not level there. Give spfinalize the same lines and --densify, and the \
          polygons of --hull and --holes as --lines",
-        stats.draped
+        counted(stats.draped, "vertex that divides", "vertices that divide")
     )
 }
 
@@ -175,9 +175,8 @@ fn about_divided(stats: &Stats, densify: Option<f64>) -> String {
         Some(_) => "a lesser --densify leaves fewer of them, and --kill removes those with long edges",
     };
     format!(
-        "rings of --hull or --holes leave the mesh and divide {} triangles on the way, which stay whole: \
-         {remedy}",
-        stats.divided
+        "rings of --hull or --holes leave the mesh and divide {} whole: {remedy}",
+        counted(stats.divided, "triangle on the way, which stays", "triangles on the way, which stay")
     )
 }
 

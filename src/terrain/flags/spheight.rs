@@ -131,6 +131,7 @@ struct Sums {
     files: u64,
     points: u64,
     outside: u64,
+    without: u64,
     output_bytes: u64,
 }
 
@@ -166,11 +167,12 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         sums.files += 1;
         sums.points += counts.points;
         sums.outside += counts.outside;
+        sums.without += counts.without;
         sums.output_bytes += bytes;
     }
     drop(progress);
     if sums.outside > 0 {
-        flags.notice(&flags.about_outside(sums.outside));
+        flags.notice(&flags.about_outside(&sums, ground.triangles() > 0));
     }
     flags.stats.print(|| Report::of(started.elapsed()).counts(counts(&sums, &ground, reader.bytes_read())));
     Ok(())
@@ -282,12 +284,21 @@ impl Flags {
         self.outside.unwrap_or(if self.replace_z { Outside::Nearest } else { Outside::NoData })
     }
 
-    fn about_outside(&self, count: u64) -> String {
-        let points = if count == 1 { "1 point is".to_string() } else { format!("{count} points are") };
-        let what = if self.outside() == Outside::Nearest {
-            "heights there are those above its nearest place"
-        } else {
-            "they have no height (--outside nearest gives them that above its nearest place)"
+    fn about_outside(&self, sums: &Sums, has_triangles: bool) -> String {
+        let points = match sums.outside {
+            1 => "1 point is".to_string(),
+            count => format!("{count} points are"),
+        };
+        let is_nearest = self.outside() == Outside::Nearest;
+        let what = match sums.without {
+            _ if !has_triangles => "they have no height, as it has no triangles".to_string(),
+            _ if !is_nearest => {
+                "they have no height (--outside nearest gives them that above its nearest place)".to_string()
+            }
+            0 => "heights there are those above its nearest place".to_string(),
+            far => {
+                format!("heights there are those above its nearest place, but {far} are too far away for one")
+            }
         };
         format!("{points} outside of the ground: {what}")
     }

@@ -41,6 +41,11 @@ impl Box2 {
         (self.min[0] <= x) & (x <= self.max[0]) & (self.min[1] <= y) & (y <= self.max[1])
     }
 
+    /// Whether its sides have lengths, which are finite.
+    pub(super) fn has_sides(&self) -> bool {
+        (0..2).all(|axis| (self.max[axis] - self.min[axis]).is_finite())
+    }
+
     /// Length of its longer side.
     #[inline]
     pub(super) fn longer_side(&self) -> f64 {

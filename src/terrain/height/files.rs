@@ -49,6 +49,8 @@ pub struct Counts {
     pub points: u64,
     /// Those that are outside of the mesh.
     pub outside: u64,
+    /// Those without a height.
+    pub without: u64,
     /// Those with a height below zero.
     pub below: u64,
     /// What of the file could not be kept.
@@ -119,6 +121,7 @@ pub fn write_heights<W: Write + Seek>(
             for (record, &height) in records.chunks_exact(record_len).zip(heights) {
                 let index = counts.points;
                 counts.points += 1;
+                counts.without += u64::from(height.is_nan());
                 counts.below += u64::from(height < 0.0);
                 let stored = stored(height, &options.place).map_err(|e| e.at(format!("record {index}")))?;
                 match options.place {
@@ -155,7 +158,7 @@ fn stored(height: f64, place: &HeightPlace) -> Result<i32> {
     if f64::from(stored) == height && stored != ExtraField::NO_DATA {
         return Ok(stored);
     }
-    Err(Error::usage(format!("a height of {height} steps of z needs more than 32 bits")))
+    Err(Error::usage(format!("a height of {height:?} steps of z needs more than 32 bits")))
 }
 
 /// Heights of the points of records, in steps of the file's z.

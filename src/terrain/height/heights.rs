@@ -7,7 +7,7 @@ use super::boxes::Box2;
 use super::ground::Ground;
 use super::nearest::Nearest;
 use super::point_grid::{PointGrid, Rows, height_of, set_height};
-use super::surface::{PLAIN_MAX, height, plain_shares, rounded, shares};
+use super::surface::{PLAIN_MAX, beyond_numbers, height, plain_shares, rounded, shares};
 use spmesh_base::error::Result;
 use spmesh_delaunay::parallel;
 use spmesh_stream::model::bounds::Point;
@@ -76,6 +76,9 @@ impl<'g> Heights<'g> {
     /// # Errors
     /// If the temporary file fails; usage, if coordinates are too great or too small to interpolate between.
     pub fn of(&mut self, points: &[Point], heights: &mut Vec<f64>) -> Result<u64> {
+        if !points.is_empty() && !Box2::of(points).has_sides() {
+            return Err(beyond_numbers());
+        }
         self.grid.fill(points);
         let parts = self.threads.get().min(points.len() / SHARE_MIN).max(1);
         let (blocks, unit) = (self.blocks, self.unit);

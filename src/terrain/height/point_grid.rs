@@ -54,7 +54,7 @@ pub(super) fn height_of(&[x, _, height]: &Point) -> Option<f64> {
 }
 
 impl PointGrid {
-    /// Replaces the points. Domain: coordinates are finite.
+    /// Replaces the points. Domain: coordinates are finite, and so are the sides of their box.
     pub(super) fn fill(&mut self, points: &[Point]) {
         self.points.resize(points.len(), [0.0; 3]);
         self.numbers.resize(points.len(), 0);

@@ -68,7 +68,12 @@ pub(super) fn height(corners: &[Point; 3], shares: [f64; 3], point: &Point) -> R
     if height.is_finite() {
         return Ok(height);
     }
-    Err(Error::usage("coordinates are too great or too small to interpolate between: shift and scale them"))
+    Err(beyond_numbers())
+}
+
+/// The error of coordinates that numbers of 64 bits cannot interpolate between.
+pub(super) fn beyond_numbers() -> Error {
+    Error::usage("coordinates are too great or too small to interpolate between: shift and scale them")
 }
 
 /// A height in units of `steps` steps, rounded to the nearest integer, half away from zero: exactly, if all

@@ -55,12 +55,13 @@ const TILE_BYTE_COUNTS: u16 = 325;
 const EXTRA_SAMPLES: u16 = 338;
 const SAMPLE_FORMAT: u16 = 339;
 
-/// Tags of GeoTIFF, and GDAL's tag for cells without data.
+/// Tags of GeoTIFF, and GDAL's tags for the unit of cells and for cells without data.
 pub(super) const PIXEL_SCALE: u16 = 33550;
 pub(super) const TIEPOINT: u16 = 33922;
 pub(super) const KEY_DIRECTORY: u16 = 34735;
 pub(super) const KEY_DOUBLES: u16 = 34736;
 pub(super) const KEY_TEXTS: u16 = 34737;
+const GDAL_METADATA: u16 = 42112;
 const GDAL_NO_DATA: u16 = 42113;
 
 /// Takes tiles in any order.
@@ -238,6 +239,7 @@ impl Tiles<'_> {
 fn directories(file: &RasterFile, levels: &[Level]) -> Vec<Directory> {
     let mut directories: Vec<Directory> = levels.iter().map(|level| describe(level, file)).collect();
     directories[0].extend(refer(&file.grid, &file.reference.keys));
+    directories[0].extend(file.reference.unit.as_deref().map(unit_of_cells));
     let overviews = directories.iter_mut().skip(1);
     overviews.for_each(|directory| directory.push((NEW_SUBFILE_TYPE, Values::Longs(vec![REDUCED_IMAGE]))));
     directories
@@ -274,6 +276,14 @@ fn describe(level: &Level, file: &RasterFile) -> Directory {
         _ => (GDAL_NO_DATA, Values::Text(file.no_data().to_string())),
     });
     tags
+}
+
+/// The tag that names the unit of cells, in XML.
+fn unit_of_cells(unit: &str) -> (u16, Values) {
+    let unit: String =
+        unit.chars().filter(|c| c.is_ascii_graphic() && !"<>&".contains(*c) || *c == ' ').collect();
+    let item = format!("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>");
+    (GDAL_METADATA, Values::Text(format!("<GDALMetadata>\n  {item}\n</GDALMetadata>\n")))
 }
 
 /// The tags that georeference the cells.

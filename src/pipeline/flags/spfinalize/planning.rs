@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::{Flags, TOOL, flags_of};
 use crate::plan::{NodeKind, Plan, Planning, plan_of};
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_formats::source::Survey;
 use spmesh_shell::endings;
@@ -57,7 +57,11 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     }
     if survey.notices.len() > NOTICES_MAX {
         let more = survey.notices.len() - NOTICES_MAX;
-        notice(TOOL, &flags.common, &format!("{more} more notices like these"));
+        notice(
+            TOOL,
+            &flags.common,
+            &format!("{} like these", counted(more as u64, "more notice", "more notices")),
+        );
     }
     let leaf_points = flags.plan.leaf_points.unwrap_or(LEAF_POINTS);
     let arguments = arguments_beside(&flags.inputs)?;

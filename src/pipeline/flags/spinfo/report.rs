@@ -392,7 +392,10 @@ fn crs_json(crs: &Crs) -> Value {
 }
 
 fn words(values: &[f64]) -> String {
-    let words: Vec<String> = values.iter().map(f64::to_string).collect();
+    // Scales of hundreds of digits tell no one anything.
+    let is_short = |value: f64| value == 0.0 || (1e-20..1e20).contains(&value.abs());
+    let word = |&value: &f64| if is_short(value) { value.to_string() } else { format!("{value:e}") };
+    let words: Vec<String> = values.iter().map(word).collect();
     format!("({})", words.join(", "))
 }
 

@@ -18,8 +18,9 @@ use spmesh_shell::{Common, named, progress::Progress};
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
-Splines are not extrapolated: outside of the domain, sites and arrays get nan, cells of rasters no data, \
-and cells as text are left out. A cell has the value at its centre.
+Outside of the domain of the knots, sites and arrays get nan, cells of rasters no data, and cells as text are \
+left out. Inside of it there are values also far from all points: these are extrapolated. A cell has the value at \
+its centre.
 
 Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north. \
 Curvatures are those of normal sections along the steepest descent (profile) and across it (tangential), \

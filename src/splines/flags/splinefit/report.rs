@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use crate::fitting::{Choice, FailedTrial};
 use crate::splinefit::{EXCESS_MAX, Extent, Fitted, PERCENTILES, Report, Spline, Statistics};
+use spmesh_base::error::counted;
 use spmesh_shell::peak_memory;
 use spmesh_shell::stats::{self, Row};
 
@@ -26,7 +27,11 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
             (false, is_reached) => format!(
                 "{knots} knots (at most {most}), {functions} functions, tolerance {}: {}",
                 short(tolerance),
-                if is_reached { "reached".into() } else { format!("{above} points are farther off") }
+                if is_reached {
+                    "reached".into()
+                } else {
+                    format!("{} farther off", counted(above, "point is", "points are"))
+                }
             ),
         });
     }
@@ -69,7 +74,7 @@ fn of_choice(choice: &Choice, tension: f64) -> Vec<String> {
     if let Some(first) = choice.failed.first() {
         let all = choice.failed.len() + choice.trials.len();
         notices.push(format!(
-            "{} of {all} trials of lambda failed; lambda {}: {}",
+            "the search passed over {} of {all} values of lambda, as no spline has them; of {} it found: {}",
             choice.failed.len(),
             short(first.lambda),
             first.reason

@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 
 use crate::contours::{self, Levels, LineFormat, Options, Stats, epsg_code};
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_shell::open_stream;
 use spmesh_shell::outline::{OutlineFlags, length};
@@ -150,7 +150,12 @@ fn summary(stats: &Stats) -> String {
         Some([least, greatest]) if stats.lines == 0 => {
             format!("no lines: elevations are from {least} to {greatest}")
         }
-        _ => format!("{} lines ({} rings) at {} levels", stats.lines, stats.rings, stats.levels),
+        _ => format!(
+            "{} ({}) at {}",
+            counted(stats.lines, "line", "lines"),
+            counted(stats.rings, "ring", "rings"),
+            counted(stats.levels, "level", "levels")
+        ),
     }
 }
 

@@ -20,8 +20,8 @@ pub(super) struct QuantityFlags {
     #[arg(long, value_enum, value_name = "KIND")]
     kind: Option<KindFlag>,
 
-    /// What of the surface over a cell its elevation is, also where slopes and the like follow from it: the elevation at
-    /// the centre, or the mean, the least or the greatest over the part that the mesh covers [default: centre]
+    /// The elevation of a cell: that of the surface at its centre, or the mean, the least or the greatest
+    /// over the part of the cell that the mesh covers. Slopes and the like follow from it [default: centre]
     #[arg(long, value_name = "WHAT", conflicts_with_all = ["contours", "fill", "interpolation"])]
     #[arg(value_parser = named(SAMPLES))]
     sample: Option<Sample>,
