@@ -15,6 +15,7 @@ mod prepare;
 mod report;
 mod rivers;
 mod sections;
+mod stated;
 mod stations;
 mod water;
 
@@ -33,6 +34,7 @@ use grid::Grid;
 pub use levels::Levels;
 use numbered::Bent;
 pub use report::write_report;
+pub use stated::{ABOUT_FAR, is_far};
 pub use water::{Water, WaterPolygon};
 
 /// The stream that lines are for.
@@ -113,7 +115,7 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     banks::close(&mut files);
     let grid = Grid::of(target, files.iter().flat_map(|(_, _, file)| &file.lines));
     changes.notices.extend(grid.notice());
-    let rings = areas::rings(&files)?;
+    let (rings, shores) = (areas::rings(&files)?, areas::shores(&files));
     let features = features::features(&files, target)?;
     let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
     let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
@@ -122,12 +124,14 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     if rings.is_empty() && features.is_empty() {
         let noded =
             node_lines(Cow::Owned(vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
-        return Ok(Lines { network: network(noded, &grid), changes, ..Lines::default() });
+        let areas = Areas { shores, ..Areas::default() };
+        return Ok(Lines { network: network(noded, &grid), areas, changes, ..Lines::default() });
     }
     let noded =
         node_lines(Cow::Borrowed(&vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
     let bent = Bent::new(&noded, &vertices, &starts);
-    let (areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
+    let (mut areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
+    areas.shores = shores;
     Ok(Lines { network: network(noded, &grid), areas, water, changes })
 }
 

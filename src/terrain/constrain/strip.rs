@@ -9,6 +9,7 @@ use spmesh_delaunay::constrained2::{Host, Piece, Region};
 use spmesh_delaunay::network::{Network, NetworkSegment, elevation_between};
 use spmesh_delaunay::order::{Curve, SpatialOrder};
 use spmesh_delaunay::predicates::{Extent, Point2, lexicographic};
+use spmesh_pipeline::lines::is_far;
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::Point;
 use std::cmp::Ordering;
@@ -26,14 +27,17 @@ pub(super) struct Strip {
     pub(super) pieces: Vec<Piece>,
     /// Segments that leave the region before they reach a vertex.
     pub(super) open: Vec<u32>,
+    /// Vertices with elevations that are far from those of the triangle that they are in.
+    pub(super) far: u64,
     /// For each piece whether the part of a ring crosses it that leaves the mesh; empty if there is none.
     pub(super) crossed: Vec<OfAreas>,
 }
 
 /// The constrained triangulation of `triangles`.
 ///
-/// Vertices with elevations come first, and the segments between them. The others take their elevation from
-/// this surface.
+/// Vertices with elevations come first, and the segments, as far as they lead from one vertex on them to the
+/// next. The others take their elevation from this surface. So a shore whose vertices are in the mesh already
+/// bounds its water, whether its file states elevations or not.
 pub(super) fn triangulate(
     triangles: &[Held],
     holding: &Holding,
@@ -46,14 +50,17 @@ pub(super) fn triangulate(
     let vertices = work.new_vertices(triangles, lines);
     let z_of = |new: &New, lines: &Lines| lines.network.vertices[new.vertex as usize].z;
     let (hard, soft): (Vec<New>, Vec<New>) = vertices.into_iter().partition(|new| z_of(new, lines).is_some());
+    let mut far = 0;
     for new in hard {
         let z = z_of(&new, lines).expect("the vertex has an elevation");
+        far += u64::from(is_far(coordinates, z, work.range_of(new.triangle)));
         work.add(&new, z, lines, &mut region);
     }
     if !soft.is_empty() {
-        let mut parts = work.parts(triangles, lines);
-        parts.retain(|part| lines.network.segments[part.segment as usize].is_hard);
+        let parts = work.parts(triangles, lines);
+        // What leads to a vertex that is still missing is no leaving part.
         work.constrain(&parts, lines, &mut region)?;
+        work.open.clear();
         let elevations: Vec<f64> =
             soft.iter().map(|new| work.elevation(new, lines, &region, coordinates)).collect();
         for (new, z) in soft.iter().zip(elevations) {
@@ -64,7 +71,7 @@ pub(super) fn triangulate(
     work.constrain(&parts, lines, &mut region)?;
     let (pieces, crossed) = (region.pieces().collect(), rings.leaving(triangles, &region, lines));
     let Work { corners, places, new, open, .. } = work;
-    Ok(Strip { corners, places, new, pieces, open, crossed })
+    Ok(Strip { corners, places, new, pieces, open, far, crossed })
 }
 
 /// As many vertices are inserted in any order.
@@ -142,6 +149,12 @@ impl Work {
 
     fn places_of(&self, triangle: u32) -> [Point2; 3] {
         self.triangles[triangle as usize].map(|point| self.places[point as usize])
+    }
+
+    /// The least and the greatest elevation of the corners of a triangle.
+    fn range_of(&self, triangle: u32) -> [f64; 2] {
+        let of = self.triangles[triangle as usize].map(|point| self.elevations[point as usize]);
+        of.iter().fold([of[0]; 2], |[least, most], &z| [least.min(z), most.max(z)])
     }
 
     /// The vertices of the network that are in triangles of the region, in their order.

@@ -11,7 +11,7 @@ use spmesh_base::output::Output;
 use spmesh_base::places::check_apart;
 use spmesh_base::system;
 use spmesh_pipeline::flags::lines::{LineFlags, summary};
-use spmesh_pipeline::lines::{self, Lines, Sources, Target, write_report};
+use spmesh_pipeline::lines::{self, ABOUT_FAR, Lines, Sources, Target, write_report};
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::open_stream;
@@ -140,6 +140,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if stats.draped > 0 {
         flags.notice(&about_draped(&stats));
     }
+    if stats.far > 0 {
+        flags.notice(&about_far(&stats));
+    }
     if stats.divided > 0 {
         flags.notice(&about_divided(&stats, flags.lines.densify));
     }
@@ -169,6 +172,14 @@ fn about_draped(stats: &Stats) -> String {
     )
 }
 
+/// The notice about stated elevations.
+fn about_far(stats: &Stats) -> String {
+    format!(
+        "{} vertices took elevations from lines that are far from the surface there. Check them; {ABOUT_FAR}",
+        stats.far
+    )
+}
+
 /// The notice about triangles that rings divide.
 fn about_divided(stats: &Stats, densify: Option<f64>) -> String {
     let remedy = match densify {
@@ -182,7 +193,7 @@ fn about_divided(stats: &Stats, densify: Option<f64>) -> String {
     )
 }
 
-fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 18] {
+fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 19] {
     [
         ("triangles read", "triangles_read", stats.triangles[0]),
         ("triangles written", "triangles", stats.triangles[1]),
@@ -197,6 +208,7 @@ fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 18] 
         ("line vertices in the mesh", "vertices_found", stats.found),
         ("line vertices added", "vertices_added", stats.added),
         ("line vertices off their line", "vertices_draped", stats.draped),
+        ("elevations far from the mesh", "far", stats.far),
         ("line vertices outside", "vertices_outside", stats.outside),
         ("elevations taken from lines", "raised", stats.raised),
         ("input (bytes)", "input_bytes", input_bytes),
