@@ -220,8 +220,8 @@ fn about_far(stated: &[Point], around: Vec<Option<[f64; 2]>>, coordinates: &Coor
 }
 
 impl Flatten {
-    /// Finds the levels, from those of `points` that are near a shore if none are stated. Leaves water without
-    /// points out.
+    /// Finds the levels, from those of `points` that are near a shore if none are stated. Leaves water
+    /// without points out.
     fn levels(
         &self,
         network: &Network,

@@ -75,14 +75,15 @@ impl Relief {
         }
     }
 
-    /// The least and the greatest elevation around each vertex: in the least square of cells around it, of some
-    /// sizes, that has a few points. `None` where no square has as many.
+    /// The least and the greatest elevation around each vertex: in the least square of cells around it, of
+    /// some sizes, that has a few points, or else on the whole grid. `None` if that has no points.
     pub(super) fn around(mut self, vertices: &[Point]) -> Vec<Option<[f64; 2]>> {
         let mut found = vec![None; vertices.len()];
         while !self.cells.is_empty() {
+            let few = if self.cells.len() == 1 { 1 } else { FEW };
             for (vertex, found) in vertices.iter().zip(&mut found) {
                 let all = || self.find(vertex).map(|at| self.square(at));
-                *found = found.or_else(|| all().filter(|it| it.points >= FEW).map(|it| [it.least, it.most]));
+                *found = found.or_else(|| all().filter(|it| it.points >= few).map(|it| [it.least, it.most]));
             }
             if self.cells.len() == 1 {
                 break;
@@ -127,7 +128,8 @@ mod tests {
         assert_eq!(relief.around(&vertices), [Some([50.0, 58.0]); 2]);
         let mut few = Relief::over(&vertices);
         few.enter(&[0.0, 0.0, 1.0]);
-        assert_eq!(few.around(&vertices), [None; 2]);
+        assert_eq!(few.around(&vertices), [Some([1.0; 2]); 2]);
+        assert_eq!(Relief::over(&vertices).around(&vertices), [None; 2]);
         assert_eq!(Relief::over(&vertices[..1]).around(&vertices[..1]), [None]);
     }
 }

@@ -13,7 +13,8 @@ const FAR_ZERO: f64 = 1.0;
 pub const ABOUT_FAR: &str =
     "an elevation of 0 often means that none is known: leave such out (ogr2ogr -dim XY)";
 
-/// Whether a stored elevation is far from points around it, of which the least and the greatest one are given.
+/// Whether a stored elevation is far from points around it, of which the least and the greatest one are
+/// given.
 pub fn is_far(coordinates: &Coordinates, z: f64, [least, most]: [f64; 2]) -> bool {
     let [z, least, most] = [z, least, most].map(|z| coordinates.to_decimal([0.0, 0.0, z])[2]);
     let limit = if z == 0.0 { FAR_ZERO } else { FAR };

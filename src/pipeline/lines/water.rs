@@ -166,8 +166,8 @@ impl Water {
         ))
     }
 
-    /// Leaves out the polygons that `far` says, and the rivers that lose all of theirs. Returns the vertices of
-    /// the network that only these have.
+    /// Leaves out the polygons that `far` says, and the rivers that lose all of theirs. Returns the vertices
+    /// of the network that only these have.
     pub(crate) fn leave_out(&mut self, far: &[bool], network: &Network) -> BTreeSet<u32> {
         let is_far = |number: &usize| far[*number];
         let of = |river: usize| {

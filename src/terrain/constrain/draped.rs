@@ -11,8 +11,8 @@ const STEPS: f64 = 2.0;
 type Visit = (u32, u32);
 
 /// The number of `added` vertices without an elevation of their own that divide a straight part of a shore
-/// between two other vertices of the mesh, and are higher or lower than both. `elevations` are NaN for vertices
-/// that are not in the mesh now; `shores` are the numbers of lines that may be shores, in order.
+/// between two other vertices of the mesh, and are higher or lower than both. `elevations` are NaN for
+/// vertices that are not in the mesh now; `shores` are the numbers of lines that may be shores, in order.
 pub(super) fn count(network: &Network, mut added: Vec<u32>, elevations: &[f64], shores: &[u32]) -> u64 {
     added.sort_unstable();
     let is_added = |vertex: u32| added.binary_search(&vertex).is_ok();

@@ -5,10 +5,12 @@
 //! triangles pass at once. The others wait (`held`) until all that they are triangulated anew with have come
 //! (`strip`).
 //!
-//! `near` says what of the lines a triangle meets, with the help of `cells`; `writing` makes patches.
+//! `near` says what of the lines a triangle meets, with the help of `cells`; `clip` ends lines at the border
+//! of the mesh; `writing` makes patches.
 
 mod cells;
 mod circle;
+mod clip;
 mod cut;
 mod draped;
 mod held;
@@ -54,14 +56,18 @@ pub struct Stats {
     pub segments: u64,
     /// Segments that are not wholly edges because they leave the mesh.
     pub open_segments: u64,
+    /// Segments that were added beside these, since clipped parts of lines are off them by rounding.
+    pub clipped: u64,
+    /// Vertices that were added where segments leave the mesh.
+    pub ends: u64,
     /// Other segments that are not wholly edges because the triangles on both sides were cut off.
     pub cut_segments: u64,
     /// Vertices of the network that the mesh had.
     pub found: u64,
     /// Vertices of the network that were added to the mesh.
     pub added: u64,
-    /// Of these, vertices that took the elevation of the surface, though they divide a part of a shore between
-    /// two vertices that the mesh had, neither of which is as high or as low.
+    /// Of these, vertices that took the elevation of the surface, though they divide a part of a shore
+    /// between two vertices that the mesh had, neither of which is as high or as low.
     pub draped: u64,
     /// Vertices of the network or on it whose stated elevation is far from that of the mesh.
     pub far: u64,
@@ -108,9 +114,11 @@ pub fn constrain<R: Read, W: Write>(
     let constrained = Some(Constrained { is_cut, kill });
     let compressed = options.compress;
     let header = Header { compressed, constrained, ..header_of(reader.header(), network) };
+    let rings = Rings::new(areas, network.segments.len());
+    let leaving = clip::leaving(network, reader.header().bounds, &rings);
     let mut filter = Filter {
-        lines: Lines::new(network),
-        rings: Rings::new(areas, network.segments.len()),
+        lines: Lines::new(network, leaving),
+        rings,
         holding: Holding::default(),
         live: LiveVertices::new(),
         writing: Writing::new(StreamWriter::new(output, header)?, network, cut)?,
@@ -273,16 +281,21 @@ impl<W: Write> Filter<'_, W> {
 
     /// Triangulates a component anew.
     fn strip(&mut self, triangles: &[Held]) -> Result<()> {
+        let first_clipped = (self.stats.segments + self.stats.clipped) as u32;
+        let (lines, rings) = (&mut self.lines, &self.rings);
         let strip =
-            strip::triangulate(triangles, &self.holding, &mut self.lines, &self.rings, &self.coordinates)?;
+            strip::triangulate(triangles, &self.holding, lines, rings, &self.coordinates, first_clipped)?;
+        self.stats.clipped += strip.clipped.len() as u64;
         self.stats.strips += 1;
         self.stats.added += strip.new.len() as u64;
         self.stats.far += strip.far;
         self.open.extend(&strip.open);
         let network = self.lines.network;
-        strip.new.iter().for_each(|&(vertex, [.., z])| self.elevations[vertex as usize] = z);
+        let new = || strip.new.iter().filter_map(|&(vertex, [.., z])| Some((vertex?, z)));
+        new().for_each(|(vertex, z)| self.elevations[vertex as usize] = z);
+        self.stats.ends += (strip.new.len() - new().count()) as u64;
         let is_soft = |vertex: &u32| network.vertices[*vertex as usize].z.is_none();
-        self.soft.extend(strip.new.iter().map(|(vertex, _)| *vertex).filter(is_soft));
+        self.soft.extend(new().map(|(vertex, _)| vertex).filter(is_soft));
         let ids: Vec<u64> = strip.corners.iter().map(|&corner| self.holding.vertex(corner).id).collect();
         let mut finalized = Vec::new();
         for corner in triangles.iter().flat_map(|held| held.corners) {
@@ -308,7 +321,8 @@ impl<W: Write> Filter<'_, W> {
         let outside = (0..).zip(&network.segments).filter(|(_, segment)| is_open(segment.ends));
         self.open.extend(outside.map(|(number, _)| number));
         self.stats.draped = draped::count(network, self.soft, &self.elevations, shores);
-        self.stats.outside = network.vertices.len() as u64 - self.stats.found - self.stats.added;
+        self.stats.outside =
+            network.vertices.len() as u64 + self.stats.ends - self.stats.found - self.stats.added;
         self.stats.held_max = self.holding.triangles_max as u64;
         self.writing.end(self.open, points + self.stats.added, merged, self.stats)
     }
