@@ -258,8 +258,8 @@ fn bad_banks_are_refused() {
         &[a.clone(), b.clone(), polygon(r#""river":1"#)],
         "feature 0: the river \"1\" has a polygon and a bank",
     );
-    let far: Vec<Line> = [north, south].map(|line| line.map(|[x, y]| [x + 900.0, y]).to_vec()).to_vec();
-    fails(&of(&far[0], &far[1]), "feature 0: no points are near the shore");
+    let around = [250.0, -150.0].map(|y| [[-150.0, y], [250.0, y]]);
+    fails(&of(&around[0], &around[1]), "feature 0: no points are near the shore");
     fails(&of(&[[10.0, 50.0], [10.001, 50.0]], &south), "a bank is at one place of the grid");
     // Lines of another meaning are no banks.
     let file = folder.write("roads.geojson", collection(&[named("north"), soft(left, &south)]));

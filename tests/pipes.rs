@@ -14,6 +14,8 @@ mod lines;
 mod messages;
 #[allow(dead_code, reason = "other test programs use more of it")]
 mod programs;
+mod scenes;
+mod shores;
 mod spconstrain;
 mod system;
 mod water;

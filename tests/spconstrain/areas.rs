@@ -107,11 +107,7 @@ fn what_is_inside_of_areas_stays_or_goes() {
         let found = mesh(&cut).triangles;
         let expected: BTreeSet<_> = expected.into_iter().collect();
         let differing: Vec<_> = found.iter().filter(|&corners| !expected.contains(corners)).collect();
-        let area = |corners: &[[i64; 2]; 3]| {
-            let [a, b, c] = *corners;
-            ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
-        };
-        assert!(differing.iter().all(|corners| area(corners) < 800), "{differing:?}");
+        assert!(differing.iter().all(|corners| twice_area(corners) < 800), "{differing:?}");
         assert!(differing.len() < 5 && found.len().abs_diff(expected.len()) < 5);
     }
 }
@@ -170,6 +166,22 @@ fn polygon_file(folder: &Folder, name: &str, ring: &[[i64; 2]]) -> String {
     folder.path(name)
 }
 
+/// The meshes that a polygon leaves as `--hull` and as `--holes`, and all of their triangles, which cover the
+/// whole mesh.
+fn parted(path: &str, stream: &[u8]) -> ([Vec<u8>; 2], Vec<[[i64; 2]; 3]>) {
+    let cuts = ["--hull", "--holes"].map(|flag| output("spconstrain", &[flag, path], stream));
+    let mut all = cuts.each_ref().map(|cut| mesh(cut).triangles).concat();
+    all.sort_unstable();
+    all.dedup();
+    let area = |triangles: &[[[i64; 2]; 3]]| triangles.iter().map(twice_area).sum::<i64>();
+    assert_eq!(area(&all), area(&mesh(stream).triangles));
+    (cuts, all)
+}
+
+fn twice_area([a, b, c]: &[[i64; 2]; 3]) -> i64 {
+    ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
+}
+
 #[test]
 fn triangles_that_a_ring_divides_where_it_leaves_the_mesh_stay() {
     let (mut divided, mut removed) = (0, 0);
@@ -185,21 +197,20 @@ fn triangles_that_a_ring_divides_where_it_leaves_the_mesh_stay() {
         let corners = 3 + random.below(12) as usize;
         let hull = star(&mut random, centre, 900.0, corners);
         let path = polygon_file(&folder, "area.geojson", &hull);
-        let all = mesh(&output("spconstrain", &["--lines", &path], &stream));
+        let (cuts, all) = parted(&path, &stream);
         let is_divided =
             |corners: &[[i64; 2]; 3]| hull.windows(2).any(|side| divides([side[0], side[1]], corners));
         let of_hull = |corners: &&[[i64; 2]; 3]| {
             is_divided(corners) || is_in(&hull, [0, 1].map(|axis| corners.iter().map(|at| at[axis]).sum()))
         };
-        for (flag, is_hull) in [("--hull", true), ("--holes", false)] {
-            let cut = output("spconstrain", &[flag, &path], &stream);
-            audit(&cut);
+        for (cut, is_hull) in cuts.iter().zip([true, false]) {
+            audit(cut);
             let stays = |corners: &&[[i64; 2]; 3]| is_divided(corners) || of_hull(corners) == is_hull;
-            let expected: Vec<[[i64; 2]; 3]> = all.triangles.iter().filter(stays).copied().collect();
-            assert_eq!(mesh(&cut).triangles, expected, "seed {seed}, {flag}");
-            removed += all.triangles.len() - expected.len();
+            let expected: Vec<[[i64; 2]; 3]> = all.iter().filter(stays).copied().collect();
+            assert_eq!(mesh(cut).triangles, expected, "seed {seed}, {is_hull}");
+            removed += all.len() - expected.len();
         }
-        divided += all.triangles.iter().filter(|corners| is_divided(corners)).count();
+        divided += all.iter().filter(|corners| is_divided(corners)).count();
     }
     assert!(divided > 400 && removed > 5000, "{divided} divided, {removed} removed");
 }
@@ -240,17 +251,16 @@ fn rings_with_vertices_on_the_border_of_the_mesh_leave_it_there() {
         vec![[-100, -100], [300, -100], [300, 300], [-100, 300], [-100, -100]],
     ] {
         let path = polygon_file(&folder, "area.geojson", &ring);
-        let all = mesh(&output("spconstrain", &["--lines", &path], &stream));
-        for (flag, is_hull) in [("--hull", true), ("--holes", false)] {
-            let cut = output("spconstrain", &[flag, &path], &stream);
-            audit(&cut);
+        let (cuts, all) = parted(&path, &stream);
+        for (cut, is_hull) in cuts.iter().zip([true, false]) {
+            audit(cut);
             let stays = |corners: &&[[i64; 2]; 3]| {
                 let middle = [0, 1].map(|axis| corners.iter().map(|at| at[axis]).sum());
                 is_in(&ring, middle) == is_hull
                     || ring.windows(2).any(|side| divides([side[0], side[1]], corners))
             };
-            let expected: Vec<[[i64; 2]; 3]> = all.triangles.iter().filter(stays).copied().collect();
-            assert_eq!(mesh(&cut).triangles, expected, "{ring:?}, {flag}");
+            let expected: Vec<[[i64; 2]; 3]> = all.iter().filter(stays).copied().collect();
+            assert_eq!(mesh(cut).triangles, expected, "{ring:?}, {is_hull}");
         }
     }
 }

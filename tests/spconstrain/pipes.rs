@@ -230,3 +230,55 @@ fn segments_that_leave_the_mesh_are_named() {
     assert!(message.contains("3 of 3 segments leave the mesh"), "{message}");
     audit(&run.stdout);
 }
+
+#[test]
+fn lines_end_at_the_border_of_the_mesh() {
+    let folder = Folder::new();
+    let points = "0 10 10\n100 0 0\n0 90 20\n110 100 5\n40 60 1\n60 30 7\n";
+    folder.file("points.txt", points);
+    // Into the mesh, across it, and along a row; the last one has elevations.
+    folder.file("lines.txt", "soft 50 50 150 55\nsoft -50 21 150 37\nline 20 70 3 -80 70 103\n");
+    let scale = ["--scale", "0.01,0.01,0.01"];
+    for scale in [&[][..], &scale] {
+        let points = output("spfinalize", &[scale, &[&folder.path("points.txt")]].concat(), &[]);
+        let run = crate::programs::run(
+            "spconstrain",
+            &["--lines", &folder.path("lines.txt")],
+            &triangulated(&points),
+        );
+        let (code, message) = crate::programs::outcome(&run);
+        assert_eq!(code, Some(0), "{message}");
+        assert!(message.contains("; 4 new vertices end them at its border"), "{message}");
+        audit(&run.stdout);
+        let edges = String::from_utf8(output("spconvert", &["--to", "geojson", "-"], &run.stdout)).unwrap();
+        let edges: serde_json::Value = serde_json::from_str(&edges).unwrap();
+        let mut lengths = [0.0; 3];
+        for edge in edges["features"].as_array().unwrap() {
+            let at = |end: usize, axis: usize| edge["geometry"]["coordinates"][end][axis].as_f64().unwrap();
+            let line = edge["properties"]["line"].as_u64().unwrap();
+            lengths[line as usize] += (at(1, 0) - at(0, 0)).hypot(at(1, 1) - at(0, 1));
+        }
+        // Up to where the lines cross the hull, whose right side is x = 100 + y / 10, and its left one x = 0.
+        let [first, second] =
+            [(50.0, 0.05, 50.0), (0.0, 0.08, 25.0)].map(|(x, slope, y): (f64, f64, f64)| {
+                let right = (100.0 + (y - slope * x) / 10.0) / (1.0 - slope / 10.0);
+                (right - x) * slope.hypot(1.0)
+            });
+        for (found, expected) in lengths.iter().zip([first, second, 20.0]) {
+            assert!((found - expected).abs() < 0.03, "{lengths:?}, not {expected}");
+        }
+        let ends = places_of(&run.stdout);
+        assert!(ends.contains(&[0.0, 70.0, 23.0]), "{ends:?}");
+    }
+}
+
+/// The vertices of a mesh in world coordinates.
+fn places_of(stream: &[u8]) -> Vec<[f64; 3]> {
+    let text = String::from_utf8(output("spconvert", &["--to", "text"], stream)).unwrap();
+    let rows = text.lines().filter_map(|line| line.strip_prefix("v "));
+    let row = |row: &str| {
+        let mut words = row.split(' ').map(|word| word.parse().unwrap());
+        std::array::from_fn(|_| words.next().unwrap())
+    };
+    rows.map(row).collect()
+}

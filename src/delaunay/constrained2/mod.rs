@@ -100,6 +100,21 @@ impl Region {
         Ok(leaves)
     }
 
+    /// Whether the straight way from a point to a place where there is none stays in the region, and meets
+    /// neither a point nor a segment.
+    pub fn sees(&self, point: u32, place: Point2, predicates: &mut impl Predicates2) -> bool {
+        let is_free = |side: &Side| self.mesh.triangle(side.triangle).segments[side.place] == NONE;
+        self.mesh.copies(point).into_iter().any(|vertex| {
+            let (walk, end) = walk::walk(&self.mesh, vertex, place, predicates);
+            walk.crossed.iter().all(is_free)
+                && match end {
+                    walk::End::Inside(_) => true,
+                    walk::End::On(side) => is_free(&side),
+                    walk::End::Vertex(_) | walk::End::Border(_) => false,
+                }
+        })
+    }
+
     /// The sides on the border now.
     pub fn border(&self) -> impl Iterator<Item = BorderSide> + '_ {
         walk::border(&self.mesh).map(|(side, ends)| BorderSide { side, ends })

@@ -2,6 +2,7 @@
 //!
 //! They come before all others. A point of the input at the place of one of them is left out.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use foldhash::fast::FixedState;
@@ -9,6 +10,7 @@ use std::cmp::Ordering as Order;
 use std::hash::BuildHasher;
 
 use super::passes::{Keep, KeptPoints, Passes};
+use super::relief::Relief;
 use spmesh_base::error::Result;
 use spmesh_formats::source::{Description, PointReader};
 use spmesh_stream::model::bounds::{Bounds, Point};
@@ -25,6 +27,8 @@ pub(super) struct AddedPoints {
     hashes: Vec<u64>,
     /// Points of the input that the last pass left out.
     replaced: AtomicU64,
+    /// The points of the input around these in the last pass.
+    relief: Mutex<Relief>,
 }
 
 impl AddedPoints {
@@ -33,7 +37,7 @@ impl AddedPoints {
         points.sort_unstable_by(by_place);
         // Of other places, one in sixteen or fewer has the hash of one of these.
         let bits = (16 * points.len()).next_power_of_two().max(64);
-        let mut added = AddedPoints { points, hashes: vec![0; bits / 64], replaced: AtomicU64::new(0) };
+        let mut added = AddedPoints { points, hashes: vec![0; bits / 64], ..AddedPoints::default() };
         for index in 0..added.points.len() {
             let hash = added.hash_of(&added.points[index]);
             added.hashes[hash / 64] |= 1 << (hash % 64);
@@ -70,6 +74,11 @@ impl AddedPoints {
     /// After a run: how many points of the input were left out.
     pub(super) fn replaced(&self) -> u64 {
         self.replaced.load(Ordering::Relaxed)
+    }
+
+    /// After a run: the least and the greatest elevation of points of the input around each of some of these.
+    pub(super) fn around(self, points: &[Point]) -> Vec<Option<[f64; 2]>> {
+        self.relief.into_inner().unwrap_or_default().around(points)
     }
 }
 
@@ -108,7 +117,7 @@ impl Passes for WithAdded<'_> {
     }
 
     fn read(&self) -> Result<Box<dyn PointReader + '_>> {
-        let rest = KeptPoints::new(self.input, FreePlaces { added: self.added, replaced: 0 })?;
+        let rest = KeptPoints::new(self.input, FreePlaces::new(self.added))?;
         Ok(Box::new(WithAddedReader { added: &self.added.points, row: &self.row, rest, rows: Vec::new() }))
     }
 
@@ -156,10 +165,18 @@ struct FreePlaces<'a> {
     added: &'a AddedPoints,
     /// Points that were left out.
     replaced: u64,
+    relief: Relief,
+}
+
+impl<'a> FreePlaces<'a> {
+    fn new(added: &'a AddedPoints) -> FreePlaces<'a> {
+        FreePlaces { added, replaced: 0, relief: Relief::over(&added.points) }
+    }
 }
 
 impl Keep for FreePlaces<'_> {
     fn keeps(&mut self, point: &Point) -> bool {
+        self.relief.enter(point);
         let is_free = !self.added.has_place_of(point);
         self.replaced += u64::from(!is_free);
         is_free
@@ -167,6 +184,9 @@ impl Keep for FreePlaces<'_> {
 
     fn end(&mut self) -> Result<()> {
         self.added.replaced.store(self.replaced, Ordering::Relaxed);
+        if let Ok(mut relief) = self.added.relief.lock() {
+            *relief = std::mem::take(&mut self.relief);
+        }
         Ok(())
     }
 }

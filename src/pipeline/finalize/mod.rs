@@ -13,8 +13,8 @@
 //! Polygons may say which points count (`select`), and the points near shores tell the levels of water
 //! (`shores`).
 //!
-//! Points may be added to those of the input, such as the vertices of lines (`added`). A [`Recipe`] is a
-//! whole run over files.
+//! Points may be added to those of the input, such as the vertices of lines (`added`), which are compared
+//! with those around them (`relief`). A [`Recipe`] is a whole run over files.
 //!
 //! The result does not depend on how many points wait in memory or on disk. Counters have 64 bits.
 
@@ -33,6 +33,7 @@ mod pages;
 mod passes;
 mod plan;
 mod recipe;
+mod relief;
 mod run;
 mod select;
 mod shores;

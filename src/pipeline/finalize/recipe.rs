@@ -10,14 +10,14 @@ use super::passes::{Observer, Passes};
 use super::run::Stats;
 use super::run::run_with;
 use super::select::{Areas, Selected};
-use super::shores::{Shores, shore_width};
+use super::shores::{Shores, extent, shore_width, with_points};
 use super::weigh::{Weighed, Weighing};
-use crate::lines::{self, Changes, Levels, Lines, Sources, Target, Water};
+use crate::lines::{self, ABOUT_FAR, Changes, Levels, Lines, Sources, Target, Water, is_far};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::network::Network;
-use spmesh_formats::source::{Dropped, Input, SourceOptions};
+use spmesh_formats::source::{Description, Dropped, Input, SourceOptions};
 use spmesh_stream::Coordinates;
-use spmesh_stream::model::bounds::Point;
+use spmesh_stream::model::bounds::{Bounds, Point};
 
 /// What is finalized, and how.
 #[derive(Debug, Clone)]
@@ -123,18 +123,19 @@ impl Recipe {
     ) -> Result<Outcome> {
         let target = Target::of_points(input.description());
         let (mut areas, notices) = Areas::read(&self.clip, &self.drop_inside, &target)?;
-        let Lines { network, water, changes, .. } = self.read_lines(&target)?;
+        let Lines { network, mut water, changes, .. } = self.read_lines(&target)?;
         notices.iter().chain(&changes.notices).for_each(|message| observer.notice(message));
         let levels = if water.polygons.is_empty() {
             Levels::default()
         } else {
             let points = Selected::new(input, &areas);
-            let levels = self.flatten.levels(&network, &water, &points, observer)?;
+            let levels = self.flatten.levels(&network, &mut water, &points, observer)?;
             areas = areas.with_water(water.edges(&network).into_iter());
             levels
         };
         levels.notices.iter().for_each(|message| observer.notice(message));
-        let added = self.added(&network, &levels, &target);
+        let [all, stated] = self.added(&network, &levels, &water, &target);
+        let added = AddedPoints::new(all);
         let has_lines = !network.vertices.is_empty();
         drop(network);
         let selected = Selected::new(input, &areas);
@@ -151,6 +152,9 @@ impl Recipe {
         let [lakes, rivers] = water.counts();
         let water = (!self.flatten.files.is_empty()).then_some([lakes, rivers, levels.found]);
         let (points, replaced) = (added.len(), added.replaced());
+        if let Some(text) = about_far(&stated, added.around(&stated), &target.coordinates) {
+            observer.notice(&text);
+        }
         Ok(Outcome {
             stats,
             dropped: Drops { areas: selected.dropped(), ..Drops::default() },
@@ -176,39 +180,102 @@ impl Recipe {
         }
     }
 
-    /// The vertices of lines and water that become points.
-    fn added(&self, network: &Network, levels: &Levels, target: &Target) -> AddedPoints {
-        let is_kept = |&point: &Point| {
-            self.source.bounds.is_none_or(|bounds| bounds.contains(target.coordinates.to_decimal(point)))
+    /// The vertices of lines and water that become points, and those of them whose elevation a file states.
+    fn added(&self, network: &Network, levels: &Levels, water: &Water, target: &Target) -> [Vec<Point>; 2] {
+        let of_water = water.stated_vertices(network);
+        let is_kept = |point: &Point| {
+            self.source.bounds.is_none_or(|bounds| bounds.contains(target.coordinates.to_decimal(*point)))
         };
-        let points = (0..).zip(&network.vertices).filter_map(|(number, vertex)| {
-            let [x, y] = vertex.place;
-            Some([x, y, levels.elevations.get(&number).copied().or(vertex.z)?])
-        });
-        AddedPoints::new(points.filter(is_kept).collect())
+        let [mut all, mut stated] = [Vec::new(), Vec::new()];
+        for (number, vertex) in (0..).zip(&network.vertices) {
+            let z = levels.elevations.get(&number).copied().or(vertex.z);
+            let point = z.map(|z| [vertex.place[0], vertex.place[1], z]);
+            let Some(point) = point.filter(is_kept).filter(|_| !levels.left_out.contains(&number)) else {
+                continue;
+            };
+            all.push(point);
+            if vertex.z.is_some() || of_water.contains(&number) {
+                stated.push(point);
+            }
+        }
+        [all, stated]
     }
 }
 
+/// What is to be said about stated elevations that are far from those of the points around them.
+fn about_far(stated: &[Point], around: Vec<Option<[f64; 2]>>, coordinates: &Coordinates) -> Option<String> {
+    let pairs = stated.iter().zip(around);
+    let mut far = pairs.filter_map(|(&point, around)| {
+        around.filter(|&around| is_far(coordinates, point[2], around)).map(|around| (point, around))
+    });
+    let (first, around) = far.next()?;
+    let [x, y, z] = coordinates.to_decimal(first);
+    let [least, most] = around.map(|z| coordinates.to_decimal([0.0, 0.0, z])[2]);
+    Some(format!(
+        "{} of {} elevations that lines and water state are far from those of the points around, the first at \
+         {x}, {y}: {z}, amid points from {least} to {most}. Check them; {ABOUT_FAR}",
+        far.count() + 1,
+        stated.len()
+    ))
+}
+
 impl Flatten {
-    /// Finds the levels, from those of `points` that are near a shore if none are stated.
+    /// Finds the levels, from those of `points` that are near a shore if none are stated. Leaves water
+    /// without points out.
     fn levels(
         &self,
         network: &Network,
-        water: &Water,
+        water: &mut Water,
         points: &dyn Passes,
         observer: &mut dyn Observer,
     ) -> Result<Levels> {
         let (target, needed) = (Target::of_points(points.description()), water.need_points());
-        let mut shores = Vec::new();
+        let (extent, width) = self.extent(&needed, points, observer)?;
+        let mut shores = vec![Vec::new(); needed.len()];
         if needed.contains(&true) {
-            let width = match (self.width, target.coordinates) {
-                (Some(width), Coordinates::I32 { scale, .. }) => Some(width / scale[0]),
-                (Some(width), Coordinates::F64) => Some(width),
-                (None, _) => shore_width(points, observer)?,
-            };
-            let near = Shores::new(water.edges(network), &needed, width.unwrap_or(1.0));
-            shores = near.collect(points, observer)?;
+            shores = Shores::new(water.edges(network), &needed, width).collect(points, observer)?;
         }
-        Levels::find(network, water, shores, self.percentile, &target)
+        let is_beyond = |number: usize| {
+            extent.is_some_and(|(bounds, _)| !water.polygons[number].is_within(width, &bounds, network))
+        };
+        let is_empty = |number: usize| !needed[number] || shores[number].is_empty();
+        let mut far: Vec<bool> = (0..needed.len()).map(|it| is_empty(it) && is_beyond(it)).collect();
+        let is_doubtful = |number: usize| needed[number] && shores[number].is_empty() && !far[number];
+        if (0..needed.len()).any(is_doubtful) {
+            let edges = water.edges(network).into_iter().filter(|(number, _)| is_doubtful(*number as usize));
+            let inside = with_points(edges, points, observer)?;
+            let is_dry = |number: &usize| is_doubtful(*number) && !inside.contains(&(*number as u32));
+            let dry: Vec<usize> = (0..needed.len()).filter(is_dry).collect();
+            dry.into_iter().for_each(|number| far[number] = true);
+        }
+        if let Some(text) = water.about_far(&far) {
+            observer.notice(&text);
+        }
+        let left_out = water.leave_out(&far, network);
+        let mut far = far.into_iter();
+        shores.retain(|_| far.next() == Some(false));
+        Ok(Levels { left_out, ..Levels::find(network, water, shores, self.percentile, &target)? })
+    }
+
+    /// The box and the number of the points, as far as they are known, and the width of shores in stored
+    /// units. Headers say enough of the points where levels are stated.
+    fn extent(
+        &self,
+        needed: &[bool],
+        points: &dyn Passes,
+        observer: &mut dyn Observer,
+    ) -> Result<(Option<(Bounds, u64)>, f64)> {
+        let &Description { stated_bounds, stated_points, coordinates, .. } = points.description();
+        let mut known = stated_bounds.zip(stated_points);
+        let lacks_width = self.width.is_none() && needed.contains(&true);
+        if lacks_width || known.is_none() && needed.contains(&false) {
+            known = extent(points, observer)?;
+        }
+        let width = match (self.width, coordinates) {
+            (Some(width), Coordinates::I32 { scale, .. }) => width / scale[0],
+            (Some(width), Coordinates::F64) => width,
+            (None, _) => known.map_or(1.0, shore_width),
+        };
+        Ok((known, width))
     }
 }

@@ -2,6 +2,8 @@
 //!
 //! A pass before all others collects them. Memory: 24 bytes for each point and each shore that it is near.
 
+use std::collections::BTreeSet;
+
 use foldhash::{HashMap, HashMapExt};
 
 use super::batch::{PointBatch, read_ahead};
@@ -22,12 +24,11 @@ const CELLS_MAX: f64 = 1e6;
 /// Mean distances between points that the width of shores is by default.
 const WIDTH_DISTANCES: f64 = 4.0;
 
-/// The width of shores where none is given: four times the mean distance between points, which is the root of
-/// the area of their box for each point. `None` without points. In stored units.
+/// The box of the points and their number, which takes a pass; `None` without points.
 ///
 /// # Errors
 /// Those of the input.
-pub(super) fn shore_width(input: &dyn Passes, observer: &mut dyn Observer) -> Result<Option<f64>> {
+pub(super) fn extent(input: &dyn Passes, observer: &mut dyn Observer) -> Result<Option<(Bounds, u64)>> {
     observer.pass(Pass::Spacing, input.description().stated_points);
     let (mut bounds, mut points): (Option<Bounds>, u64) = (None, 0);
     let prepare = |_: &PointBatch, (): &mut ()| Ok(());
@@ -38,12 +39,45 @@ pub(super) fn shore_width(input: &dyn Passes, observer: &mut dyn Observer) -> Re
         observer.done(points);
         Ok(())
     })?;
-    Ok(bounds.map(|Bounds { min, max }| {
-        let [width, height] = [0, 1].map(|axis| max[axis] - min[axis]);
-        let across = (width * height / points as f64).sqrt();
-        // Points on a line have no area.
-        WIDTH_DISTANCES * if across > 0.0 { across } else { width.max(height) / points as f64 }
-    }))
+    Ok(bounds.map(|bounds| (bounds, points)))
+}
+
+/// The width of shores where none is given: four times the mean distance between points, which is the root of
+/// the area of their box for each point. In stored units.
+pub(super) fn shore_width((Bounds { min, max }, points): (Bounds, u64)) -> f64 {
+    let [width, height] = [0, 1].map(|axis| max[axis] - min[axis]);
+    let across = (width * height / points as f64).sqrt();
+    // Points on a line have no area.
+    WIDTH_DISTANCES * if across > 0.0 { across } else { width.max(height) / points as f64 }
+}
+
+/// Which of the polygons with these numbers have a point inside; takes a pass.
+///
+/// # Errors
+/// Those of the input.
+pub(super) fn with_points(
+    edges: impl Iterator<Item = (u32, [Point2; 2])>,
+    input: &dyn Passes,
+    observer: &mut dyn Observer,
+) -> Result<BTreeSet<u32>> {
+    observer.pass(Pass::Shores, input.description().stated_points);
+    let polygons = Polygons::of_edges(edges);
+    let (mut found, mut done) = (BTreeSet::new(), 0);
+    let prepare = |batch: &PointBatch, inside: &mut BTreeSet<u32>| {
+        inside.clear();
+        let place = |point: &Point| [point[0], point[1]];
+        batch.points.iter().for_each(|point| {
+            polygons.for_each_around(place(point), |number| _ = inside.insert(number));
+        });
+        Ok(())
+    };
+    read_ahead(&mut *input.read()?, prepare, |batch, inside| {
+        found.append(inside);
+        done += batch.points.len() as u64;
+        observer.done(done);
+        Ok(())
+    })?;
+    Ok(found)
 }
 
 /// Shores, and the points that count for them: those at most a width away, and neither in water nor on a

@@ -46,6 +46,8 @@ pub struct Areas {
     pub hull: Option<Vec<Vec<u32>>>,
     /// Of `--holes`; `None` if it was not given.
     pub holes: Option<Vec<Vec<u32>>>,
+    /// Numbers of the lines of `--lines` that may be shores of water, in order: rings, and lines of rivers.
+    pub shores: Vec<u32>,
 }
 
 /// A ring of a polygon.
@@ -64,6 +66,14 @@ pub(crate) fn rings(files: &[(Role, String, Breaklines)]) -> Result<Vec<Ring>> {
         Ok(Ring { role, line: number, polygon: polygon.expect("a ring has a polygon") })
     };
     of_areas.map(ring).collect()
+}
+
+/// The lines that may be shores.
+pub(crate) fn shores(files: &[(Role, String, Breaklines)]) -> Vec<u32> {
+    let may_be = |it: &Numbered| {
+        it.role == Role::Lines && (it.polygon.is_some() || it.line.properties.river.is_some())
+    };
+    numbered(files).filter(may_be).map(|line| line.number).collect()
 }
 
 /// The areas after noding.

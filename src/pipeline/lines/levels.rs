@@ -1,6 +1,6 @@
 //! The levels of lakes and rivers at the vertices of their shores.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Target;
 use super::report::{Found, LevelRow};
@@ -16,6 +16,8 @@ pub struct Levels {
     /// Stored elevations of vertices of the network that are on shores or on centre lines inside of their
     /// river.
     pub elevations: BTreeMap<u32, f64>,
+    /// Vertices of the network that only water has that was left out.
+    pub(crate) left_out: BTreeSet<u32>,
     /// Levels that were found from points.
     pub found: u64,
     /// Messages for the user.

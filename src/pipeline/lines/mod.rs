@@ -15,6 +15,7 @@ mod prepare;
 mod report;
 mod rivers;
 mod sections;
+mod stated;
 mod stations;
 mod water;
 
@@ -34,6 +35,7 @@ use grid::Grid;
 pub use levels::Levels;
 use numbered::Bent;
 pub use report::write_report;
+pub use stated::{ABOUT_FAR, is_far};
 pub use water::{Water, WaterPolygon};
 
 /// The stream that lines are for.
@@ -120,6 +122,7 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     changes.notices.extend(grid.notice());
     let noting = |error| files.iter().fold(error, |error, (_, _, file)| file.noting_layers(error));
     let rings = areas::rings(&files).map_err(noting)?;
+    let shores = areas::shores(&files);
     let features = features::features(&files, target).map_err(noting)?;
     let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
     let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
@@ -128,12 +131,14 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     if rings.is_empty() && features.is_empty() {
         let noded =
             node_lines(Cow::Owned(vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
-        return Ok(Lines { network: network(noded, &grid), changes, ..Lines::default() });
+        let areas = Areas { shores, ..Areas::default() };
+        return Ok(Lines { network: network(noded, &grid), areas, changes, ..Lines::default() });
     }
     let noded =
         node_lines(Cow::Borrowed(&vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
     let bent = Bent::new(&noded, &vertices, &starts);
-    let (areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
+    let (mut areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
+    areas.shores = shores;
     Ok(Lines { network: network(noded, &grid), areas, water, changes })
 }
 

@@ -3,16 +3,18 @@
 //! Shores are noded with all other lines, so `spconstrain` finds the same vertices. The levels are found in
 //! `levels`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::areas::odd;
 use super::banks::check;
 use super::features::{Feature, FeatureKind};
 use super::grid::Grid;
+use super::levels::vertices;
 use super::numbered::Bent;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::network::Network;
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::model::points::Point2;
 
 /// Polygons of water, and the courses of rivers, as parts of a network.
@@ -79,6 +81,17 @@ pub(crate) struct Place {
     pub(crate) position: Arc<str>,
 }
 
+impl Course {
+    /// Its vertices.
+    fn vertices(&self) -> impl Iterator<Item = u32> + '_ {
+        let lines = match self {
+            Course::Centre(line) => [&line[..], &[]],
+            Course::Banks { banks: [left, right], .. } => [&left[..], &right[..]],
+        };
+        lines.into_iter().flatten().copied()
+    }
+}
+
 impl Place {
     pub(crate) fn fault(&self, message: impl Into<String>) -> Error {
         Error::malformed(message).at(&*self.position).of_input(&self.file)
@@ -98,6 +111,16 @@ impl WaterPolygon {
             None => self.level.is_none(),
             Some(river) => !water.rivers[river].is_hard,
         }
+    }
+
+    /// Whether its box, with so much around it, meets that of points.
+    pub(crate) fn is_within(&self, width: f64, points: &Bounds, network: &Network) -> bool {
+        (0..2).all(|axis| {
+            let ends = || self.edges(network).flatten().map(|place| place[axis]);
+            let (least, most) =
+                (ends().fold(f64::INFINITY, f64::min), ends().fold(f64::NEG_INFINITY, f64::max));
+            least - width <= points.max[axis] && most + width >= points.min[axis]
+        })
     }
 
     /// Its segments, as places of their ends.
@@ -120,10 +143,57 @@ impl Water {
         self.polygons.iter().map(|polygon| polygon.needs_points(self)).collect()
     }
 
+    /// The vertices of the network on shores whose elevations follow from what files state.
+    pub(crate) fn stated_vertices(&self, network: &Network) -> BTreeSet<u32> {
+        let stated = self.polygons.iter().filter(|polygon| !polygon.needs_points(self));
+        stated.flat_map(|polygon| vertices(network, polygon)).collect()
+    }
+
     /// Numbers of lakes and of rivers.
     pub fn counts(&self) -> [u64; 2] {
         let lakes = self.polygons.iter().filter(|polygon| polygon.river.is_none()).count();
         [lakes as u64, self.rivers.len() as u64]
+    }
+
+    /// What is to be said about the polygons that are left out, as `far` says.
+    pub(crate) fn about_far(&self, far: &[bool]) -> Option<String> {
+        let count = far.iter().filter(|&&is_far| is_far).count();
+        let first = &self.polygons[far.iter().position(|&is_far| is_far)?].position;
+        Some(format!(
+            "{count} of {} polygons of water are left out, as no points are in them or near their shores; the \
+             first is {first}. --shore-width looks for points farther away",
+            far.len()
+        ))
+    }
+
+    /// Leaves out the polygons that `far` says, and the rivers that lose all of theirs. Returns the vertices
+    /// of the network that only these have.
+    pub(crate) fn leave_out(&mut self, far: &[bool], network: &Network) -> BTreeSet<u32> {
+        let is_far = |number: &usize| far[*number];
+        let of = |river: usize| {
+            let polygons = self.polygons.iter().enumerate();
+            polygons.filter(move |(_, polygon)| polygon.river == Some(river)).map(|(number, _)| number)
+        };
+        let is_lost: Vec<bool> =
+            (0..self.rivers.len()).map(|river| of(river).all(|it| is_far(&it))).collect();
+        let [mut left, mut kept] = [BTreeSet::new(), BTreeSet::new()];
+        for (polygon, &is_far) in self.polygons.iter().zip(far) {
+            if is_far { &mut left } else { &mut kept }.extend(vertices(network, polygon));
+        }
+        for (river, &is_lost) in self.rivers.iter().zip(&is_lost) {
+            if is_lost { &mut left } else { &mut kept }.extend(river.course.vertices());
+        }
+        // Vertices that other lines lead to are theirs, too.
+        let others = network.segments.iter().filter(|it| !it.ends.iter().all(|end| left.contains(end)));
+        kept.extend(others.flat_map(|segment| segment.ends));
+        let mut far = far.iter();
+        self.polygons.retain(|_| far.next() == Some(&false));
+        let number = |river: usize| is_lost[..river].iter().filter(|&&is_lost| !is_lost).count();
+        self.polygons.iter_mut().for_each(|polygon| polygon.river = polygon.river.map(number));
+        let mut lost = is_lost.iter();
+        self.rivers.retain(|_| lost.next() == Some(&false));
+        left.retain(|vertex| !kept.contains(vertex));
+        left
     }
 
     /// Enters a river, and its polygon if it has banks.

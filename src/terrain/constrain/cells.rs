@@ -3,7 +3,7 @@
 use super::pyramid::{Bits, Pyramid};
 use spmesh_delaunay::cell_lists::CellLists;
 use spmesh_delaunay::cell_walk::{TOLERANCE, for_each_cell};
-use spmesh_delaunay::network::Network;
+use spmesh_delaunay::network::{Network, NetworkSegment};
 use spmesh_delaunay::predicates::lexicographic;
 use spmesh_stream::model::points::Point2;
 
@@ -43,6 +43,8 @@ pub(super) struct Cells {
     fine_segments: Bits,
     /// Fine cells with vertices that were not found yet.
     fine_vertices: Bits,
+    /// Fine cells with segments that leave the mesh, if there are any.
+    fine_leaving: Option<Bits>,
     pyramid: Pyramid,
     /// Cells with an item in them or beside them.
     near: Bits,
@@ -70,7 +72,8 @@ impl CellBox {
 }
 
 impl Cells {
-    pub(super) fn new(network: &Network) -> Cells {
+    /// Segments that `leaving` says, if it is not empty, leave the mesh.
+    pub(super) fn new(network: &Network, leaving: &[bool]) -> Cells {
         let mut bounds = CellBox::of(&[]);
         network.vertices.iter().for_each(|vertex| bounds.extend(vertex.place));
         let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
@@ -83,6 +86,10 @@ impl Cells {
             let count = |length: f64| (length / side) as usize + 1;
             let mut cells = Cells::empty(bounds.min, 1.0 / side, [count(width), count(height)]);
             if cells.fill(network) {
+                cells.fine_leaving = (!leaving.is_empty()).then(|| {
+                    let numbered = network.segments.iter().zip(leaving);
+                    cells.fine(network, numbered.filter(|(_, leaves)| **leaves).map(|(segment, _)| segment))
+                });
                 return cells;
             }
             // One cell has each item once.
@@ -100,6 +107,7 @@ impl Cells {
             segments: 0,
             fine_segments: Bits::default(),
             fine_vertices: Bits::default(),
+            fine_leaving: None,
             pyramid: Pyramid::default(),
             near: Bits::default(),
         }
@@ -137,14 +145,20 @@ impl Cells {
     }
 
     fn fill_fine(&mut self, network: &Network) {
-        let size = self.fine_size();
-        let (mut segments, mut vertices) = (Bits::new(size), Bits::new(size));
-        for segment in &network.segments {
-            let ends = network.places(segment).map(|end| self.local(end).map(|x| x * FINE as f64));
-            for_each_cell(ends, size, |cell| segments.set(cell));
-        }
+        let mut vertices = Bits::new(self.fine_size());
         network.vertices.iter().for_each(|vertex| vertices.set(self.fine_cell(vertex.place)));
-        (self.fine_segments, self.fine_vertices) = (segments, vertices);
+        (self.fine_segments, self.fine_vertices) = (self.fine(network, network.segments.iter()), vertices);
+    }
+
+    /// The fine cells that segments meet.
+    fn fine<'n>(&self, network: &Network, segments: impl Iterator<Item = &'n NetworkSegment>) -> Bits {
+        let size = self.fine_size();
+        let mut bits = Bits::new(size);
+        for segment in segments {
+            let ends = network.places(segment).map(|end| self.local(end).map(|x| x * FINE as f64));
+            for_each_cell(ends, size, |cell| bits.set(cell));
+        }
+        bits
     }
 
     fn fine_size(&self) -> [usize; 2] {
@@ -208,10 +222,24 @@ impl Cells {
         self.fine_range(bounds).is_none_or(|range| !self.fine_segments.any(range))
     }
 
-    /// Whether all vertices in a box were found.
+    /// Whether all vertices in a box were found, and no segment in it leaves the mesh.
     #[inline]
     pub(super) fn is_found(&self, bounds: &CellBox) -> bool {
-        self.fine_range(bounds).is_none_or(|range| !self.fine_vertices.any(range))
+        self.fine_range(bounds).is_none_or(|range| !self.fine_vertices.any(range)) && !self.may_leave(bounds)
+    }
+
+    /// Whether a segment in a box leaves the mesh.
+    #[inline]
+    pub(super) fn may_leave(&self, bounds: &CellBox) -> bool {
+        let Some(leaving) = &self.fine_leaving else { return false };
+        self.fine_range(bounds).is_some_and(|range| leaving.any(range))
+    }
+
+    /// Whether a segment that leaves the mesh is in the cell of a place of the box of the network, and in the
+    /// fine one.
+    pub(super) fn has(&self, place: Point2, segment: u32) -> bool {
+        let is_fine = self.fine_leaving.as_ref().is_some_and(|leaving| leaving.get(self.fine_cell(place)));
+        is_fine && self.items.get(self.cell(place)).contains(&segment)
     }
 
     #[inline]

@@ -1,9 +1,9 @@
 //! Triangles that wait until all that they are triangulated anew with have come.
 //!
 //! Two neighbours belong together if a segment crosses their common edge, or if the circles of both contain
-//! new vertices. Any other edge stays: no segment crosses it, and the circle of one of its triangles is empty
-//! of all vertices. A component of such triangles is *whole* when no edge of it can get a neighbour that
-//! belongs to it.
+//! new vertices, or may do so where a segment leaves the mesh. Any other edge stays: no segment crosses it,
+//! and the circle of one of its triangles is empty of all vertices. A component of such triangles is *whole*
+//! when no edge of it can get a neighbour that belongs to it.
 //!
 //! * Whether a segment crosses an edge follows from one of its triangles. The other one must come, unless the edge
 //!   is on the border of the mesh.
@@ -21,6 +21,7 @@ pub(super) struct Held {
     pub(super) corners: [u32; 3],
     pub(super) segments: Vec<u32>,
     pub(super) vertices: Vec<u32>,
+    is_hit: bool,
     component: u32,
 }
 
@@ -122,8 +123,9 @@ impl Holding {
     pub(super) fn hold(&mut self, corners: [u32; 3], meeting: Meeting) {
         corners.iter().for_each(|&corner| self.corners.get_mut(corner).uses += 1);
         let component = self.components.add(Component::default());
+        let is_hit = meeting.is_hit();
         let Meeting { segments, vertices, is_crossed, .. } = meeting;
-        let number = self.triangles.add(Held { corners, segments, vertices, component });
+        let number = self.triangles.add(Held { corners, segments, vertices, is_hit, component });
         self.components.get_mut(component).triangles.push(number);
         for (place, is_crossed) in is_crossed.into_iter().enumerate() {
             let [from, to] = [1, 2].map(|turn| corners[(place + turn) % 3]);
@@ -137,7 +139,7 @@ impl Holding {
     /// has no neighbour yet and may get one.
     fn meet(&mut self, number: u32, edge: [u32; 2], is_crossed: bool) {
         let Some(other) = self.open.remove(&edge) else {
-            if is_crossed || !self.triangles.get(number).vertices.is_empty() {
+            if is_crossed || self.triangles.get(number).is_hit {
                 self.open.insert(edge, number);
                 self.components.get_mut(self.triangles.get(number).component).pending += 1;
                 let [a, b] = edge;
@@ -147,7 +149,7 @@ impl Holding {
             return;
         };
         self.close(edge, other);
-        let is_hit = |triangle: u32| !self.triangles.get(triangle).vertices.is_empty();
+        let is_hit = |triangle: u32| self.triangles.get(triangle).is_hit;
         if is_crossed || (is_hit(number) && is_hit(other)) {
             self.join(number, other);
         } else if let [own, component] =

@@ -37,6 +37,11 @@ impl Rings {
         Rings { areas: of }
     }
 
+    /// Whether a segment is a border of an area.
+    pub(super) fn is_border(&self, segment: u32) -> bool {
+        self.areas.get(segment as usize).is_some_and(|of| *of != [false; 2])
+    }
+
     /// For each triangle of a region whether the part of a ring crosses it that leaves the mesh; empty if
     /// there is none. All vertices and segments are in the region.
     pub(super) fn leaving(&self, triangles: &[Held], region: &Region, lines: &mut Lines) -> Vec<OfAreas> {
@@ -65,7 +70,7 @@ impl Rings {
     /// The segments of rings in a region that leave the mesh: those that stay inside have both of their ends
     /// in the region.
     fn open(&self, triangles: &[Held], lines: &Lines) -> Vec<u32> {
-        let is_ring = |segment: &u32| self.areas[*segment as usize] != [false; 2];
+        let is_ring = |segment: &u32| self.is_border(*segment);
         let is_open = |segment: &u32| {
             let ends = lines.network.segments[*segment as usize].ends;
             !ends.iter().all(|&end| lines.found[end as usize])
@@ -79,7 +84,7 @@ impl Rings {
 }
 
 /// Whether a segment crosses a side that has the mesh on its left: its ends, first the one on the right.
-fn crossing(
+pub(super) fn crossing(
     [u, v]: [Point2; 2],
     [p, q]: [Point2; 2],
     predicates: &mut FiniteFloatPredicates,

@@ -5,10 +5,12 @@
 //! triangles pass at once. The others wait (`held`) until all that they are triangulated anew with have come
 //! (`strip`).
 //!
-//! `near` says what of the lines a triangle meets, with the help of `cells`; `writing` makes patches.
+//! `near` says what of the lines a triangle meets, with the help of `cells`; `clip` ends lines at the border
+//! of the mesh; `writing` makes patches.
 
 mod cells;
 mod circle;
+mod clip;
 mod cut;
 mod draped;
 mod held;
@@ -29,7 +31,7 @@ use near::Lines;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::network::Network;
 use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2};
-use spmesh_pipeline::lines::Areas;
+use spmesh_pipeline::lines::{Areas, is_far};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{
     Constrained, Coordinates, Event, Header, LiveVertices, Patch, StreamReader, StreamWriter, check_surface,
@@ -54,15 +56,21 @@ pub struct Stats {
     pub segments: u64,
     /// Segments that are not wholly edges because they leave the mesh.
     pub open_segments: u64,
+    /// Segments that were added beside these, since clipped parts of lines are off them by rounding.
+    pub clipped: u64,
+    /// Vertices that were added where segments leave the mesh.
+    pub ends: u64,
     /// Other segments that are not wholly edges because the triangles on both sides were cut off.
     pub cut_segments: u64,
     /// Vertices of the network that the mesh had.
     pub found: u64,
     /// Vertices of the network that were added to the mesh.
     pub added: u64,
-    /// Of these, vertices that took the elevation of the surface, though they divide a part of a line between
-    /// two vertices that the mesh had.
+    /// Of these, vertices that took the elevation of the surface, though they divide a part of a shore
+    /// between two vertices that the mesh had, neither of which is as high or as low.
     pub draped: u64,
+    /// Vertices of the network or on it whose stated elevation is far from that of the mesh.
+    pub far: u64,
     /// Vertices of the network outside of the mesh.
     pub outside: u64,
     /// Vertices of the mesh that took the elevation of a line.
@@ -106,9 +114,11 @@ pub fn constrain<R: Read, W: Write>(
     let constrained = Some(Constrained { is_cut, kill });
     let compressed = options.compress;
     let header = Header { compressed, constrained, ..header_of(reader.header(), network) };
+    let rings = Rings::new(areas, network.segments.len());
+    let leaving = clip::leaving(network, reader.header().bounds, &rings);
     let mut filter = Filter {
-        lines: Lines::new(network),
-        rings: Rings::new(areas, network.segments.len()),
+        lines: Lines::new(network, leaving),
+        rings,
         holding: Holding::default(),
         live: LiveVertices::new(),
         writing: Writing::new(StreamWriter::new(output, header)?, network, cut)?,
@@ -116,6 +126,7 @@ pub fn constrain<R: Read, W: Write>(
         numbers: Vec::new(),
         open: Vec::new(),
         soft: Vec::new(),
+        elevations: vec![f64::NAN; network.vertices.len()],
         stats: Stats { segments: network.segments.len() as u64, ..Stats::default() },
     };
     while let Some(event) = reader.next_event()? {
@@ -124,7 +135,7 @@ pub fn constrain<R: Read, W: Write>(
                 filter.patch(patch, reader.rows()).map_err(|error| reader.locate(error))?;
                 progress(reader.totals().vertices);
             }
-            Event::End(totals) => return filter.end(totals.points, totals.merged),
+            Event::End(totals) => return filter.end(totals.points, totals.merged, &areas.shores),
             _ => return Err(reader.locate(Error::usage("expected a mesh of triangles only"))),
         }
     }
@@ -180,6 +191,8 @@ struct Filter<'n, W: Write> {
     open: Vec<u32>,
     /// Vertices of the network that were added without an elevation of their own.
     soft: Vec<u32>,
+    /// The elevations of vertices of the network that are in the mesh; NaN of the others.
+    elevations: Vec<f64>,
 }
 
 impl<W: Write> Filter<'_, W> {
@@ -213,11 +226,14 @@ impl<W: Write> Filter<'_, W> {
                 Some(vertex) => {
                     self.lines.find(vertex);
                     self.stats.found += 1;
-                    self.lines.network.vertices[vertex as usize].z
+                    let z = self.lines.network.vertices[vertex as usize].z;
+                    self.elevations[vertex as usize] = z.unwrap_or(point[2]);
+                    z
                 }
                 None => self.lines.elevation_near(place).map(|z| self.coordinates.rounded(z)),
             };
             if let Some(z) = z.filter(|&z| z != point[2]) {
+                self.stats.far += u64::from(is_far(&self.coordinates, z, [point[2]; 2]));
                 point[2] = z;
                 self.stats.raised += 1;
             }
@@ -265,14 +281,21 @@ impl<W: Write> Filter<'_, W> {
 
     /// Triangulates a component anew.
     fn strip(&mut self, triangles: &[Held]) -> Result<()> {
+        let first_clipped = (self.stats.segments + self.stats.clipped) as u32;
+        let (lines, rings) = (&mut self.lines, &self.rings);
         let strip =
-            strip::triangulate(triangles, &self.holding, &mut self.lines, &self.rings, &self.coordinates)?;
+            strip::triangulate(triangles, &self.holding, lines, rings, &self.coordinates, first_clipped)?;
+        self.stats.clipped += strip.clipped.len() as u64;
         self.stats.strips += 1;
         self.stats.added += strip.new.len() as u64;
+        self.stats.far += strip.far;
         self.open.extend(&strip.open);
         let network = self.lines.network;
+        let new = || strip.new.iter().filter_map(|&(vertex, [.., z])| Some((vertex?, z)));
+        new().for_each(|(vertex, z)| self.elevations[vertex as usize] = z);
+        self.stats.ends += (strip.new.len() - new().count()) as u64;
         let is_soft = |vertex: &u32| network.vertices[*vertex as usize].z.is_none();
-        self.soft.extend(strip.new.iter().map(|(vertex, _)| *vertex).filter(is_soft));
+        self.soft.extend(new().map(|(vertex, _)| vertex).filter(is_soft));
         let ids: Vec<u64> = strip.corners.iter().map(|&corner| self.holding.vertex(corner).id).collect();
         let mut finalized = Vec::new();
         for corner in triangles.iter().flat_map(|held| held.corners) {
@@ -286,7 +309,7 @@ impl<W: Write> Filter<'_, W> {
     }
 
     /// Ends the stream.
-    fn end(mut self, points: u64, merged: u64) -> Result<(W, Stats)> {
+    fn end(mut self, points: u64, merged: u64, shores: &[u32]) -> Result<(W, Stats)> {
         if !self.holding.is_empty() {
             return Err(Error::malformed("vertices of the mesh are not finalized at its end"));
         }
@@ -297,8 +320,9 @@ impl<W: Write> Filter<'_, W> {
         let is_open = |ends: [u32; 2]| is_empty || ends.into_iter().any(is_outside);
         let outside = (0..).zip(&network.segments).filter(|(_, segment)| is_open(segment.ends));
         self.open.extend(outside.map(|(number, _)| number));
-        self.stats.draped = draped::count(network, self.soft, &self.lines.found);
-        self.stats.outside = network.vertices.len() as u64 - self.stats.found - self.stats.added;
+        self.stats.draped = draped::count(network, self.soft, &self.elevations, shores);
+        self.stats.outside =
+            network.vertices.len() as u64 + self.stats.ends - self.stats.found - self.stats.added;
         self.stats.held_max = self.holding.triangles_max as u64;
         self.writing.end(self.open, points + self.stats.added, merged, self.stats)
     }

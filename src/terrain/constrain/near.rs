@@ -25,6 +25,10 @@ pub(super) struct Lines<'n> {
     reach: f64,
     segments: Vec<u32>,
     vertices: Vec<u32>,
+    /// For each segment whether it may leave the mesh and is to be clipped; empty if none does.
+    leaving: Vec<bool>,
+    /// Whether one of these may meet the circle of the present triangle.
+    is_near: bool,
 }
 
 /// How lines meet a triangle.
@@ -40,18 +44,25 @@ pub(super) struct Meeting {
     pub(super) is_divided: bool,
     /// Vertices of the network inside of the circle.
     pub(super) vertices: Vec<u32>,
+    /// Whether the circle may contain the place where a segment leaves the mesh.
+    pub(super) is_near: bool,
 }
 
 impl Meeting {
     /// Whether the triangle may not be one of the constrained triangulation.
     pub(super) fn changes(&self) -> bool {
-        self.is_divided || !self.vertices.is_empty()
+        self.is_divided || self.is_hit()
+    }
+
+    /// Whether a vertex that the mesh does not have may be inside of the circle.
+    pub(super) fn is_hit(&self) -> bool {
+        self.is_near || !self.vertices.is_empty()
     }
 }
 
 impl<'n> Lines<'n> {
-    pub(super) fn new(network: &'n Network) -> Lines<'n> {
-        let cells = Cells::new(network);
+    pub(super) fn new(network: &'n Network, leaving: Vec<bool>) -> Lines<'n> {
+        let cells = Cells::new(network, &leaving);
         Lines {
             network,
             reach: 0.99 / cells.scale(),
@@ -61,7 +72,40 @@ impl<'n> Lines<'n> {
             margin: 0.0,
             segments: Vec::new(),
             vertices: Vec::new(),
+            leaving,
+            is_near: false,
         }
+    }
+
+    /// Whether a segment may leave the mesh, and is to be clipped.
+    pub(super) fn leaves(&self, segment: u32) -> bool {
+        self.leaving.get(segment as usize) == Some(&true)
+    }
+
+    /// Such segments near a side, in order.
+    pub(super) fn leaving_near(&self, side: [Point2; 2]) -> Vec<u32> {
+        let bounds = CellBox::of(&side.map(|end| self.cells.local(end)));
+        let mut segments = Vec::new();
+        if self.cells.may_leave(&bounds) {
+            let mut enter = |segment: u32| segments.extend(Some(segment).filter(|&it| self.leaves(it)));
+            self.cells.for_each_in(
+                &bounds,
+                |_| true,
+                |item| match item {
+                    Item::Segment(number) => enter(number),
+                    Item::Vertex(_) => (),
+                },
+            );
+        }
+        segments.sort_unstable();
+        segments.dedup();
+        segments
+    }
+
+    /// Whether a triangle is held if its circle contains a place, for the sake of a segment that leaves the
+    /// mesh.
+    pub(super) fn holds(&self, place: Point2, segment: u32) -> bool {
+        self.cells.has(place, segment)
     }
 
     /// The vertex of the network at a place.
@@ -125,10 +169,10 @@ impl<'n> Lines<'n> {
             return None;
         }
         self.collect(corners);
-        if self.segments.is_empty() && self.vertices.is_empty() {
+        if self.segments.is_empty() && self.vertices.is_empty() && !self.is_near {
             return None;
         }
-        let mut meeting = Meeting::default();
+        let mut meeting = Meeting { is_near: self.is_near, ..Meeting::default() };
         for place in 0..self.segments.len() {
             self.meet(corners, self.segments[place], &mut meeting);
         }
@@ -140,7 +184,7 @@ impl<'n> Lines<'n> {
                 meeting.vertices.push(number);
             }
         }
-        let is_any = !meeting.segments.is_empty() || !meeting.vertices.is_empty();
+        let is_any = !meeting.segments.is_empty() || meeting.is_hit();
         is_any.then_some(meeting)
     }
 
@@ -153,6 +197,7 @@ impl<'n> Lines<'n> {
         let (segments, vertices, found) = (&mut self.segments, &mut self.vertices, &self.found);
         segments.clear();
         vertices.clear();
+        self.is_near = false;
         if !self.cells.is_free(&triangle) {
             self.cells.for_each_in(
                 &triangle,
@@ -175,7 +220,8 @@ impl<'n> Lines<'n> {
                 |bounds| circle.may_meet(bounds),
                 |item| match item {
                     Item::Vertex(number) if !found[number as usize] => vertices.push(number),
-                    _ => (),
+                    Item::Vertex(_) => (),
+                    Item::Segment(number) => self.is_near |= self.leaving.get(number as usize) == Some(&true),
                 },
             );
         }
@@ -253,6 +299,12 @@ impl<'n> Lines<'n> {
     pub(super) fn is_on(&mut self, number: u32, place: Point2) -> bool {
         let [p, q] = self.network.places(&self.network.segments[number as usize]);
         is_between(place, [p, q]) && self.predicates.orient2d(p, q, place) == Sign::Zero
+    }
+
+    /// Whether a place is on the way between two others.
+    pub(super) fn is_between(&mut self, [p, q]: [Point2; 2], place: Point2) -> bool {
+        let ends = if lexicographic(p, q).is_lt() { [p, q] } else { [q, p] };
+        is_between(place, ends) && self.predicates.orient2d(p, q, place) == Sign::Zero
     }
 
     pub(super) fn predicates(&mut self) -> &mut FiniteFloatPredicates {

@@ -9,8 +9,9 @@ use spmesh_delaunay::constrained2::{Host, Piece, Region};
 use spmesh_delaunay::network::{Network, NetworkSegment, elevation_between};
 use spmesh_delaunay::order::{Curve, SpatialOrder};
 use spmesh_delaunay::predicates::{Extent, Point2, lexicographic};
-use spmesh_stream::Coordinates;
+use spmesh_pipeline::lines::is_far;
 use spmesh_stream::model::bounds::Point;
+use spmesh_stream::{Coordinates, Segment};
 use std::cmp::Ordering;
 
 /// A component of the constrained triangulation.
@@ -21,50 +22,61 @@ pub(super) struct Strip {
     /// The places of corners, then of new vertices.
     pub(super) places: Vec<Point2>,
     /// Vertices that the mesh did not have, and their numbers in the network; they come after the corners.
-    pub(super) new: Vec<(u32, Point)>,
+    /// Ends of clipped segments have no number.
+    pub(super) new: Vec<(Option<u32>, Point)>,
+    /// Segments that were clipped.
+    pub(super) clipped: Vec<Segment>,
     /// Points are corners, then new vertices.
     pub(super) pieces: Vec<Piece>,
     /// Segments that leave the region before they reach a vertex.
     pub(super) open: Vec<u32>,
+    /// Vertices with elevations that are far from those of the triangle that they are in.
+    pub(super) far: u64,
     /// For each piece whether the part of a ring crosses it that leaves the mesh; empty if there is none.
     pub(super) crossed: Vec<OfAreas>,
 }
 
-/// The constrained triangulation of `triangles`.
+/// The constrained triangulation of `triangles`. Clipped segments are numbered from `first_clipped`.
 ///
-/// Vertices with elevations come first, and the segments between them. The others take their elevation from
-/// this surface.
+/// Vertices with elevations come first, and the segments, as far as they lead from one vertex on them to the
+/// next. The others take their elevation from this surface. So a shore whose vertices are in the mesh already
+/// bounds its water, whether its file states elevations or not.
 pub(super) fn triangulate(
     triangles: &[Held],
     holding: &Holding,
     lines: &mut Lines,
     rings: &Rings,
     coordinates: &Coordinates,
+    first_clipped: u32,
 ) -> Result<Strip> {
     let mut work = Work::new(triangles, holding);
     let mut region = Region::new(&work.places, &work.triangles);
     let vertices = work.new_vertices(triangles, lines);
     let z_of = |new: &New, lines: &Lines| lines.network.vertices[new.vertex as usize].z;
     let (hard, soft): (Vec<New>, Vec<New>) = vertices.into_iter().partition(|new| z_of(new, lines).is_some());
+    let mut far = 0;
     for new in hard {
         let z = z_of(&new, lines).expect("the vertex has an elevation");
+        far += u64::from(is_far(coordinates, z, work.range_of(new.triangle)));
         work.add(&new, z, lines, &mut region);
     }
     if !soft.is_empty() {
-        let mut parts = work.parts(triangles, lines);
-        parts.retain(|part| lines.network.segments[part.segment as usize].is_hard);
+        let parts = work.parts(triangles, lines);
+        // What leads to a vertex that is still missing is no leaving part.
         work.constrain(&parts, lines, &mut region)?;
+        work.open.clear();
         let elevations: Vec<f64> =
-            soft.iter().map(|new| work.elevation(new, lines, &region, coordinates)).collect();
+            soft.iter().map(|new| work.elevation_of(new, lines, &region, coordinates)).collect();
         for (new, z) in soft.iter().zip(elevations) {
             work.add(new, z, lines, &mut region);
         }
     }
     let parts = work.parts(triangles, lines);
     work.constrain(&parts, lines, &mut region)?;
+    let clipped = work.clip(first_clipped, lines, &mut region, coordinates)?;
     let (pieces, crossed) = (region.pieces().collect(), rings.leaving(triangles, &region, lines));
     let Work { corners, places, new, open, .. } = work;
-    Ok(Strip { corners, places, new, pieces, open, crossed })
+    Ok(Strip { corners, places, new, clipped, pieces, open, far, crossed })
 }
 
 /// As many vertices are inserted in any order.
@@ -111,12 +123,14 @@ fn around(network: &Network, a: u32, b: u32) -> Ordering {
 }
 
 /// The points of a region.
-struct Work {
+pub(super) struct Work {
     corners: Vec<u32>,
-    places: Vec<Point2>,
-    elevations: Vec<f64>,
-    triangles: Vec<[u32; 3]>,
-    new: Vec<(u32, Point)>,
+    pub(super) places: Vec<Point2>,
+    pub(super) elevations: Vec<f64>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The segments of the network in the region, in order.
+    pub(super) segments: Vec<u32>,
+    pub(super) new: Vec<(Option<u32>, Point)>,
     /// The points of new vertices.
     points: HashMap<u32, u32>,
     open: Vec<u32>,
@@ -128,20 +142,30 @@ impl Work {
         corners.sort_unstable();
         corners.dedup();
         let point = |&corner: &u32| holding.vertex(corner).point;
+        let mut segments: Vec<u32> = triangles.iter().flat_map(|held| &held.segments).copied().collect();
+        segments.sort_unstable();
+        segments.dedup();
         let local = |corner: u32| corners.binary_search(&corner).expect("a corner of a triangle") as u32;
         Work {
             places: corners.iter().map(point).map(|[x, y, _]| [x, y]).collect(),
             elevations: corners.iter().map(point).map(|[_, _, z]| z).collect(),
             triangles: triangles.iter().map(|held| held.corners.map(local)).collect(),
             corners,
+            segments,
             new: Vec::new(),
             points: HashMap::default(),
             open: Vec::new(),
         }
     }
 
-    fn places_of(&self, triangle: u32) -> [Point2; 3] {
+    pub(super) fn places_of(&self, triangle: u32) -> [Point2; 3] {
         self.triangles[triangle as usize].map(|point| self.places[point as usize])
+    }
+
+    /// The least and the greatest elevation of the corners of a triangle.
+    fn range_of(&self, triangle: u32) -> [f64; 2] {
+        let of = self.triangles[triangle as usize].map(|point| self.elevations[point as usize]);
+        of.iter().fold([of[0]; 2], |[least, most], &z| [least.min(z), most.max(z)])
     }
 
     /// The vertices of the network that are in triangles of the region, in their order.
@@ -167,7 +191,7 @@ impl Work {
         let number = self.places.len() as u32;
         self.places.push(place);
         self.elevations.push(z);
-        self.new.push((new.vertex, [place[0], place[1], z]));
+        self.new.push((Some(new.vertex), [place[0], place[1], z]));
         self.points.insert(new.vertex, number);
         lines.find(new.vertex);
         region.insert(number, place, new.triangle, lines.predicates());
@@ -183,10 +207,7 @@ impl Work {
             }
         }
         if !self.points.is_empty() {
-            let mut segments: Vec<u32> = triangles.iter().flat_map(|held| &held.segments).copied().collect();
-            segments.sort_unstable();
-            segments.dedup();
-            for segment in segments {
+            for &segment in &self.segments {
                 let ends = lines.network.segments[segment as usize].ends;
                 let new = ends.iter().filter_map(|end| self.points.get(end));
                 pairs.extend(new.map(|&point| [segment, point]));
@@ -213,10 +234,22 @@ impl Work {
         Ok(())
     }
 
-    /// The elevation of the surface at a vertex. It does not depend on the order of triangles and corners.
-    fn elevation(&self, new: &New, lines: &mut Lines, region: &Region, coordinates: &Coordinates) -> f64 {
+    fn elevation_of(&self, new: &New, lines: &mut Lines, region: &Region, coordinates: &Coordinates) -> f64 {
         let place = lines.network.vertices[new.vertex as usize].place;
-        let mut points = match region.host(place, new.triangle, lines.predicates()) {
+        self.elevation(place, new.triangle, lines, region, coordinates)
+    }
+
+    /// The elevation of the surface at a place in a triangle. It does not depend on the order of triangles
+    /// and corners.
+    pub(super) fn elevation(
+        &self,
+        place: Point2,
+        triangle: u32,
+        lines: &mut Lines,
+        region: &Region,
+        coordinates: &Coordinates,
+    ) -> f64 {
+        let mut points = match region.host(place, triangle, lines.predicates()) {
             Host::Point(point) => return self.elevations[point as usize],
             Host::Edge(points) => points.to_vec(),
             Host::Triangle(points) => points.to_vec(),

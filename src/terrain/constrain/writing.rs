@@ -40,6 +40,8 @@ pub(super) struct Writing<W: Write> {
     next_id: u64,
     /// Triangles of strips, by references.
     triangles: Vec<Triangle>,
+    /// Segments that were clipped.
+    segments: Vec<Segment>,
     new: Vec<Point>,
     /// Ids of vertices that are final after these triangles.
     finalized: Vec<u64>,
@@ -61,6 +63,7 @@ impl<W: Write> Writing<W> {
             shifts: Vec::new(),
             next_id: 0,
             triangles: Vec::new(),
+            segments: Vec::new(),
             new: Vec::new(),
             finalized: Vec::new(),
             row,
@@ -128,11 +131,16 @@ impl<W: Write> Writing<W> {
             let id = self.id(id);
             self.finalized.push(id);
         }
+        self.segments.extend(&strip.clipped);
         self.new.extend(strip.new.iter().map(|&(_, point)| point));
     }
 
     /// Writes what was added.
     pub(super) fn flush(&mut self) -> Result<()> {
+        if !self.segments.is_empty() {
+            self.writer.segments(&self.segments)?;
+            self.segments.clear();
+        }
         let mut triangles = std::mem::take(&mut self.triangles);
         let (mut finalized, new) = (std::mem::take(&mut self.finalized), std::mem::take(&mut self.new));
         let first = self.writer.totals().vertices;

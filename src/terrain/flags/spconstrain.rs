@@ -10,7 +10,7 @@ use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_base::system;
 use spmesh_pipeline::flags::lines::{LineFlags, summary};
-use spmesh_pipeline::lines::{self, Lines, Sources, Target, write_report};
+use spmesh_pipeline::lines::{self, ABOUT_FAR, Lines, Sources, Target, write_report};
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::open_stream;
@@ -41,8 +41,8 @@ nor on their directions. Lines that cross, touch or overlap get common vertices 
 
 Vertices of lines that the mesh does not have are added. Where a line states an elevation, it counts, and \
 not that of a point at the same place, also amid a segment; a vertex without one takes the elevation of the \
-surface. Parts of lines outside of the mesh are left out, with a notice. Lines with elevations extend the \
-mesh if spfinalize has them, too.
+surface. Lines that leave the box of the mesh end at its border; parts outside are left out, with a notice. Lines \
+with elevations extend the mesh if spfinalize has them, too.
 
 Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Where a ring leaves the \
 mesh, the triangles stay whole that it divides between its last vertex inside and the border; --densify D \
@@ -139,6 +139,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if stats.draped > 0 {
         flags.notice(&about_draped(&stats));
     }
+    if stats.far > 0 {
+        flags.notice(&about_far(&stats));
+    }
     if stats.divided > 0 {
         flags.notice(&about_divided(&stats, flags.lines.densify));
     }
@@ -150,11 +153,12 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 
 /// The notice about segments that leave the mesh.
 fn about_open(stats: &Stats) -> String {
-    let all = if stats.open_segments == stats.segments { ", perhaps of another place or system" } else { "" };
+    let is_apart = stats.open_segments == stats.segments && stats.ends == 0;
+    let all = if is_apart { ", perhaps of another place or system" } else { "" };
     format!(
-        "{} of {} segments leave the mesh and are no edges there{all}: lines with elevations extend the \
-         mesh if spfinalize --lines has them, too",
-        stats.open_segments, stats.segments
+        "{} of {} segments leave the mesh and are no edges there{all}; {} new vertices end them at its border. \
+         Lines with elevations extend the mesh if spfinalize --lines has them, too",
+        stats.open_segments, stats.segments, stats.ends
     )
 }
 
@@ -165,6 +169,14 @@ fn about_draped(stats: &Stats) -> String {
          shores of water are not level there. Give spfinalize the same lines and --densify, and the \
          polygons of --hull and --holes as --lines",
         counted(stats.draped, "vertex that divides", "vertices that divide")
+    )
+}
+
+/// The notice about stated elevations.
+fn about_far(stats: &Stats) -> String {
+    format!(
+        "{} vertices took elevations from lines that are far from the surface there. Check them; {ABOUT_FAR}",
+        stats.far
     )
 }
 
@@ -180,7 +192,7 @@ fn about_divided(stats: &Stats, densify: Option<f64>) -> String {
     )
 }
 
-fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 18] {
+fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 20] {
     [
         ("triangles read", "triangles_read", stats.triangles[0]),
         ("triangles written", "triangles", stats.triangles[1]),
@@ -191,10 +203,12 @@ fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 18] 
         ("strips", "strips", stats.strips),
         ("segments", "segments", stats.segments),
         ("segments that leave the mesh", "open_segments", stats.open_segments),
+        ("vertices that end lines at the border", "ends", stats.ends),
         ("segments that were cut off", "cut_segments", stats.cut_segments),
         ("line vertices in the mesh", "vertices_found", stats.found),
         ("line vertices added", "vertices_added", stats.added),
         ("line vertices off their line", "vertices_draped", stats.draped),
+        ("elevations far from the mesh", "far", stats.far),
         ("line vertices outside", "vertices_outside", stats.outside),
         ("elevations taken from lines", "raised", stats.raised),
         ("input (bytes)", "input_bytes", input_bytes),
