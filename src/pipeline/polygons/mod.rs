@@ -26,6 +26,9 @@ pub enum Side {
     Inside = 3,
 }
 
+/// Bytes of an edge of a small ring while polygons are read; those of a long ring take a third.
+const EDGE_BYTES: usize = 225;
+
 /// The union of polygons.
 ///
 /// Shape: about 150 bytes for an edge, and at most 32 MiB of cells.
@@ -65,6 +68,12 @@ impl Polygons {
         let rows = Rows::new(edges);
         let cells = Cells::new(&rows.edges, |place| rows.side(place));
         Polygons { rows, cells }
+    }
+
+    /// Number of edges, and the bytes that they take.
+    pub fn size(&self) -> (usize, u64) {
+        let edges = self.rows.edges.len();
+        (edges, (EDGE_BYTES * edges + self.cells.len()) as u64)
     }
 
     /// Where a place lies. Exact for all finite coordinates.

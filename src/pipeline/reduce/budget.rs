@@ -11,21 +11,42 @@ const RAW_BYTES: usize = 28;
 const PROGRAM_BYTES: usize = 12 << 20;
 const THREAD_BYTES: usize = 4 << 20;
 
-/// Points in memory.
+/// Bytes of a node that waits for its parent, here, in the plan and in the output, beside its points; of a
+/// range of final cells; and of a wall, of which a point that is left has a few anyway.
+const NODE_BYTES: usize = 640;
+const RANGE_BYTES: usize = 40;
+const WALL_BYTES: usize = 48;
+const WALLS_PER_POINT: usize = 4;
+
+/// What waits for its cell.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Held {
+    pub(super) points: usize,
+    /// Bytes of the points of other cells than the next.
+    pub(super) buckets: usize,
+    /// Ranges of final cells.
+    pub(super) ranges: usize,
+}
+
+/// What is in memory.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Load {
-    /// Points that wait for their cell.
-    pub(super) held: usize,
+    pub(super) held: Held,
     /// Points in nodes that no node has triangulated yet.
     pub(super) raw: usize,
-    /// Points that nodes have left.
+    /// Points that nodes have left, and their walls.
     pub(super) left: usize,
+    pub(super) walls: usize,
+    /// Nodes that wait for their parent.
+    pub(super) nodes: usize,
+    /// Bytes of patches that wait to be written, beyond what points usually have.
+    pub(super) patches: usize,
 }
 
 /// The limit of a run's memory.
 ///
-/// The estimate counts points, so that it does not depend on what else the process did. It is an upper one:
-/// the process stays below it.
+/// The estimate counts what the input can make many of, so that it does not depend on what else the process
+/// did. It is an upper one: the process stays below it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Budget {
     limit: Option<u64>,
@@ -64,22 +85,33 @@ impl Budget {
         }
     }
 
-    /// Checks that points that wait for their cell, those in nodes, and a node of `next` points fit.
-    pub(super) fn check(&mut self, Load { held, raw, left }: Load, next: usize) -> Result<()> {
-        let Some(limit) = self.limit else { return Ok(()) };
+    /// Checks that what waits, what is in nodes, and a node of `next` points fit. Returns what is left, in
+    /// bytes.
+    pub(super) fn check(&mut self, load: Load, next: usize) -> Result<u64> {
+        let Some(limit) = self.limit else { return Ok(u64::MAX) };
         self.largest = self.largest.max(next);
+        let Load { held, raw, left, walls, nodes, patches } = load;
         let [raw_bytes, left_bytes, kernel_bytes] = self.bytes;
         let kernels = kernel_bytes * (self.largest + (self.threads - 1) * self.largest.min(1 << 16));
         let fixed = PROGRAM_BYTES + self.threads * THREAD_BYTES;
-        let needed = (fixed + raw_bytes * (held + raw) + left_bytes * left + kernels) as u64;
+        let walls_more = walls.saturating_sub(WALLS_PER_POINT * left);
+        let cells = NODE_BYTES * nodes + RANGE_BYTES * held.ranges;
+        let waiting = raw_bytes * (held.points + raw) + held.buckets + left_bytes * left;
+        let needed = (fixed + waiting + WALL_BYTES * walls_more + cells + patches + kernels) as u64;
         if needed <= limit {
-            return Ok(());
+            return Ok(limit - needed);
         }
         let why = if 4 * fixed as u64 > 3 * limit {
             let alone = format!("--threads {} alone takes {} MiB", self.threads, fixed.div_ceil(1 << 20));
             if self.threads > 1 { alone + ": take fewer" } else { alone }
-        } else if held > raw + left {
-            format!("{held} points wait for their cell to be complete: finalize them without --preserve")
+        } else if 2 * cells as u64 > needed - fixed as u64 {
+            let [nodes, ranges] = [nodes, held.ranges];
+            format!("{nodes} nodes of cells and {ranges} ranges of final cells so far: finalize with larger cells")
+        } else if 2 * WALL_BYTES * walls_more > waiting {
+            format!("{walls} walls around final simplices so far, which grow with the square of points on curves")
+        } else if held.points > raw + left {
+            let points = held.points;
+            format!("{points} points wait for their cell to be complete: finalize them without --preserve")
         } else if next > (raw + left) / 2 {
             format!("{next} points must be triangulated at once, because their simplices reach far")
         } else {
@@ -103,7 +135,9 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_named() {
-        let load = |held, raw, left| Load { held, raw, left };
+        let load = |points, raw, left| {
+            Load { held: Held { points, ..Held::default() }, raw, left, ..Load::default() }
+        };
         let mut unlimited = Budget::new::<Plane, 2>(None, 2, 0);
         unlimited.check(load(usize::MAX / 64, 0, 0), 0).expect("no limit");
         let mut budget = Budget::new::<Plane, 2>(Some(64 << 20), 1, 0);
