@@ -128,7 +128,10 @@ fn write_thinned(
     observer.pass(Pass::Thin, input.description().stated_points);
     let winners = thin.winners(input, &options.budget, |points| observer.done(points))?;
     let (time, thinned) = (start.elapsed(), winners.dropped());
-    let options = Options { budget: options.budget.beside(winners.bytes(), WINNERS, "give larger cells to --thin")?, ..options.clone() };
+    let options = Options {
+        budget: options.budget.beside(winners.bytes(), WINNERS, "give larger cells to --thin")?,
+        ..options.clone()
+    };
     let mut stats = write(&Thinned::new(input, winners), added, &options, observer, output)?;
     stats.thinned = thinned;
     stats.passes.insert(0, (Pass::Thin.name(), time));

@@ -106,9 +106,13 @@ impl Budget {
             if self.threads > 1 { alone + ": take fewer" } else { alone }
         } else if 2 * cells as u64 > needed - fixed as u64 {
             let [nodes, ranges] = [nodes, held.ranges];
-            format!("{nodes} nodes of cells and {ranges} ranges of final cells so far: finalize with larger cells")
+            format!(
+                "{nodes} nodes of cells and {ranges} ranges of final cells so far: finalize with larger cells"
+            )
         } else if 2 * WALL_BYTES * walls_more > waiting {
-            format!("{walls} walls around final simplices so far, which grow with the square of points on curves")
+            format!(
+                "{walls} walls around final simplices so far, which grow with the square of points on curves"
+            )
         } else if held.points > raw + left {
             let points = held.points;
             format!("{points} points wait for their cell to be complete: finalize them without --preserve")
@@ -135,8 +139,11 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_named() {
-        let load = |points, raw, left| {
-            Load { held: Held { points, ..Held::default() }, raw, left, ..Load::default() }
+        let load = |points, raw, left| Load {
+            held: Held { points, ..Held::default() },
+            raw,
+            left,
+            ..Load::default()
         };
         let mut unlimited = Budget::new::<Plane, 2>(None, 2, 0);
         unlimited.check(load(usize::MAX / 64, 0, 0), 0).expect("no limit");
@@ -150,6 +157,12 @@ mod tests {
         assert!(refused(&mut budget, load(3_000_000, 0, 10_000), 0).contains("--preserve"));
         assert!(refused(&mut budget, load(0, 0, 2_000_000), 10_000).contains("later points"));
         assert!(refused(&mut budget, load(0, 500_000, 0), 500_000).contains("at once"));
+        let (nodes, walls) = (100_000, 10_000_000);
+        assert!(refused(&mut budget, Load { nodes, ..Load::default() }, 0).contains("100000 nodes of cells"));
+        assert!(refused(&mut budget, Load { walls, ..Load::default() }, 0).contains("10000000 walls"));
+        let ranges = Held { ranges: 2_000_000, ..Held::default() };
+        assert!(refused(&mut budget, Load { held: ranges, ..Load::default() }, 0).contains("2000000 ranges"));
+        assert!(budget.check(Load { patches: 60 << 20, ..Load::default() }, 0).is_err());
         let mut tiny = Budget::new::<Plane, 2>(Some(20 << 20), 2, 0);
         assert!(refused(&mut tiny, load(9_000, 0, 0), 9_000).contains("take fewer"));
         assert!(refused(&mut budget, Load::default(), 0).contains("MiB"), "kernels keep their memory");

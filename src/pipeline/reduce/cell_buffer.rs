@@ -123,11 +123,7 @@ impl<const D: usize> CellBuffer<D> {
     }
 
     /// Takes the tag of `cell`. `fresh` gives an empty residual whose memory is reused.
-    pub(super) fn tag(
-        &mut self,
-        cell: CellCode,
-        fresh: impl FnOnce() -> Residual<D>,
-    ) -> Result<Tagged<D>> {
+    pub(super) fn tag(&mut self, cell: CellCode, fresh: impl FnOnce() -> Residual<D>) -> Result<Tagged<D>> {
         let (Some(tree), Some(finalized)) = (self.tree, &mut self.finalized) else {
             return Err(Error::malformed("cell tag in a stream without a finalization tree"));
         };
@@ -183,11 +179,7 @@ impl<const D: usize> CellBuffer<D> {
     }
 
     /// The points of the buckets in `range`, in the order of the range, followed by those in no bucket.
-    fn take(
-        &mut self,
-        range: std::ops::Range<u64>,
-        fresh: impl FnOnce() -> Residual<D>,
-    ) -> Residual<D> {
+    fn take(&mut self, range: std::ops::Range<u64>, fresh: impl FnOnce() -> Residual<D>) -> Residual<D> {
         self.bounds = None;
         self.merging.restart();
         let mut current = Residual::default();

@@ -8,13 +8,13 @@ use super::cell_buffer::{CellBuffer, Tagged};
 use super::merging::Merging;
 use super::residual::Residual;
 use spmesh_base::error::Result;
-use spmesh_stream::model::bounds::Region;
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::model::cells::CellCode;
 use spmesh_stream::{Event, StreamReader};
 
-/// Points, and tags of empty cells, after which a piece tells how many were read: a message for each block
-/// would wake the coordinator five times for each cell.
-const REPORTED: u64 = 1 << 16;
+/// Bytes of points, and tags of empty cells, after which a piece tells how many were read: a message for each
+/// block would wake the coordinator five times for each cell.
+const REPORTED_BYTES: usize = 3 << 19;
 const EMPTY_REPORTED: u64 = 1 << 12;
 
 /// The next piece of the stream.
@@ -51,7 +51,9 @@ pub(super) struct CellReader<R: Read, const D: usize> {
     /// Tags that were read and not passed on.
     tags: VecDeque<CellCode>,
     cells: u64,
-    /// Points at the last [`Piece::Read`], and tags of empty cells since the last piece.
+    /// Points after which the next piece is a [`Piece::Read`], points at the last one, and tags of empty cells
+    /// since the last piece.
+    report: u64,
     reported: u64,
     empty: u64,
 }
@@ -59,8 +61,10 @@ pub(super) struct CellReader<R: Read, const D: usize> {
 impl<R: Read, const D: usize> CellReader<R, D> {
     /// A reader that leaves out points outside of `region`.
     pub(super) fn new(reader: StreamReader<R>, region: Region<D>, merging: Merging) -> Self {
-        let buffer = CellBuffer::new(reader.header().tree, region, merging);
-        CellReader { reader, buffer, tags: VecDeque::new(), cells: 0, reported: 0, empty: 0 }
+        let header = reader.header();
+        let buffer = CellBuffer::new(header.tree, region, merging);
+        let report = (REPORTED_BYTES / (size_of::<Point>() + header.attributes.row_len())) as u64;
+        CellReader { reader, buffer, tags: VecDeque::new(), cells: 0, report, reported: 0, empty: 0 }
     }
 
     /// The next piece; must not be called after the end. `fresh` gives empty residuals whose memory is used
@@ -89,7 +93,7 @@ impl<R: Read, const D: usize> CellReader<R, D> {
                     }
                     self.reader.give_back(points);
                     let read = self.reader.totals().points;
-                    if read - self.reported >= REPORTED {
+                    if read - self.reported >= self.report {
                         return Ok(self.read());
                     }
                 }

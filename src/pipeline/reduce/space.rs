@@ -67,8 +67,12 @@ impl Space {
         match (error, self.spare) {
             (delaunay::Error::TooManyTetrahedra(so_far), Some(_)) => {
                 let why = "their number grows with the square of that of points on curves or lines";
-                let message = format!("{points} points have {so_far} tetrahedra so far, which --memory has no");
-                Error::new(ErrorKind::Memory, format!("{message} room for: {why}; raise it, or thin the points"))
+                let message =
+                    format!("{points} points have {so_far} tetrahedra so far, which --memory has no");
+                Error::new(
+                    ErrorKind::Memory,
+                    format!("{message} room for: {why}; raise it, or thin the points"),
+                )
             }
             (error, _) => Error::of_computation(error),
         }
