@@ -21,7 +21,7 @@ use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::Point;
 
 /// Bytes of a vertex of lines, while they are read.
-const LINE_BYTES: u64 = 300;
+const LINE_BYTES: u64 = 120;
 
 /// What is finalized, and how.
 #[derive(Debug, Clone)]

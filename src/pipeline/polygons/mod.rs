@@ -26,8 +26,9 @@ pub enum Side {
     Inside = 3,
 }
 
-/// Bytes of an edge of a small ring while polygons are read; those of a long ring take a third.
-const EDGE_BYTES: usize = 225;
+/// Bytes of an edge, and of a polygon beside its edges, while polygons are read.
+const EDGE_BYTES: usize = 130;
+const POLYGON_BYTES: usize = 420;
 
 /// The union of polygons.
 ///
@@ -72,8 +73,8 @@ impl Polygons {
 
     /// Number of edges, and the bytes that they take.
     pub fn size(&self) -> (usize, u64) {
-        let edges = self.rows.edges.len();
-        (edges, (EDGE_BYTES * edges + self.cells.len()) as u64)
+        let (edges, polygons) = (self.rows.edges.len(), self.rows.polygons());
+        (edges, (EDGE_BYTES * edges + POLYGON_BYTES * polygons + self.cells.len()) as u64)
     }
 
     /// Where a place lies. Exact for all finite coordinates.
