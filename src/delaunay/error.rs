@@ -18,7 +18,7 @@ pub enum Error {
         /// How many it takes.
         most: usize,
     },
-    /// More tetrahedra would arise than the kernel can number.
+    /// More tetrahedra would arise than the kernel may make.
     TooManyTetrahedra(usize),
     /// A coordinate or a weight is infinite or not a number.
     NotFinite {

@@ -5,6 +5,7 @@
 //! This is a program of its own, because the peak of a child process is never less than what its parent had.
 
 mod bombs;
+mod budgets;
 mod cases;
 mod code;
 mod headers;

@@ -48,7 +48,7 @@ use std::borrow::Cow;
 use std::num::NonZeroUsize;
 use std::time::Instant;
 use weights::{Equal, PerVertex, Weights};
-use whole::{Setting, Tally, Whole};
+use whole::{Setting, TETRAHEDRA_MAX, Tally, Whole};
 
 /// Greatest number of points: the words of tetrahedra, 8 for each of about 8 per point, are numbered in 32
 /// bits.
@@ -73,6 +73,9 @@ pub struct Kernel {
     pub threads: NonZeroUsize,
     /// The least number of points that is worth a thread.
     pub points_per_thread: usize,
+    /// Number of tetrahedra, with those at infinity and those that insertions have deleted, from which
+    /// [`Kernel::triangulate`] gives up: points on curves have a number that grows with the square of theirs.
+    pub tetrahedra_max: usize,
     /// Whether the parts of insertions are timed ([`Stats`]), which takes some time itself.
     pub is_timed: bool,
     /// Whether portable instructions are used only: for tests.
@@ -89,6 +92,7 @@ impl Default for Kernel {
             by_bit_levels: false,
             threads: NonZeroUsize::MIN,
             points_per_thread: POINTS_PER_THREAD,
+            tetrahedra_max: TETRAHEDRA_MAX,
             is_timed: false,
             is_portable: false,
         }
@@ -111,8 +115,8 @@ impl Kernel {
     ///
     /// # Errors
     /// Malformed, if a coordinate is not finite; usage, if there are too many points: `mesh` is unchanged
-    /// then. I/O, if there are too many tetrahedra, which even [`MAX_POINTS`] points have only in rare
-    /// configurations.
+    /// then. I/O, if there are more tetrahedra than [`Kernel::tetrahedra_max`], which even [`MAX_POINTS`]
+    /// points have only in rare configurations.
     ///
     /// Cost: O(n) for points that are spread evenly in space. Memory: about 250 bytes per point.
     pub fn triangulate(&mut self, points: Cow<[Point3]>, mesh: &mut Tetrahedralization) -> Result<()> {
@@ -183,7 +187,8 @@ impl Kernel {
                 is_portable: self.is_portable,
             };
             let (vertices, tetrahedra) = (&mut mesh.vertices, &mut mesh.tetrahedra);
-            let mut whole = Whole::new(std::mem::take(vertices), std::mem::take(tetrahedra), first);
+            let (vertices, tetrahedra) = (std::mem::take(vertices), std::mem::take(tetrahedra));
+            let mut whole = Whole::new(vertices, tetrahedra, first, self.tetrahedra_max);
             let mut tally = Tally::default();
             let inserted = self.insert_all(&mut whole, &setting, insertions, &mut tally);
             self.counts.merge(&tally.counts);

@@ -21,7 +21,7 @@ use super::complex::{Complex, DELETED, FROZEN, TETRAHEDRA_PER_VERTEX};
 use super::insertion::Buffers;
 use super::tetrahedralization::{NONE, Tetrahedron, WORDS};
 use super::weights::Weights;
-use super::whole::{NUMBERED, Setting, Tally, Whole};
+use super::whole::{Setting, Tally, Whole};
 use super::words::Words;
 use crate::error::Result;
 use crate::order::Insertions;
@@ -67,7 +67,7 @@ pub(super) fn insert<W: Weights>(
     }
     let share = inserted as f64 / finite as f64;
     let there = whole.tetrahedra.len();
-    let most = (NUMBERED - there) / parts.len();
+    let most = whole.room_max().saturating_sub(there) / parts.len();
     let rooms = parts.iter().zip(&vertices);
     let rooms: Vec<usize> =
         rooms.map(|(part, vertices)| room(part, share, vertices.len()).min(most)).collect();

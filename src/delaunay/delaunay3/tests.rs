@@ -1,7 +1,7 @@
 //! The lanes that are everywhere against those of the processor at hand, which the integration tests prove
 //! right.
 
-use super::{Kernel, Point3, Tetrahedralization};
+use super::{Error, Kernel, Point3, Tetrahedralization};
 use std::borrow::Cow;
 use std::num::NonZeroUsize;
 
@@ -112,6 +112,24 @@ fn small_sets_in_buffers_of_others() {
         let weights: Vec<f64> = (0..points.len()).map(|i| (i % 3) as f64 * 0.01).collect();
         kernel.triangulate_weighted(Cow::Borrowed(points), &weights, &mut mesh).expect("finite weights");
         assert!(!mesh.tetrahedra().is_empty());
+    }
+}
+
+/// Points of two lines have as many tetrahedra as there are pairs of edges; with threads or without, the kernel
+/// stops at the limit, and makes as many as it may.
+#[test]
+fn tetrahedra_have_a_limit() {
+    let side = |t: i32| [[f64::from(t), 0.0, 0.0], [0.0, f64::from(t), 1.0]];
+    let points: Vec<Point3> = (0..60).flat_map(side).collect();
+    let mut mesh = Tetrahedralization::default();
+    for threads in [1, 3].map(|threads| NonZeroUsize::new(threads).expect("a positive number")) {
+        let mut kernel = Kernel { threads, points_per_thread: 4, ..Kernel::default() };
+        kernel.tetrahedra_max = 2_000;
+        let refused = kernel.triangulate(Cow::Borrowed(&points), &mut mesh);
+        assert_eq!(refused, Err(Error::TooManyTetrahedra(2_000)), "{threads} threads");
+        kernel.tetrahedra_max = 5_000;
+        kernel.triangulate(Cow::Borrowed(&points), &mut mesh).expect("room for all");
+        assert_eq!(mesh.tetrahedra().len(), 59 * 59);
     }
 }
 

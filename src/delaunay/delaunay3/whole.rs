@@ -17,7 +17,7 @@ use std::num::NonZeroUsize;
 pub(super) const NUMBERED: usize = 1 << 29;
 
 /// Greatest number of tetrahedra. It leaves numbers for one more star of all vertices.
-const TETRAHEDRA_MAX: usize = NUMBERED - 2 * MAX_POINTS;
+pub(super) const TETRAHEDRA_MAX: usize = NUMBERED - 2 * MAX_POINTS;
 
 /// How much denser points are after a phase than before.
 const PHASE_FACTOR: usize = 8;
@@ -60,22 +60,30 @@ pub(super) struct Whole {
     /// Number of tetrahedra that there is room for. The array may have more capacity, from earlier uses; the
     /// order of tetrahedra must not depend on it.
     pub(super) room: usize,
+    /// Number of tetrahedra from which there is no more room for others.
+    most: usize,
     /// See [`Complex::numbers`].
     numbers: Vec<u32>,
 }
 
 impl Whole {
     /// The first tetrahedron and those around it, in the memory of an array.
-    pub(super) fn new(vertices: Vec<Vertex>, mut tetrahedra: Vec<Tetrahedron>, first: [u32; 4]) -> Whole {
+    pub(super) fn new(
+        vertices: Vec<Vertex>,
+        mut tetrahedra: Vec<Tetrahedron>,
+        first: [u32; 4],
+        most: usize,
+    ) -> Whole {
         tetrahedra.clear();
-        let room = first_room(vertices.len());
+        let most = most.min(TETRAHEDRA_MAX);
+        let room = first_room(vertices.len()).min(room_max(most, vertices.len()));
         if tetrahedra.capacity() < room {
             // To enlarge the array would copy, and so touch, all of its capacity.
             drop(tetrahedra);
             tetrahedra = Vec::with_capacity(room);
         }
         let numbers = vec![0; vertices.len()];
-        let mut whole = Whole { vertices, tetrahedra, free: Vec::new(), room, numbers };
+        let mut whole = Whole { vertices, tetrahedra, free: Vec::new(), room, most, numbers };
         whole.change(|complex| complex.begin(first));
         whole
     }
@@ -145,13 +153,23 @@ impl Whole {
     #[cold]
     fn grow(&mut self) -> Result<()> {
         let len = self.tetrahedra.len();
-        if len >= TETRAHEDRA_MAX {
-            return Err(Error::TooManyTetrahedra(TETRAHEDRA_MAX));
+        if len >= self.most {
+            return Err(Error::TooManyTetrahedra(self.most));
         }
-        self.room = greater_room(len, self.vertices.len());
+        self.room = greater_room(len, self.vertices.len()).min(self.room_max());
         self.tetrahedra.reserve_exact(self.room - len);
         Ok(())
     }
+
+    /// The greatest room.
+    pub(super) fn room_max(&self) -> usize {
+        room_max(self.most, self.vertices.len())
+    }
+}
+
+/// The greatest room for `most` tetrahedra: with it, one more star of all vertices.
+fn room_max(most: usize, vertices: usize) -> usize {
+    (most + 2 * vertices).min(NUMBERED)
 }
 
 /// Room to begin with.

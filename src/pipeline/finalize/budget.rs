@@ -77,14 +77,12 @@ impl Budget {
         })
     }
 
-    /// What is left beside `bytes` that note which points thinning keeps.
-    pub(super) fn beside_winners(self, bytes: u64) -> Result<Budget> {
+    /// What is left beside `bytes` that `what` takes; `remedy` is another one than more memory.
+    pub(super) fn beside(self, bytes: u64, what: &str, remedy: &str) -> Result<Budget> {
         Budget::of_engine(self.bytes.saturating_sub(bytes)).map_err(|_| {
-            let message = format!("thinning: noting the kept points takes {} MiB", bytes.div_ceil(1 << 20));
-            Error::new(
-                ErrorKind::Memory,
-                format!("{message}: raise --memory, or give larger cells to --thin"),
-            )
+            let (needed, left) = (bytes.div_ceil(1 << 20), self.bytes >> 20);
+            let message = format!("{what} {needed} MiB, and the memory budget leaves {left}");
+            Error::new(ErrorKind::Memory, format!("{message}: raise --memory, or {remedy}"))
         })
     }
 

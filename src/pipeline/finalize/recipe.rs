@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use super::added::AddedPoints;
+use super::budget::Budget;
 use super::options::Options;
 use super::passes::{Observer, Passes};
 use super::run::Stats;
@@ -18,6 +19,9 @@ use spmesh_delaunay::network::Network;
 use spmesh_formats::source::{Description, Dropped, Input, SourceOptions};
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::{Bounds, Point};
+
+/// Bytes of a vertex of lines, while they are read.
+const LINE_BYTES: u64 = 120;
 
 /// What is finalized, and how.
 #[derive(Debug, Clone)]
@@ -137,13 +141,14 @@ impl Recipe {
         let [all, stated] = self.added(&network, &levels, &water, &target);
         let added = AddedPoints::new(all);
         let has_lines = !network.vertices.is_empty();
+        let budget = self.budget_beside(&areas, network.vertices.len())?;
         drop(network);
         let selected = Selected::new(input, &areas);
         // Without polygons, no point takes a way round.
         let points: &dyn Passes = if areas.keep_all() { input } else { &selected };
         let weighed =
             self.weighing.as_ref().map(|weighing| Weighed::new(points, &weighing.source)).transpose()?;
-        let mut options = self.options.clone();
+        let mut options = Options { budget, ..self.options.clone() };
         if let Some(weighed) = &weighed {
             options.weighted = Some(weighed.weighted(observer)?);
         }
@@ -162,6 +167,15 @@ impl Recipe {
             levels,
             salvaged: Vec::new(),
         })
+    }
+
+    /// What is left of the memory beside polygons, and lines of so many vertices.
+    fn budget_beside(&self, areas: &Areas, vertices: usize) -> Result<Budget> {
+        let (edges, bytes) = areas.size();
+        let what = format!("{edges} edges of polygons take");
+        let budget = self.options.budget.beside(bytes, &what, "give simpler polygons")?;
+        let what = format!("{vertices} vertices of lines take");
+        budget.beside(LINE_BYTES * vertices as u64, &what, "give fewer lines at once")
     }
 
     /// Lines and water, and what was changed about them.

@@ -113,6 +113,8 @@ fn write(
     Ok(work.stats)
 }
 
+const WINNERS: &str = "thinning: noting the kept points takes";
+
 /// Finds the points that are kept, and writes them.
 fn write_thinned(
     input: &dyn Passes,
@@ -126,7 +128,10 @@ fn write_thinned(
     observer.pass(Pass::Thin, input.description().stated_points);
     let winners = thin.winners(input, &options.budget, |points| observer.done(points))?;
     let (time, thinned) = (start.elapsed(), winners.dropped());
-    let options = Options { budget: options.budget.beside_winners(winners.bytes())?, ..options.clone() };
+    let options = Options {
+        budget: options.budget.beside(winners.bytes(), WINNERS, "give larger cells to --thin")?,
+        ..options.clone()
+    };
     let mut stats = write(&Thinned::new(input, winners), added, &options, observer, output)?;
     stats.thinned = thinned;
     stats.passes.insert(0, (Pass::Thin.name(), time));

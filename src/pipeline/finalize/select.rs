@@ -50,6 +50,13 @@ impl Areas {
         Areas { water: Some(Polygons::of_edges(edges)), ..self }
     }
 
+    /// Number of edges of all polygons, and the bytes that they take.
+    pub(super) fn size(&self) -> (usize, u64) {
+        let clip = self.clip.as_ref().map(|(clip, _)| clip);
+        let all = clip.into_iter().chain(&self.drop).chain(&self.water).map(Polygons::size);
+        all.fold((0, 0), |(edges, bytes), (more, more_bytes)| (edges + more, bytes + more_bytes))
+    }
+
     /// Whether all points are kept.
     pub(super) fn keep_all(&self) -> bool {
         self.clip.is_none() && self.drop.is_none() && self.water.is_none()

@@ -36,7 +36,8 @@ pub(super) struct Shared<const D: usize> {
     #[arg(long, value_name = "N", value_parser = parse_threads())]
     threads: Option<NonZeroUsize>,
 
-    /// Memory limit of the process: fail (exit 5) rather than exceed it [default: none]
+    /// Memory limit of the process, for points, cells and simplices: fail (exit 5) rather than exceed it
+    /// [default: none]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory: Option<u64>,
 

@@ -86,6 +86,11 @@ impl Cells {
         }
     }
 
+    /// Number of cells, of a byte each.
+    pub(super) fn len(&self) -> usize {
+        self.states.len()
+    }
+
     /// A place in a cell, far from its border.
     fn centre(&self, cell: [usize; 2]) -> Point2 {
         [0, 1].map(|axis| 2.0 * (0.5 * self.min[axis] + (cell[axis] as f64 + 0.5) / self.scale))

@@ -26,6 +26,10 @@ pub enum Side {
     Inside = 3,
 }
 
+/// Bytes of an edge, and of a polygon beside its edges, while polygons are read.
+const EDGE_BYTES: usize = 130;
+const POLYGON_BYTES: usize = 420;
+
 /// The union of polygons.
 ///
 /// Shape: about 150 bytes for an edge, and at most 32 MiB of cells.
@@ -65,6 +69,12 @@ impl Polygons {
         let rows = Rows::new(edges);
         let cells = Cells::new(&rows.edges, |place| rows.side(place));
         Polygons { rows, cells }
+    }
+
+    /// Number of edges, and the bytes that they take.
+    pub fn size(&self) -> (usize, u64) {
+        let (edges, polygons) = (self.rows.edges.len(), self.rows.polygons());
+        (edges, (EDGE_BYTES * edges + POLYGON_BYTES * polygons + self.cells.len()) as u64)
     }
 
     /// Where a place lies. Exact for all finite coordinates.

@@ -64,6 +64,11 @@ impl Rows {
         found
     }
 
+    /// Number of polygons with edges, or more.
+    pub(super) fn polygons(&self) -> usize {
+        self.edges.last().map_or(0, |edge| edge.polygon as usize + 1)
+    }
+
     fn rows(&self) -> usize {
         self.starts.len() - 1
     }

@@ -69,6 +69,16 @@ pub(super) trait Bulk<const D: usize>: Default {
         let _ = threads;
     }
 
+    /// Allows triangulations so many bytes beyond [`Bulk::KERNEL_BYTES`] for each point.
+    fn allow(&mut self, bytes: u64) {
+        let _ = bytes;
+    }
+
+    /// Gives back memory, if the last triangulation of so many points took more than that.
+    fn shrink(&mut self, points: usize) {
+        let _ = points;
+    }
+
     /// Triangulates `points` canonically; if they have weights, as their regular triangulation.
     fn triangulate(&mut self, points: &Residual<D>, weights: Option<Weights>) -> Result<()>;
 

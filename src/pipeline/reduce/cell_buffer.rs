@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::budget::Held;
 use super::duplicates::Merged;
 use super::merging::Merging;
 use super::residual::Residual;
@@ -10,11 +11,50 @@ use spmesh_stream::FinalizedCells;
 use spmesh_stream::model::bounds::{Bounds, Point, Region};
 use spmesh_stream::model::cells::{CellCode, CellTree};
 
+/// Bytes of a bucket beside its points: its entry, and what the allocator adds.
+const BUCKET_BYTES: usize = 192;
+
 /// Points of one deepest cell, with their rows if there are attributes.
 #[derive(Default)]
 struct Bucket {
     points: Vec<Point>,
     rows: Vec<u8>,
+}
+
+impl Bucket {
+    fn push(&mut self, point: Point, row: &[u8]) {
+        if self.points.len() == self.points.capacity() {
+            // Doubling would leave up to half of the memory idle.
+            let more = 1 + self.points.len() / 8;
+            self.points.reserve_exact(more);
+            self.rows.reserve_exact(more * row.len());
+        }
+        self.points.push(point);
+        self.rows.extend_from_slice(row);
+    }
+
+    fn bytes(&self) -> usize {
+        BUCKET_BYTES + self.points.capacity() * size_of::<Point>() + self.rows.capacity()
+    }
+}
+
+/// A cell that has become final.
+#[derive(Debug)]
+pub(super) struct Tagged<const D: usize> {
+    pub(super) cell: CellCode,
+    /// Its points in the order of the stream, without those of parts that were final before.
+    pub(super) points: Residual<D>,
+    /// Whether no part of it was final before.
+    pub(super) is_whole: bool,
+    /// How many of the cells above it are final now, as all of their parts are.
+    pub(super) completes: u8,
+}
+
+impl<const D: usize> Tagged<D> {
+    /// Whether nothing follows from it.
+    pub(super) fn is_nothing(&self) -> bool {
+        self.points.is_empty() && self.is_whole && self.completes == 0
+    }
 }
 
 /// Points whose cell is not final yet.
@@ -32,6 +72,8 @@ pub(super) struct CellBuffer<const D: usize> {
     bounds: Option<Bounds>,
     buckets: BTreeMap<u64, Bucket>,
     in_buckets: usize,
+    /// Bytes of all buckets.
+    bytes: usize,
     held_max: usize,
     accepted: u64,
     outside: u64,
@@ -49,6 +91,7 @@ impl<const D: usize> CellBuffer<D> {
             bounds: None,
             buckets: BTreeMap::new(),
             in_buckets: 0,
+            bytes: 0,
             held_max: 0,
             accepted: 0,
             outside: 0,
@@ -73,34 +116,35 @@ impl<const D: usize> CellBuffer<D> {
             self.outside += (points.len() - (self.current.len() - before)) as u64;
         }
         self.bounds = Some(self.bounds.map_or(*bounds, |all| all.union(*bounds)));
-        self.held_max = self.held_max.max(self.held());
+        self.held_max = self.held_max.max(self.held().points);
         let merged = self.merging.merge(&mut self.current)?;
         self.accepted += merged.points;
         self.merged += merged;
         Ok(())
     }
 
-    /// Takes the tag of `cell`. Returns the points of the cell, in the order of the stream, and whether they
-    /// are all of its points: they are not if a part of the cell was final before. `fresh` is an empty
-    /// residual whose memory is reused.
-    pub(super) fn tag(&mut self, cell: CellCode, fresh: Residual<D>) -> Result<(Residual<D>, bool)> {
+    /// Takes the tag of `cell`. `fresh` gives an empty residual whose memory is reused.
+    pub(super) fn tag(&mut self, cell: CellCode, fresh: impl FnOnce() -> Residual<D>) -> Result<Tagged<D>> {
         let (Some(tree), Some(finalized)) = (self.tree, &mut self.finalized) else {
             return Err(Error::malformed("cell tag in a stream without a finalization tree"));
         };
         let is_whole = finalized.is_open_cell(cell);
         finalized.finalize(cell)?;
-        let (min, max) = tree.corners(cell);
-        let inside = Region::between(min, max);
-        if !self.all_inside(&inside) {
-            self.move_to_buckets(&tree);
+        let above = std::iter::successors(tree.parent(cell), |&cell| tree.parent(cell));
+        let completes = above.take_while(|&cell| finalized.is_final_cell(cell)).count() as u8;
+        if !self.current.is_empty() {
+            let (min, max) = tree.corners(cell);
+            if !self.all_inside(&Region::between(min, max)) {
+                self.move_to_buckets(&tree);
+            }
         }
         let points = self.take(tree.deepest_range(cell), fresh);
-        Ok((points, is_whole))
+        Ok(Tagged { cell, points, is_whole, completes })
     }
 
     /// The points whose cells were never tagged.
     pub(super) fn rest(&mut self) -> Residual<D> {
-        self.take(0..u64::MAX, Residual::default())
+        self.take(0..u64::MAX, Residual::default)
     }
 
     /// Points passed on so far.
@@ -118,9 +162,10 @@ impl<const D: usize> CellBuffer<D> {
         self.merged
     }
 
-    /// Points held now.
-    pub(super) fn held(&self) -> usize {
-        self.current.len() + self.in_buckets
+    /// What is held now.
+    pub(super) fn held(&self) -> Held {
+        let ranges = self.finalized.as_ref().map_or(0, FinalizedCells::ranges);
+        Held { points: self.current.len() + self.in_buckets, buckets: self.bytes, ranges }
     }
 
     /// Most points held at once.
@@ -135,11 +180,14 @@ impl<const D: usize> CellBuffer<D> {
     }
 
     /// The points of the buckets in `range`, in the order of the range, followed by those in no bucket.
-    fn take(&mut self, range: std::ops::Range<u64>, fresh: Residual<D>) -> Residual<D> {
+    fn take(&mut self, range: std::ops::Range<u64>, fresh: impl FnOnce() -> Residual<D>) -> Residual<D> {
         self.bounds = None;
         self.merging.restart();
-        let current = std::mem::replace(&mut self.current, fresh);
-        self.accepted += current.len() as u64;
+        let mut current = Residual::default();
+        if !self.current.is_empty() {
+            self.accepted += self.current.len() as u64;
+            current = std::mem::replace(&mut self.current, fresh());
+        }
         let keys: Vec<u64> = self.buckets.range(range).map(|(&key, _)| key).collect();
         if keys.is_empty() {
             return current;
@@ -147,6 +195,7 @@ impl<const D: usize> CellBuffer<D> {
         let mut points = Residual::default();
         for bucket in keys.iter().filter_map(|key| self.buckets.remove(key)) {
             self.in_buckets -= bucket.points.len();
+            self.bytes -= bucket.bytes();
             self.accepted += bucket.points.len() as u64;
             points.extend_raw(&bucket.points, &bucket.rows);
         }
@@ -158,8 +207,9 @@ impl<const D: usize> CellBuffer<D> {
         for i in 0..self.current.len() {
             let point = self.current.point(i);
             let bucket = self.buckets.entry(tree.cell_of(point, tree.depth()).0).or_default();
-            bucket.points.push(point);
-            bucket.rows.extend_from_slice(self.current.row(i));
+            let before = if bucket.points.is_empty() { 0 } else { bucket.bytes() };
+            bucket.push(point, self.current.row(i));
+            self.bytes += bucket.bytes() - before;
         }
         self.in_buckets += self.current.len();
         self.current.clear();

@@ -39,8 +39,15 @@ const POINTS_PER_WORKER: usize = 1 << 16;
 /// Nodes per worker, waiting or being triangulated, from which the coordinator takes no more input.
 const JOBS_PER_WORKER: usize = 3;
 
-/// Pieces of the input that are read ahead.
-const PIECES_AHEAD: usize = 2;
+/// Batches of pieces of the input that are read ahead.
+const BATCHES_AHEAD: usize = 2;
+
+/// Points of a batch, of which each piece counts as a few. Larger pieces come alone.
+const BATCH_POINTS: usize = 1 << 12;
+const PIECE_POINTS_MIN: usize = 1 << 5;
+
+/// Nodes of up to so many points are triangulated by the coordinator: to hand them over would take longer.
+const SMALL: usize = 64;
 
 /// Buffers of each kind that wait to be used again.
 const POOL_LEN: usize = 16;
@@ -61,18 +68,39 @@ where
 {
     let buffers = Buffers::new(B::KEPT_BLOCKS_MAX);
     let raw = buffers.raw.clone();
-    let next = move || match reader.next(|| raw.take()) {
-        last @ (Ok(Piece::End(_)) | Err(_)) => ControlFlow::Break(last),
-        piece => ControlFlow::Continue(piece),
-    };
+    let next = move || next_batch(&mut reader, &raw);
     // Started outside of the scope: a failure must not wait for an input that stays silent.
-    let pieces = parallel::produce("reader", PIECES_AHEAD, next)?;
+    let batches = parallel::produce("reader", BATCHES_AHEAD, next)?;
     std::thread::scope(move |scope| {
         let (pool, channels) = WorkerPool::start::<B, D>(scope, sequencer, run.rules, workers, &buffers)?;
         // The buffers are then freed with the last of the threads, before the root is triangulated.
         drop(buffers);
-        pool.coordinate::<B, D>(run, channels, &pieces, workers, progress)
+        pool.coordinate::<B, D>(run, channels, &batches, workers, progress)
     })
+}
+
+/// Pieces of the input, the last of which may be an error.
+type Batch<const D: usize> = Vec<Result<Piece<D>>>;
+
+/// The next pieces of the input: one that is large, or several.
+fn next_batch<R: Read, const D: usize>(
+    reader: &mut CellReader<R, D>,
+    raw: &BufferPool<Residual<D>>,
+) -> ControlFlow<Batch<D>, Batch<D>> {
+    let (mut batch, mut points) = (Vec::new(), 0);
+    while points < BATCH_POINTS {
+        let piece = reader.next(|| raw.take());
+        points += match &piece {
+            Ok(Piece::Cell { tagged, .. }) => tagged.points.len().max(PIECE_POINTS_MIN),
+            Ok(Piece::Read { .. }) => BATCH_POINTS,
+            Ok(Piece::End(_)) | Err(_) => {
+                batch.push(piece);
+                return ControlFlow::Break(batch);
+            }
+        };
+        batch.push(piece);
+    }
+    ControlFlow::Continue(batch)
 }
 
 /// Memory to be used again, of raw points and of blocks.
@@ -130,19 +158,47 @@ fn work<const D: usize>(
     }
 }
 
-/// Writes nodes until there are no more, and reports the points of each node that has patches.
+/// Nodes with patches that are under way, or were written.
+#[derive(Clone, Copy, Default)]
+struct UnderWay {
+    nodes: usize,
+    points: usize,
+    /// Bytes of patches beyond what points usually have.
+    bytes: usize,
+}
+
+impl UnderWay {
+    fn add(&mut self, points: usize, bytes: usize) {
+        self.nodes += 1;
+        self.points += points;
+        self.bytes += bytes;
+    }
+
+    fn subtract(&mut self, other: UnderWay) {
+        self.nodes -= other.nodes;
+        self.points -= other.points;
+        self.bytes -= other.bytes;
+    }
+}
+
+/// Writes nodes until there are no more, and reports those that have patches.
 fn write<W: Write, const D: usize>(
     mut sequencer: Sequencer<W>,
-    outputs: &Receiver<Output<D>>,
-    written: &Sender<usize>,
+    outputs: &Receiver<Vec<Output<D>>>,
+    written: &Sender<UnderWay>,
     buffers: &Buffers<D>,
 ) -> Result<Sequencer<W>> {
-    for output in outputs {
-        let (points, has_patches) = (output.points, output.solved.has_patches());
-        buffers.give_back_blocks(sequencer.write(output)?);
-        if has_patches {
+    for outputs in outputs {
+        let mut done = UnderWay::default();
+        for output in outputs {
+            if output.solved.has_patches() {
+                done.add(output.points, output.bytes_beyond());
+            }
+            buffers.give_back_blocks(sequencer.write(output)?);
+        }
+        if done.nodes > 0 {
             // The coordinator stops listening only after a failure elsewhere.
-            let _ = written.send(points);
+            let _ = written.send(done);
         }
     }
     Ok(sequencer)
@@ -159,8 +215,8 @@ struct Channels<const D: usize> {
     inner: Sender<Job<D>>,
     leaves: Sender<Job<D>>,
     done: Receiver<Done<D>>,
-    outputs: Sender<Output<D>>,
-    written: Receiver<usize>,
+    outputs: Sender<Vec<Output<D>>>,
+    written: Receiver<UnderWay>,
 }
 
 impl<'scope, W: Write + Send + 'scope> WorkerPool<'scope, W> {
@@ -203,12 +259,13 @@ impl<'scope, W: Write + Send + 'scope> WorkerPool<'scope, W> {
         self,
         mut run: Run<D>,
         channels: Channels<D>,
-        pieces: &Receiver<Result<Piece<D>>>,
+        batches: &Receiver<Batch<D>>,
         workers: usize,
         progress: impl FnMut(u64),
     ) -> Result<(Outputs<W>, Stats)> {
         let rules = run.rules;
-        let ended = dispatch(&mut run, &channels, pieces, workers, progress);
+        let mut small = Worker::<B, D>::new(rules);
+        let ended = dispatch(&mut run, &mut small, &channels, batches, workers, progress);
         drop(channels);
         let writer = self.writer.join().map_err(|_| thread_gone());
         let counts: Vec<_> = self.workers.into_iter().map(ScopedJoinHandle::join).collect();
@@ -219,7 +276,8 @@ impl<'scope, W: Write + Send + 'scope> WorkerPool<'scope, W> {
             (Err(Stop::ThreadGone), _) => return Err(thread_gone()),
             (Ok(ended), Ok(Ok(sequencer))) => (ended, sequencer),
         };
-        let mut all = PredicateCounts::default();
+        let mut all = small.counts();
+        drop(small);
         for counts in counts {
             all.merge(&counts.map_err(|_| thread_gone())?);
         }
@@ -234,57 +292,82 @@ enum Stop {
 }
 
 /// The coordinator's loop: passes on nodes that can be triangulated or written, until all are written.
-fn dispatch<const D: usize>(
+fn dispatch<B: Bulk<D>, const D: usize>(
     run: &mut Run<D>,
+    small: &mut Worker<B, D>,
     channels: &Channels<D>,
-    pieces: &Receiver<Result<Piece<D>>>,
+    batches: &Receiver<Batch<D>>,
     workers: usize,
     mut progress: impl FnMut(u64),
 ) -> std::result::Result<Box<InputSummary<D>>, Stop> {
     let nothing = never();
-    let (mut jobs, mut nodes, mut points, mut ended) = (0, 0, 0, None);
+    let (mut jobs, mut under_way, mut ended) = (0, UnderWay::default(), None);
     loop {
         while let Some(job) = run.next_job().map_err(Stop::Failed)? {
-            nodes += 1;
+            if job.len() <= SMALL {
+                solve_small(run, small, job, &mut under_way).map_err(Stop::Failed)?;
+                continue;
+            }
+            under_way.add(job.len(), 0);
             jobs += 1;
-            points += job.len();
             let queue = if job.is_leaf() { &channels.leaves } else { &channels.inner };
             queue.send(job).map_err(|_| Stop::ThreadGone)?;
         }
-        while let Some(output) = run.schedule.next_output() {
-            channels.outputs.send(output).map_err(|_| Stop::ThreadGone)?;
+        let outputs: Vec<_> = std::iter::from_fn(|| run.schedule.next_output()).collect();
+        if !outputs.is_empty() {
+            channels.outputs.send(outputs).map_err(|_| Stop::ThreadGone)?;
         }
-        if nodes == 0
+        if under_way.nodes == 0
             && let Some(ended) = ended
         {
             return Ok(ended);
         }
+        run.schedule.hold_patches(under_way.bytes);
+        let UnderWay { nodes, points, .. } = under_way;
         let takes_input =
             jobs < JOBS_PER_WORKER * workers && (nodes <= workers || points < workers * POINTS_PER_WORKER);
-        let pieces = if ended.is_none() && takes_input { pieces } else { &nothing };
+        let batches = if ended.is_none() && takes_input { batches } else { &nothing };
         select! {
             recv(channels.done) -> done => {
-                let Done { number, cell, points: solved_points, solved } = done.map_err(|_| Stop::ThreadGone)?;
+                let Done { number, cell, points, solved } = done.map_err(|_| Stop::ThreadGone)?;
                 let solved = solved.map_err(|e| Stop::Failed(run.locate(e, cell)))?;
                 jobs -= 1;
                 if !solved.has_patches() {
                     // Without patches, the node counts as done at once: otherwise it would hold back input
                     // until its turn to be written, although writing it does nothing.
-                    points -= solved_points;
-                    nodes -= 1;
+                    under_way.subtract(UnderWay { nodes: 1, points, bytes: 0 });
                 }
+                under_way.bytes += solved.bytes_beyond(points);
                 run.schedule.solved(number, solved);
             }
             recv(channels.written) -> written => {
-                points -= written.map_err(|_| Stop::ThreadGone)?;
-                nodes -= 1;
+                under_way.subtract(written.map_err(|_| Stop::ThreadGone)?);
             }
-            recv(pieces) -> piece => {
-                let piece = piece.map_err(|_| Stop::ThreadGone)?.map_err(Stop::Failed)?;
-                ended = run.take(piece, &mut progress).map_err(Stop::Failed)?;
+            recv(batches) -> batch => {
+                for piece in batch.map_err(|_| Stop::ThreadGone)? {
+                    let taken = piece.and_then(|piece| run.take(piece, &mut progress));
+                    ended = taken.map_err(Stop::Failed)?;
+                }
             }
         }
     }
+}
+
+/// Triangulates a small node on this thread.
+fn solve_small<B: Bulk<D>, const D: usize>(
+    run: &mut Run<D>,
+    small: &mut Worker<B, D>,
+    job: Job<D>,
+    under_way: &mut UnderWay,
+) -> Result<()> {
+    let (number, cell, points) = (job.number, job.cell, job.len());
+    let solved = small.solve(job, PatchBlocks::default(), drop, None);
+    let solved = solved.map_err(|error| run.locate(error, cell))?;
+    if solved.has_patches() {
+        under_way.add(points, solved.bytes_beyond(points));
+    }
+    run.schedule.solved(number, solved);
+    Ok(())
 }
 
 pub(super) fn thread_gone() -> Error {
@@ -309,6 +392,7 @@ mod tests {
                 is_root: true,
                 raw: Residual::default(),
                 parts: Vec::new(),
+                spare: u64::MAX,
             })
             .unwrap();
         }

@@ -17,6 +17,9 @@ use std::num::NonZeroUsize;
 /// Simplices that are tested together.
 const BATCH: usize = 128;
 
+/// Simplices that a point has usually, at most.
+const SIMPLICES_PER_POINT: usize = 16;
+
 /// Stands for the index of a point that is not in the residual.
 const NO_POINT: u32 = u32::MAX;
 
@@ -49,6 +52,9 @@ enum PointState {
     Hidden,
 }
 
+/// Bytes of patches that points have usually, at most.
+const PATCH_BYTES: usize = 256;
+
 /// The result of a node.
 #[derive(Debug, Default)]
 pub(super) struct Solved<const D: usize> {
@@ -66,6 +72,11 @@ impl<const D: usize> Solved<D> {
     /// Whether there is anything to write. There is nothing if the points are passed up as they are.
     pub(super) fn has_patches(&self) -> bool {
         self.blocks.count() > 0
+    }
+
+    /// Bytes of its patches beyond what so many points usually have: points on curves have more.
+    pub(super) fn bytes_beyond(&self, points: usize) -> usize {
+        self.blocks.byte_len().saturating_sub(PATCH_BYTES * points)
     }
 }
 
@@ -106,6 +117,14 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             builder: PatchBuilder::default(),
             misfit: None,
             earlier: PredicateCounts::default(),
+        }
+    }
+
+    /// Gives the memory of the last node back to the system, if it was of so many points and more simplices
+    /// than points usually have.
+    pub(super) fn shrink(&mut self, points: usize) {
+        if self.simplex_states.len() > SIMPLICES_PER_POINT * points + (1 << 16) {
+            self.forget();
         }
     }
 
@@ -172,6 +191,11 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     /// What does not fit, after [`Solver::solve`] failed.
     pub(super) fn misfit(&self) -> Option<Misfit> {
         self.misfit
+    }
+
+    /// Allows nodes so many bytes beyond those of each point.
+    pub(super) fn allow(&mut self, bytes: u64) {
+        self.bulk.allow(bytes);
     }
 
     /// Gives the next node so many threads.

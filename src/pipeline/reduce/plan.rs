@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use spmesh_stream::model::cells::{CellCode, CellTree};
 
 /// Nodes without a parent yet, keyed by the first deepest cell of their cell, so that the nodes below a cell
-/// are a range.
+/// are a range. Cells without points have no nodes: there may be far more of them.
 ///
 /// The plan depends on the order of the tags alone, and so not on the number of threads.
 ///
@@ -21,16 +21,19 @@ impl Plan {
         Plan { tree, waiting: BTreeMap::new(), next: 0 }
     }
 
-    /// Plans the node of `cell` as the parent of all nodes inside that have none. Returns the number of the
-    /// node, which is its place in the order of writing, and the numbers of its children in Morton order.
-    pub(super) fn node(&mut self, cell: CellCode) -> (u64, Vec<u64>) {
+    /// Takes the nodes inside `cell` that have no parent: their numbers in Morton order.
+    pub(super) fn take(&mut self, cell: CellCode) -> Vec<u64> {
         let range = self.range(cell);
-        let keys: Vec<u64> = self.waiting.range(range.clone()).map(|(&key, _)| key).collect();
-        let children =
-            keys.iter().filter_map(|key| self.waiting.remove(key)).map(|(_, number)| number).collect();
+        let keys: Vec<u64> = self.waiting.range(range).map(|(&key, _)| key).collect();
+        keys.iter().filter_map(|key| self.waiting.remove(key)).map(|(_, number)| number).collect()
+    }
+
+    /// Plans the node of `cell`, after [`Plan::take`]. Returns its number, which is its place in the order of
+    /// writing.
+    pub(super) fn node(&mut self, cell: CellCode) -> u64 {
         let number = self.number();
-        self.waiting.insert(range.start, (cell, number));
-        (number, children)
+        self.waiting.insert(self.range(cell).start, (cell, number));
+        number
     }
 
     /// The number of a node below the next one.
@@ -39,18 +42,14 @@ impl Plan {
         self.next - 1
     }
 
-    /// Parent of `cell`, if all its children have nodes.
-    pub(super) fn complete_parent(&self, cell: CellCode) -> Option<CellCode> {
-        let tree = self.tree.as_ref()?;
-        let parent = tree.parent(cell)?;
-        let waits =
-            |child| self.waiting.get(&self.range(child).start).is_some_and(|(code, _)| *code == child);
-        tree.children(parent).all(waits).then_some(parent)
+    /// The cell one level up.
+    pub(super) fn parent(&self, cell: CellCode) -> Option<CellCode> {
+        self.tree.as_ref()?.parent(cell)
     }
 
-    /// Whether the root has a node.
+    /// Whether no node but that of the root lacks a parent.
     pub(super) fn is_complete(&self) -> bool {
-        self.waiting.values().any(|(cell, _)| *cell == CellCode::ROOT)
+        self.waiting.values().all(|(cell, _)| *cell == CellCode::ROOT)
     }
 
     fn range(&self, cell: CellCode) -> std::ops::Range<u64> {

@@ -3,32 +3,28 @@
 use std::collections::VecDeque;
 use std::io::Read;
 
-use super::cell_buffer::CellBuffer;
+use super::budget::Held;
+use super::cell_buffer::{CellBuffer, Tagged};
 use super::duplicates::Merged;
 use super::merging::Merging;
 use super::residual::Residual;
 use spmesh_base::error::Result;
-use spmesh_stream::model::bounds::Region;
+use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::model::cells::CellCode;
 use spmesh_stream::{Event, StreamReader};
 
-/// Points after which a piece tells how many were read: a message for each block would wake the coordinator
-/// five times for each cell.
-const REPORTED: u64 = 1 << 16;
+/// Bytes of points, and tags of empty cells, after which a piece tells how many were read: a message for each
+/// block would wake the coordinator five times for each cell.
+const REPORTED_BYTES: usize = 3 << 19;
+const EMPTY_REPORTED: u64 = 1 << 12;
 
 /// The next piece of the stream.
 #[derive(Debug)]
 pub(super) enum Piece<const D: usize> {
-    /// Points were read and are held: the numbers of points read so far, and held now.
-    Points { read: u64, held: usize },
-    /// A cell is final.
-    Cell {
-        cell: CellCode,
-        /// Its points, without those of parts that were final before.
-        points: Residual<D>,
-        /// Whether no part of it was final before.
-        is_whole: bool,
-    },
+    /// Points or tags were read: the number of points read so far, and what is held now.
+    Read { points: u64, held: Held },
+    /// A cell is final: it has points, parts that were final before, or completes a cell above it.
+    Cell { tagged: Tagged<D>, held: Held },
     /// The stream is complete.
     End(Box<InputSummary<D>>),
 }
@@ -56,26 +52,39 @@ pub(super) struct CellReader<R: Read, const D: usize> {
     /// Tags that were read and not passed on.
     tags: VecDeque<CellCode>,
     cells: u64,
-    /// Points at the last [`Piece::Points`].
+    /// Points after which the next piece is a [`Piece::Read`], points at the last one, and tags of empty cells
+    /// since the last piece.
+    report: u64,
     reported: u64,
+    empty: u64,
 }
 
 impl<R: Read, const D: usize> CellReader<R, D> {
     /// A reader that leaves out points outside of `region`.
     pub(super) fn new(reader: StreamReader<R>, region: Region<D>, merging: Merging) -> Self {
-        let buffer = CellBuffer::new(reader.header().tree, region, merging);
-        CellReader { reader, buffer, tags: VecDeque::new(), cells: 0, reported: 0 }
+        let header = reader.header();
+        let buffer = CellBuffer::new(header.tree, region, merging);
+        let report = (REPORTED_BYTES / (size_of::<Point>() + header.attributes.row_len())) as u64;
+        CellReader { reader, buffer, tags: VecDeque::new(), cells: 0, report, reported: 0, empty: 0 }
     }
 
     /// The next piece; must not be called after the end. `fresh` gives empty residuals whose memory is used
     /// again.
-    pub(super) fn next(&mut self, fresh: impl FnOnce() -> Residual<D>) -> Result<Piece<D>> {
+    pub(super) fn next(&mut self, mut fresh: impl FnMut() -> Residual<D>) -> Result<Piece<D>> {
         loop {
             if let Some(cell) = self.tags.pop_front() {
                 self.cells += 1;
-                let tagged = self.buffer.tag(cell, fresh());
-                let (points, is_whole) = tagged.map_err(|e| self.reader.locate(e))?;
-                return Ok(Piece::Cell { cell, points, is_whole });
+                let tagged = self.buffer.tag(cell, &mut fresh).map_err(|e| self.reader.locate(e))?;
+                if !tagged.is_nothing() {
+                    self.empty = 0;
+                    return Ok(Piece::Cell { tagged, held: self.buffer.held() });
+                }
+                self.empty += 1;
+                if self.empty == EMPTY_REPORTED {
+                    self.empty = 0;
+                    return Ok(self.read());
+                }
+                continue;
             }
             match self.reader.next_event()? {
                 Some(Event::Points(points)) => {
@@ -85,9 +94,8 @@ impl<R: Read, const D: usize> CellReader<R, D> {
                     }
                     self.reader.give_back(points);
                     let read = self.reader.totals().points;
-                    if read - self.reported >= REPORTED {
-                        self.reported = read;
-                        return Ok(Piece::Points { read, held: self.buffer.held() });
+                    if read - self.reported >= self.report {
+                        return Ok(self.read());
                     }
                 }
                 Some(Event::Cells(cells)) => self.tags.extend(cells),
@@ -97,6 +105,11 @@ impl<R: Read, const D: usize> CellReader<R, D> {
                 }
             }
         }
+    }
+
+    fn read(&mut self) -> Piece<D> {
+        self.reported = self.reader.totals().points;
+        Piece::Read { points: self.reported, held: self.buffer.held() }
     }
 
     fn ended(&mut self) -> InputSummary<D> {

@@ -39,13 +39,13 @@ impl<const D: usize> Run<D> {
         mut progress: impl FnMut(u64),
     ) -> Result<Option<Box<InputSummary<D>>>> {
         match piece {
-            Piece::Points { read, held } => {
-                progress(read);
+            Piece::Read { points, held } => {
+                progress(points);
                 self.schedule.hold(held);
             }
-            Piece::Cell { cell, points, is_whole } => {
-                self.schedule.hold(0);
-                self.schedule.cell(cell, points, is_whole);
+            Piece::Cell { tagged, held } => {
+                self.schedule.hold(held);
+                self.schedule.cell(tagged);
             }
             Piece::End(mut ended) => {
                 self.schedule.rest(std::mem::take(&mut ended.rest));
@@ -58,22 +58,22 @@ impl<const D: usize> Run<D> {
 
     /// The next node that can be triangulated, except the root.
     pub(super) fn next_job(&mut self) -> Result<Option<Job<D>>> {
-        let Some(job) = self.schedule.next_job() else { return Ok(None) };
-        self.check_memory(job.len())?;
+        let Some(mut job) = self.schedule.next_job() else { return Ok(None) };
+        job.spare = self.check_memory(job.len())? / self.threads.get() as u64;
         Ok(Some(job))
     }
 
-    /// Checks the limit of memory before a node of `next` points is triangulated.
-    fn check_memory(&mut self, next: usize) -> Result<()> {
+    /// Checks the limit of memory before a node of `next` points is triangulated; what is left, in bytes.
+    fn check_memory(&mut self, next: usize) -> Result<u64> {
         self.budget.check(self.schedule.load(), next).map_err(|e| e.of_input(&self.name))
     }
 
     /// Adds input and cell to an error about points; returns other errors unchanged.
     pub(super) fn locate(&self, error: Error, cell: CellCode) -> Error {
-        if error.kind() == ErrorKind::Malformed {
-            error.at(format!("cell {}", cell.0)).of_input(&self.name)
-        } else {
-            error
+        match error.kind() {
+            ErrorKind::Malformed => error.at(format!("cell {}", cell.0)).of_input(&self.name),
+            ErrorKind::Memory => error.of_input(&self.name),
+            _ => error,
         }
     }
 
@@ -89,8 +89,8 @@ impl<const D: usize> Run<D> {
             worker.share(self.threads);
         }
         // The residual of a partial run passes through all nodes up to the root of the tree.
-        while let Some((job, children)) = self.schedule.take_root() {
-            self.check_memory(job.len())?;
+        while let Some((mut job, children)) = self.schedule.take_root() {
+            job.spare = self.check_memory(job.len())?;
             let (number, cell) = (job.number, job.cell);
             sequencer.open(&children);
             let solve = |flush: &mut Flush| worker.solve(job, PatchBlocks::default(), drop, Some(flush));

@@ -52,6 +52,11 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         Sample { rules, bulk: B::default(), points: Residual::default(), is_left: Vec::new() }
     }
 
+    /// Allows samples so many bytes beyond those of each point.
+    pub(super) fn allow(&mut self, bytes: u64) {
+        self.bulk.allow(bytes);
+    }
+
     /// Whether triangulating `points` would leave most of them, because other points may lie outside of
     /// `region`.
     ///
@@ -121,6 +126,7 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         }
         let merged = self.bulk.duplicates().iter().filter(|pair| (pair[0] as usize) < count).count();
         let left = self.is_left[..count].iter().filter(|&&left| left).count();
+        self.bulk.shrink(self.points.len());
         // Of points that are all merged none is left.
         Ok(left as f64 / (count - merged).max(1) as f64)
     }

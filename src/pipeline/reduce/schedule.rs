@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use super::boxes::Boxes;
-use super::budget::Load;
+use super::budget::{Held, Load};
+use super::cell_buffer::Tagged;
 use super::division::{CROWDED, Division};
 use super::node::Solved;
 use super::plan::Plan;
@@ -25,6 +26,8 @@ pub(super) struct Job<const D: usize> {
     pub(super) raw: Residual<D>,
     /// Residuals of the nodes below, in Morton order.
     pub(super) parts: Vec<Residual<D>>,
+    /// Bytes that it may take beyond those of each point.
+    pub(super) spare: u64,
 }
 
 impl<const D: usize> Job<D> {
@@ -57,6 +60,13 @@ pub(super) struct Output<const D: usize> {
     pub(super) solved: Solved<D>,
 }
 
+impl<const D: usize> Output<D> {
+    /// Bytes of its patches beyond what its points usually have.
+    pub(super) fn bytes_beyond(&self) -> usize {
+        self.solved.bytes_beyond(self.points)
+    }
+}
+
 /// A node whose residual no parent has taken yet.
 #[derive(Debug)]
 struct Node<const D: usize> {
@@ -64,32 +74,34 @@ struct Node<const D: usize> {
     cell: CellCode,
     region: Region<D>,
     is_leaf: bool,
-    raw: Residual<D>,
+    is_solved: bool,
+    /// Its own points from the stream, until it is released; its residual, once it is triangulated.
+    held: Residual<D>,
     children: Vec<u64>,
     /// How many of the children are not triangulated yet.
     missing: usize,
     parent: Option<u64>,
-    /// Number of its points, and of those that no node has triangulated, once it is released.
+    /// Number of its points, of those that no node has triangulated, and of its walls, once it is released.
     points: usize,
     raw_points: usize,
-    /// Its residual, once it is triangulated.
-    residual: Option<Residual<D>>,
+    walls: usize,
 }
 
 impl<const D: usize> Node<D> {
     /// A node that is not planned yet.
-    fn new(cell: CellCode, region: Region<D>, is_leaf: bool, raw: Residual<D>, children: Vec<u64>) -> Self {
+    fn new(cell: CellCode, region: Region<D>, is_leaf: bool, held: Residual<D>, children: Vec<u64>) -> Self {
         Node {
             cell,
             region,
             is_leaf,
-            raw,
+            is_solved: false,
+            held,
             children,
             missing: 0,
             parent: None,
             points: 0,
             raw_points: 0,
-            residual: None,
+            walls: 0,
         }
     }
 }
@@ -102,7 +114,7 @@ impl<const D: usize> Node<D> {
 pub(super) struct Schedule<const D: usize> {
     plan: Plan,
     boxes: Boxes<D>,
-    nodes: BTreeMap<u64, Node<D>>,
+    nodes: BTreeMap<u64, Box<Node<D>>>,
     jobs: VecDeque<Job<D>>,
     /// The job of the root, the highest node with points, once it can be triangulated.
     root: Option<Job<D>>,
@@ -128,28 +140,33 @@ impl<const D: usize> Schedule<D> {
         }
     }
 
-    /// Notes how many points wait for their cell.
-    pub(super) fn hold(&mut self, points: usize) {
-        self.load.held = points;
+    /// Notes what waits for its cell.
+    pub(super) fn hold(&mut self, held: Held) {
+        self.load.held = held;
     }
 
-    /// Points in memory.
+    /// Notes the bytes of patches that wait to be written, beyond what points usually have.
+    pub(super) fn hold_patches(&mut self, bytes: usize) {
+        self.load.patches = bytes;
+    }
+
+    /// What is in memory.
     pub(super) fn load(&self) -> Load {
-        self.load
+        Load { nodes: self.nodes.len(), ..self.load }
     }
 
     /// Takes the points of a final cell. If parts of it were final before, its node is above the nodes of the
     /// parts.
-    pub(super) fn cell(&mut self, cell: CellCode, points: Residual<D>, is_whole: bool) {
+    pub(super) fn cell(&mut self, tagged: Tagged<D>) {
+        let Tagged { cell, points, is_whole, completes } = tagged;
         if is_whole {
             self.stats.leaves += u64::from(!points.is_empty());
             self.stats.leaf_max = self.stats.leaf_max.max(points.len() as u64);
         }
         self.add(cell, points, is_whole);
-        let mut cell = cell;
-        while let Some(parent) = self.plan.complete_parent(cell) {
-            self.add(parent, Residual::default(), false);
-            cell = parent;
+        let above = std::iter::successors(Some(cell), |&cell| self.plan.parent(cell)).skip(1);
+        for cell in above.take(completes.into()).collect::<Vec<_>>() {
+            self.add(cell, Residual::default(), false);
         }
     }
 
@@ -167,7 +184,9 @@ impl<const D: usize> Schedule<D> {
         let active = solved.residual.active;
         self.load.raw = self.load.raw + solved.residual.raw - node.raw_points;
         self.load.left = self.load.left + solved.residual.keys.len() - (node.points - node.raw_points);
-        node.residual = Some(std::mem::take(&mut solved.residual));
+        self.load.walls = self.load.walls + solved.residual.walls.len() - node.walls;
+        node.held = std::mem::take(&mut solved.residual);
+        node.is_solved = true;
         let (points, parent) = (node.points, node.parent);
         let children = std::mem::take(&mut node.children);
         self.outputs.insert(number, Output { number, points, children, active, solved });
@@ -208,12 +227,12 @@ impl<const D: usize> Schedule<D> {
     /// the figures.
     pub(super) fn into_residual(self) -> (Vec<u64>, Vec<Residual<D>>, Stats) {
         debug_assert!(self.jobs.is_empty() && self.outputs.is_empty());
-        let left = self.nodes.into_iter().filter_map(|(number, node)| Some((number, node.residual?)));
-        let (numbers, residuals) = left.unzip();
+        debug_assert!(self.nodes.values().all(|node| node.is_solved));
+        let (numbers, residuals) = self.nodes.into_iter().map(|(number, node)| (number, node.held)).unzip();
         (numbers, residuals, self.stats)
     }
 
-    /// Adds the node of `cell`, over those inside it, with `raw` points of its own.
+    /// Adds the node of `cell`, over those inside it, with `raw` points of its own, if there are any of either.
     fn add(&mut self, cell: CellCode, mut raw: Residual<D>, is_leaf: bool) {
         let region = self.boxes.region(cell);
         let mut parts = Vec::new();
@@ -225,8 +244,12 @@ impl<const D: usize> Schedule<D> {
             parts = [high, low].map(|half| self.add_piece(cell, half, &mut raw)).to_vec();
             raw = Residual::default();
         }
-        let (number, mut children) = self.plan.node(cell);
+        let mut children = self.plan.take(cell);
         children.extend(parts);
+        if children.is_empty() && raw.is_empty() {
+            return;
+        }
+        let number = self.plan.node(cell);
         let is_leaf = is_leaf && children.is_empty();
         self.add_node(number, Node::new(cell, region, is_leaf, raw, children));
     }
@@ -249,14 +272,14 @@ impl<const D: usize> Schedule<D> {
 
     /// Adds a node, whose children have been added.
     fn add_node(&mut self, number: u64, mut node: Node<D>) {
-        self.load.raw += node.raw.len();
+        self.load.raw += node.held.len();
         for child in &node.children {
             let child = self.nodes.get_mut(child).expect("a node waits until its parent takes its residual");
             child.parent = Some(number);
-            node.missing += usize::from(child.residual.is_none());
+            node.missing += usize::from(!child.is_solved);
         }
         let is_complete = node.missing == 0;
-        self.nodes.insert(number, node);
+        self.nodes.insert(number, Box::new(node));
         if is_complete {
             self.release(number);
         }
@@ -266,15 +289,16 @@ impl<const D: usize> Schedule<D> {
     fn release(&mut self, number: u64) {
         let node = self.nodes.get_mut(&number).expect("the node is planned");
         let (cell, region) = (node.cell, node.region);
-        let (raw, children) = (std::mem::take(&mut node.raw), node.children.clone());
+        let (raw, children) = (std::mem::take(&mut node.held), node.children.clone());
         let is_leaf = node.is_leaf;
-        let parts = children.iter().filter_map(|child| self.nodes.remove(child)?.residual).collect();
+        let parts = children.iter().filter_map(|child| Some(self.nodes.remove(child)?.held)).collect();
         let is_root = self.boxes.is_everything(&region);
-        let job = Job { number, cell, region, is_root, raw, parts };
+        let job = Job { number, cell, region, is_root, raw, parts, spare: u64::MAX };
         let points = job.len();
         if let Some(node) = self.nodes.get_mut(&number) {
             node.points = points;
             node.raw_points = job.raw_len();
+            node.walls = job.parts.iter().map(|part| part.walls.len()).sum();
         }
         if !is_leaf {
             self.stats.inner_nodes += u64::from(points > 0);

@@ -8,8 +8,9 @@ use std::num::NonZeroUsize;
 use super::bulk::{Bulk, Facet, WallSide};
 use super::residual::Residual;
 use super::walls::{self, WallIndex};
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::prefetch::prefetch;
+use spmesh_delaunay as delaunay;
 use spmesh_delaunay::delaunay3::{Corner, Corners, Kernel, Tetrahedralization, Tetrahedron, turned};
 use spmesh_delaunay::order::sizes_to_starts;
 use spmesh_delaunay::parallel;
@@ -21,6 +22,9 @@ use spmesh_stream::{Coordinates, Kind, Weights};
 
 /// Distance of the prefetch, in tetrahedra.
 const AHEAD: usize = 12;
+
+/// Bytes of a tetrahedron that is being made and written.
+const TETRAHEDRON_BYTES: usize = 64;
 
 /// Tetrahedra that a thread searches in one go.
 const PIECE: usize = 1 << 16;
@@ -37,6 +41,8 @@ pub(super) struct Space {
     sequence: Vec<u32>,
     /// Whether the kernel may have several threads, so that the order in the mesh may depend on them.
     is_shared: bool,
+    /// Bytes beyond those of each point; `None` without a limit.
+    spare: Option<u64>,
     hull: Vec<Facet>,
     walls: WallIndex,
 }
@@ -50,6 +56,28 @@ pub(super) struct Balls {
 }
 
 impl Space {
+    /// Number of tetrahedra of so many points that there is memory for.
+    fn most(&self, points: usize) -> usize {
+        let bytes = (Space::KERNEL_BYTES * points) as u64;
+        self.spare.map_or(usize::MAX, |spare| ((bytes + spare) / TETRAHEDRON_BYTES as u64) as usize)
+    }
+
+    /// The error of the kernel for so many points.
+    fn refused(&self, error: delaunay::Error, points: usize) -> Error {
+        match (error, self.spare) {
+            (delaunay::Error::TooManyTetrahedra(so_far), Some(_)) => {
+                let why = "their number grows with the square of that of points on curves or lines";
+                let message =
+                    format!("{points} points have {so_far} tetrahedra so far, which --memory has no");
+                Error::new(
+                    ErrorKind::Memory,
+                    format!("{message} room for: {why}; raise it, or thin the points"),
+                )
+            }
+            (error, _) => Error::of_computation(error),
+        }
+    }
+
     fn find_hull(&mut self) {
         self.hull.clear();
         for (simplex, tetrahedron) in (0..).zip(self.mesh.tetrahedra()) {
@@ -116,8 +144,20 @@ impl Bulk<3> for Space {
         self.is_shared = true;
     }
 
+    fn allow(&mut self, bytes: u64) {
+        self.spare = (bytes < u64::MAX).then_some(bytes);
+    }
+
+    fn shrink(&mut self, points: usize) {
+        if self.mesh.tetrahedra().len() * TETRAHEDRON_BYTES > Space::KERNEL_BYTES * points {
+            self.mesh = Tetrahedralization::default();
+            (self.sequence, self.hull) = (Vec::new(), Vec::new());
+        }
+    }
+
     fn triangulate(&mut self, points: &Residual<3>, weights: Option<Weights>) -> Result<()> {
         self.weights.clear();
+        self.kernel.tetrahedra_max = self.most(points.len());
         let at = Cow::Borrowed(&points.at[..]);
         let done = match weights {
             Some(weights) => {
@@ -126,7 +166,7 @@ impl Bulk<3> for Space {
             }
             None => self.kernel.triangulate(at, &mut self.mesh),
         };
-        done.map_err(Error::of_computation)?;
+        done.map_err(|error| self.refused(error, points.len()))?;
         self.find_hull();
         Ok(())
     }

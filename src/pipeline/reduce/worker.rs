@@ -35,12 +35,15 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
         give_back: impl FnOnce(Residual<D>),
         flush: Option<&mut Flush>,
     ) -> Result<Solved<D>> {
-        let Job { number, region, is_root, mut raw, parts, .. } = job;
+        let Job { number, region, is_root, mut raw, parts, spare, .. } = job;
+        self.solver.allow(spare);
+        self.sample.allow(spare);
         if parts.is_empty() {
             if !is_root && self.sample.leaves_most(&raw, &region)? {
                 return Ok(passed_up(raw, blocks));
             }
             let solved = self.solver.solve(number, &mut raw, &region, blocks, flush);
+            self.solver.shrink(raw.len());
             raw.clear();
             give_back(raw);
             return solved;
@@ -52,6 +55,7 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
             return Ok(passed_up(std::mem::take(&mut self.union), blocks));
         }
         let solved = self.solver.solve(number, &mut self.union, &region, blocks, flush);
+        self.solver.shrink(self.union.len());
         // Leaves are about as large as each other, but nodes above them are not.
         if self.union.len() > B::KEPT_POINTS_MAX {
             self.solver.forget();

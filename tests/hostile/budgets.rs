@@ -1,0 +1,123 @@
+//! `--memory` with the worst inputs of programs: it is kept, or refused before much is taken.
+
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use spmesh_reference::sets::Random;
+
+use crate::START_MAX;
+use crate::measured::{Measured, tool};
+
+/// A command, the memory that it may take, and a part of the message if it must refuse.
+struct Run {
+    name: &'static str,
+    line: &'static str,
+    /// Units: MiB.
+    most: f64,
+    refused: Option<&'static str>,
+}
+
+const fn kept(name: &'static str, line: &'static str, most: f64) -> Run {
+    Run { name, line, most, refused: None }
+}
+
+const fn refused(name: &'static str, line: &'static str, most: f64, part: &'static str) -> Run {
+    Run { name, line, most, refused: Some(part) }
+}
+
+/// What `--memory` of some programs stands beside: the program itself, and what is live of a mesh.
+const BESIDE: f64 = START_MAX + 8.0;
+
+/// A limit of the process is one of all; polygons are refused when they have been read, and `dd4` takes about
+/// as much as it may.
+const RUNS: [Run; 14] = [
+    kept("tags of a plane", "spdelaunay2d --memory 32M --threads 1 tags.spm", 32.0),
+    kept("tags, on threads", "spdelaunay2d --memory 32M --threads 2 tags.spm", 32.0),
+    kept("tags of space", "spdelaunay3d --memory 32M --threads 1 tags3.spm", 32.0),
+    refused("a curve", "spdelaunay3d --memory 24M --threads 1 curve.spm", 24.0, "tetrahedra so far"),
+    refused(
+        "a curve, on threads",
+        "spdelaunay3d --memory 26M --threads 2 curve.spm",
+        26.0,
+        "tetrahedra so far",
+    ),
+    kept("a curve with room", "spdelaunay3d --memory 64M --threads 2 curve.spm", 64.0),
+    kept("points that wait", "spdelaunay2d --memory 24M --threads 1 order.spm", 24.0),
+    kept("deep trees", "spdelaunay2d --memory 32M --threads 1 deep.spm", 32.0),
+    refused("polygons", "spfinalize --clip squares.wkt --memory 40M --threads 1 plane.txt", 48.0, "polygons"),
+    refused("leaves", "spfinalize --level 12 --memory 40M --threads 1 plane.txt", 40.0, "level 12"),
+    refused("long edges", "spconstrain --kill 0.001 --memory 1M mesh.spm", 1.0 + BESIDE, "--kill"),
+    refused("an outline", "spdem --concave 0.001 --memory 1M mesh.spm -o o.tif", 1.0 + BESIDE, "--concave"),
+    kept("tiles", "spdem --columns 2000 --memory 1M mesh.spm -o o.tif", 1.0 + BESIDE),
+    refused("cells of four dimensions", "dd4 --memory 16M curve4.txt", 20.0, "too many cells"),
+];
+
+/// The inputs, each made by a program.
+const INPUTS: [&str; 6] = [
+    "spfinalize --level 11 plane.txt -o tags.spm",
+    "spfinalize --octree --level 7 plane.txt -o tags3.spm",
+    "spfinalize --octree curve.txt -o curve.spm",
+    "spfinalize --preserve --level 8 many.txt -o order.spm",
+    "spfinalize --cell-points 1 nested.txt -o deep.spm",
+    "spdelaunay2d order.spm -o mesh.spm",
+];
+
+/// Lines of numbers.
+fn text<const D: usize>(count: usize, mut point: impl FnMut(usize) -> [f64; D]) -> String {
+    (0..count).map(|i| point(i).map(|x| x.to_string()).join(" ") + "\n").collect()
+}
+
+/// Writes what [`INPUTS`] are made of.
+fn write_points(folder: &Path) {
+    let mut random = Random::new(1);
+    let mut unit = || random.unit();
+    let write = |name: &str, text: String| fs::write(folder.join(name), text).expect("a folder");
+    write("plane.txt", text(6_000, |_| [1e3 * unit(), 1e3 * unit(), 1e3 * unit()]));
+    write("many.txt", text(20_000, |_| [1e3 * unit(), 1e3 * unit(), unit()]));
+    write("nested.txt", text(3_000, |_| [0; 3].map(|_: i32| (-20.0 * unit()).exp2())));
+    let at = |i: usize| i as f64 / 3_000.0;
+    write(
+        "curve.txt",
+        text(3_000, |i| [(20.0 * TAU * at(i)).cos(), (20.0 * TAU * at(i)).sin(), 10.0 * at(i)]),
+    );
+    write("curve4.txt", text(500, |i| [1, 2, 3, 4].map(|power| (i as f64 / 500.0).powi(power))));
+    let square = |_| {
+        let [x, y] = [1e3 * unit(), 1e3 * unit()];
+        let [u, v] = [x + 1.0, y + 1.0];
+        format!("POLYGON(({x} {y},{u} {y},{u} {v},{x} {v},{x} {y}))\n")
+    };
+    write("squares.wkt", (0..30_000).map(square).collect());
+}
+
+/// The command of a line, in a folder.
+fn command(line: &str, folder: &Path) -> Command {
+    let mut words = line.split(' ');
+    let mut command = tool(words.next().expect("a program"));
+    command.current_dir(folder).arg("-q").args(words);
+    command
+}
+
+#[test]
+fn budgets_are_kept_or_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    write_points(folder.path());
+    for line in INPUTS {
+        let made = Measured::of(&mut command(line, folder.path()));
+        assert_eq!(made.code, Some(0), "{line}: {}", made.message);
+    }
+    let mut faults = Vec::new();
+    for Run { name, line, most, refused } in RUNS {
+        let found = Measured::of(&mut command(line, folder.path()));
+        let mebibytes = found.megabytes * 1e6 / f64::from(1 << 20);
+        let outcome = format!("{name}: code {:?}, {mebibytes:.1} MiB, {}", found.code, found.message.trim());
+        println!("{outcome}");
+        let is_right = found.code == Some(if refused.is_some() { 5 } else { 0 });
+        let is_said = refused.is_none_or(|part| found.message.contains(part));
+        if !is_right || !is_said || mebibytes > most {
+            faults.push(outcome);
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
