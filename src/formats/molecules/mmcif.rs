@@ -122,7 +122,7 @@ impl<R: Read> MmcifReader<'_, R> {
         self.builder.end(self.tokens.unended());
         if self.blocks > 1 {
             let others = self.blocks - 1;
-            let others = counted(others as u64, "more data block has", "more data blocks have");
+            let others = counted(others, "more data block has", "more data blocks have");
             self.builder.warn(format!("{others} atoms; only those of the first are read"));
         }
         if self.blocks == 0 && self.is_core {
