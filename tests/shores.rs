@@ -101,7 +101,7 @@ fn water_without_points_is_left_out() {
     ];
     let alone = meshed(&folder, std::slice::from_ref(&near), &[], &[]);
     for far in far {
-        let water = [&[near.clone()], &far[..]].concat();
+        let water = [std::slice::from_ref(&near), &far[..]].concat();
         let Run { mesh, messages } = meshed(&folder, &water, &[], &[]);
         assert!(vertices(&mesh) == vertices(&alone.mesh), "{far:?}");
         let message = "1 of 2 polygons of water are left out, as no points are in them or near their shores; \
