@@ -255,7 +255,8 @@ impl Known {
         };
         for number in tree.items() {
             let bits = if number < segments { &mut self.segments } else { &mut self.vertices };
-            let mut leaving = leaving.get(number as usize).filter(|&&leaves| leaves).map(|_| &mut self.leaving);
+            let mut leaving =
+                leaving.get(number as usize).filter(|&&leaves| leaves).map(|_| &mut self.leaving);
             grid.for_each_cell(item(number), 0.0, &mut |cell| {
                 let fine = [cell % grid.size[0], cell / grid.size[0]];
                 if is_whole(fine) {
