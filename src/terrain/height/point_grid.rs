@@ -190,7 +190,7 @@ impl Share<'_> {
 fn columns(corners: &[Point2; 3], row: usize, count: usize) -> Option<[usize; 2]> {
     let most = corners.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
     let margin = MARGINS[0] + MARGINS[1] * most;
-    if !(margin < count as f64) {
+    if margin.is_nan() || margin >= count as f64 {
         return Some([0, count - 1]);
     }
     let (low, high) = (row as f64 - margin, (row + 1) as f64 + margin);
