@@ -50,7 +50,29 @@ impl CellLists {
         Some(CellLists { starts, numbers })
     }
 
-    fn range(&self, cell: usize) -> Range<usize> {
+    /// All numbers below `count` in one cell.
+    pub fn whole(count: u32) -> CellLists {
+        CellLists { starts: vec![0, count], numbers: (0..count).collect() }
+    }
+
+    /// Replaces each number.
+    pub fn renumber(&mut self, number: impl Fn(u32) -> u32) {
+        self.numbers.iter_mut().for_each(|at| *at = number(*at));
+    }
+
+    /// The numbers of all cells, cell by cell.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers
+    }
+
+    /// Number of entries in all cells.
+    pub fn entries(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// Where the numbers of a cell are among those of all.
+    #[inline]
+    pub fn range(&self, cell: usize) -> Range<usize> {
         self.starts[cell] as usize..self.starts[cell + 1] as usize
     }
 

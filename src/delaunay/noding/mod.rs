@@ -16,7 +16,6 @@
 //! no order of crossings along a sweep line, so each decision is one exact sign.
 
 mod bend;
-mod buckets;
 mod chords;
 mod collinear;
 mod exact;

@@ -1,15 +1,14 @@
 //! Crossings, and the segments that pass through hot pixels, by division of the plane.
 //!
-//! A cell is a rectangle of pixels; the first ones are those of a grid ([`super::buckets`]). It is divided
-//! until few segments meet it, or until it has no vertex and [`super::chords`] proves that no two of its
+//! A cell is a rectangle of pixels; the first ones are those of a grid ([`CellTree`]). It is divided until few segments meet it, or until it has no vertex and [`super::chords`] proves that no two of its
 //! segments meet in it. A cell of one pixel needs no division either: it is hot if it has a vertex or a
 //! crossing, and then all of its segments are bent to its centre. So segments that share a vertex, or run
 //! close to each other, are compared in pairs nowhere.
 
-use super::buckets::Buckets;
 use super::chords::Chords;
 use super::collinear::Segments;
 use super::exact::{Place, crossing_pixel, meets_pixel};
+use crate::cell_tree::{CellTree, Fineness, Grid, Item};
 use crate::error::{Error, Result};
 
 /// Segments in a cell that are compared in pairs.
@@ -17,6 +16,17 @@ const FEW: usize = 12;
 
 /// Segments of a cell that have a say in how it is divided.
 const SAMPLE: usize = 32;
+
+/// The grids where the division starts. A segment is listed in all cells that places are in within so many pixels of
+/// it: more than half of a pixel, for the sides of cells, and all rounding errors.
+const STARTS: Fineness = Fineness {
+    items_per_cell: 12.0,
+    cells: [1.0, f64::INFINITY],
+    entries: [4, 1],
+    crowd: 256,
+    reach: 1.5,
+    is_whole: true,
+};
 
 /// A bound of the rounding error of coordinates computed in f64: they are below 2^43, with three roundings.
 const MARGIN: f64 = 1.0 / 64.0;
@@ -80,17 +90,10 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    pub(super) fn around(places: &[Place]) -> Cell {
-        let first = places.first().copied().unwrap_or_default();
-        let mut cell = Cell { min: first, max: first };
-        for place in places {
-            for (axis, &value) in place.iter().enumerate() {
-                cell.min[axis] = cell.min[axis].min(value);
-                cell.max[axis] = cell.max[axis].max(value);
-            }
-        }
-        cell.max = cell.max.map(|max| max + 1);
-        cell
+    /// A cell of a grid.
+    fn of(grid: &Grid, number: usize) -> Cell {
+        let cell = grid.cell_box(number).within(&grid.bounds);
+        Cell { min: cell.min.map(|x| x as i64), max: cell.max.map(|x| x as i64) }
     }
 
     fn contains(&self, place: Place) -> bool {
@@ -118,17 +121,30 @@ pub(super) fn search(places: &[Place], segments: &Segments, crossings_max: usize
         chords: Chords::default(),
         pixels: Vec::new(),
     };
-    Buckets::of(places, &segments.ends).for_each(|cell, numbers, vertices| {
-        let of = |&number: &u32| Geometry::of(segments.ends[number as usize].map(|end| places[end as usize]));
-        search.geometry.clear();
-        search.geometry.extend(numbers.iter().map(of));
-        search.numbers.clear();
-        search.numbers.extend_from_slice(numbers);
-        search.cells.clear();
-        search.cells.extend(0..numbers.len() as u32);
-        search.divide(cell, 0, vertices)
+    let (count, mut vertices) = (segments.ends.len() as u32, Vec::new());
+    starts(places, segments).for_each_leaf(&mut |grid, cell, items| {
+        let cell = Cell::of(grid, cell);
+        let (numbers, places) = items.split_at(items.partition_point(|&item| item < count));
+        if numbers.is_empty() || cell.len(0) <= 0 || cell.len(1) <= 0 {
+            return Ok(());
+        }
+        vertices.clear();
+        vertices.extend(places.iter().map(|place| place - count));
+        search.enter(segments, numbers);
+        search.divide(&cell, 0, &mut vertices)
     })?;
     Ok(search.found)
+}
+
+/// Segments and, with numbers behind theirs, places in cells. A pixel begins half of its side before its centre.
+fn starts(places: &[Place], segments: &Segments) -> CellTree {
+    let at = |place: u32| places[place as usize].map(|value| value as f64 + 0.5);
+    let count = segments.ends.len();
+    let item = |item: u32| match segments.ends.get(item as usize) {
+        Some(ends) => Item::Segment(ends.map(at)),
+        None => Item::Place(at(item - count as u32)),
+    };
+    CellTree::new((count + places.len()) as u32, item, &STARTS)
 }
 
 struct Search<'a> {
@@ -148,6 +164,18 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// Replaces the segments of the present cell of the grid.
+    fn enter(&mut self, segments: &Segments, numbers: &[u32]) {
+        let of =
+            |&number: &u32| Geometry::of(segments.ends[number as usize].map(|end| self.places[end as usize]));
+        self.geometry.clear();
+        self.geometry.extend(numbers.iter().map(of));
+        self.numbers.clear();
+        self.numbers.extend_from_slice(numbers);
+        self.cells.clear();
+        self.cells.extend(0..numbers.len() as u32);
+    }
+
     /// Searches a cell with these vertices, and the segments from `start` on.
     fn divide(&mut self, cell: &Cell, start: usize, vertices: &mut [u32]) -> Result<()> {
         let end = self.cells.len();

@@ -4,22 +4,21 @@
 
 use std::collections::BTreeSet;
 
-use foldhash::{HashMap, HashMapExt};
-
 use super::batch::{PointBatch, read_ahead};
 use super::passes::{Observer, Pass, Passes};
 use crate::polygons::{Polygons, Side};
 use spmesh_base::error::Result;
+use spmesh_delaunay::cell_tree::{CellTree, Fineness, Item};
 use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::model::points::Point2;
 
-/// Cells along all shores, at most: so many in any case, and so many for each edge. Few edges are found fast
-/// in large cells, too.
+/// Cells over the shores: so many in any case, for each edge, and at most.
 const CELLS: f64 = 4096.0;
-const CELLS_PER_EDGE: f64 = 16.0;
+const CELLS_PER_EDGE: f64 = 4.0;
+const CELLS_MAX: f64 = 4e6;
 
-/// Cells along all shores, however many edges they have.
-const CELLS_MAX: f64 = 1e6;
+/// Edges in cells, for each edge, at most: with more, cells are larger.
+const ENTRIES_PER_EDGE: usize = 64;
 
 /// Mean distances between points that the width of shores is by default.
 const WIDTH_DISTANCES: f64 = 4.0;
@@ -87,10 +86,8 @@ pub(super) struct Shores {
     edges: Vec<(u32, [Point2; 2])>,
     water: Polygons,
     width: f64,
-    /// Side of a cell.
-    side: f64,
     /// The edges near each cell.
-    cells: HashMap<[i64; 2], Vec<u32>>,
+    cells: CellTree,
     polygons: usize,
 }
 
@@ -101,47 +98,25 @@ impl Shores {
         let water = Polygons::of_edges(edges.iter().copied());
         let is_needed = |(number, _): &(u32, _)| needed[*number as usize];
         let edges: Vec<(u32, [Point2; 2])> = edges.into_iter().filter(is_needed).collect();
-        let length: f64 = edges.iter().map(|(_, [a, b])| (b[0] - a[0]).hypot(b[1] - a[1])).sum();
-        let cells = (CELLS + CELLS_PER_EDGE * edges.len() as f64).min(CELLS_MAX);
-        let side = width.max(length / cells).max(f64::MIN_POSITIVE);
-        let polygons = needed.len();
-        let mut shores = Shores { edges, water, width, side, cells: HashMap::new(), polygons };
-        for number in 0..shores.edges.len() {
-            shores.enter(number as u32);
-        }
-        shores
-    }
-
-    fn cell(&self, value: f64) -> i64 {
-        (value / self.side).floor() as i64
-    }
-
-    /// Enters an edge into all cells near it, row by row.
-    fn enter(&mut self, number: u32) {
-        let (_, [a, b]) = self.edges[number as usize];
-        let [low, high] = if a[1] <= b[1] { [a, b] } else { [b, a] };
         // A margin for rounding.
-        let reach = self.width * (1.0 + 1e-9) + 1e-9 * self.side;
-        let height = high[1] - low[1];
-        let x_at = |y: f64| {
-            let part = if height > 0.0 { ((y - low[1]) / height).clamp(0.0, 1.0) } else { 0.0 };
-            low[0] + part * (high[0] - low[0])
+        let fineness = Fineness {
+            items_per_cell: 1.0 / CELLS_PER_EDGE,
+            cells: [CELLS, CELLS_MAX],
+            entries: [ENTRIES_PER_EDGE, 1 << 16],
+            crowd: 64,
+            reach: width * (1.0 + 1e-9),
+            is_whole: false,
         };
-        for row in self.cell(low[1] - reach)..=self.cell(high[1] + reach) {
-            let ys = [row as f64 * self.side - reach, (row + 1) as f64 * self.side + reach];
-            let mut xs = if height > 0.0 { ys.map(x_at) } else { [low[0], high[0]] };
-            xs.sort_unstable_by(f64::total_cmp);
-            for column in self.cell(xs[0] - reach)..=self.cell(xs[1] + reach) {
-                self.cells.entry([column, row]).or_default().push(number);
-            }
-        }
+        let cells =
+            CellTree::new(edges.len() as u32, |edge| Item::Segment(edges[edge as usize].1), &fineness);
+        Shores { edges, water, width, cells, polygons: needed.len() }
     }
 
     /// The numbers of the polygons near whose shores a place is, each once.
     fn near(&self, place: Point2, found: &mut Vec<u32>) {
         found.clear();
-        let Some(edges) = self.cells.get(&place.map(|value| self.cell(value))) else { return };
-        for &number in edges {
+        let Some((tree, cell)) = self.cells.leaf(place) else { return };
+        for &number in tree.list(cell) {
             let (polygon, ends) = self.edges[number as usize];
             if found.last() != Some(&polygon) && square(ends, place) <= self.width * self.width {
                 found.push(polygon);

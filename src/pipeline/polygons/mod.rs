@@ -79,14 +79,12 @@ impl Polygons {
 
     /// Where a place lies. Exact for all finite coordinates.
     pub fn side(&self, place: Point2) -> Side {
-        let Some(cell) = self.cells.find(place) else { return Side::Outside };
-        self.cells.side(cell).unwrap_or_else(|| self.rows.side(place))
+        self.cells.side(place).unwrap_or_else(|| self.rows.side(place))
     }
 
     /// Calls `found` with the numbers of the polygons that have a place strictly inside, in increasing order.
     pub fn for_each_around(&self, place: Point2, mut found: impl FnMut(u32)) {
-        let Some(cell) = self.cells.find(place) else { return };
-        if self.cells.side(cell) == Some(Side::Outside) {
+        if self.cells.side(place) == Some(Side::Outside) {
             return;
         }
         let inside = self.rows.at(place).filter(|(_, side)| *side == Side::Inside);
@@ -144,5 +142,42 @@ mod tests {
         assert_eq!(polygons.side([2.5, 1.5]), Side::Outside);
         assert_eq!(polygons.side([5.0, 5.0]), Side::Border);
         assert_eq!(Polygons::new(&[]).side([0.0, 0.0]), Side::Outside);
+    }
+
+    /// Squares that cover a fifth of the unit square, in rows and columns of `side`.
+    fn squares(side: usize) -> Vec<Rings> {
+        let length = 1.0 / side as f64;
+        let corner = |at: usize| [(at % side) as f64 * length, (at / side) as f64 * length];
+        let ring = |[x, y]: Point2| {
+            [[0.0, 0.0], [0.45, 0.0], [0.45, 0.4], [0.0, 0.4]].map(|[u, v]| [x + length * u, y + length * v])
+        };
+        (0..side * side).map(|at| vec![ring(corner(at)).to_vec()]).collect()
+    }
+
+    /// The polygons that tests of places in the unit square look at.
+    fn work(polygons: &[Rings]) -> usize {
+        let polygons = Polygons::new(polygons);
+        let places =
+            (0..10_000).map(|i| f64::from(i) * 0.618_034).map(|x| [x.fract(), (x * 0.754_877).fract()]);
+        let one = |place: Point2| {
+            1 + if polygons.cells.side(place).is_some() { 0 } else { polygons.rows.work(place) }
+        };
+        places.map(one).sum()
+    }
+
+    #[test]
+    fn far_vertices_at_most_double_the_work() {
+        let near = squares(40);
+        let ordinary = work(&near);
+        assert!(work(&squares(57)) < 2 * ordinary);
+        for far in [-1e12, -30.0, 3.0, 1e3, 1e6, 1e9, 1e12] {
+            let triangle = |a: f64| vec![[a, 0.3 * a], [a + 1.0, 0.3 * a], [a, 0.3 * a + 1.0]];
+            // A polygon of its own, and a vertex of one nearby.
+            let thorn = vec![[0.9, 0.99], [far, 0.5 + far], [0.95, 0.99]];
+            for ring in [triangle(far), thorn] {
+                let with = work(&[&near[..], &[vec![ring.clone()]]].concat());
+                assert!(with < 2 * ordinary + 20_000, "{far} {ring:?}: {with} instead of {ordinary}");
+            }
+        }
     }
 }

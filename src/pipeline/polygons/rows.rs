@@ -6,10 +6,10 @@ use spmesh_delaunay::predicates::{FiniteFloatPredicates, Predicates2, Sign};
 use spmesh_stream::model::points::Point2;
 
 /// Entries of all rows, per edge, at most about. Long edges are in many rows.
-const ENTRIES_PER_EDGE: f64 = 8.0;
+const ENTRIES_PER_EDGE: usize = 8;
 
-/// Rows per edge, at most.
-const ROWS_PER_EDGE: f64 = 0.5;
+/// Edges per row, at least.
+const EDGES_PER_ROW: usize = 2;
 
 /// An edge of a polygon, from its lower end to its upper one.
 #[derive(Debug, Clone, Copy)]
@@ -23,9 +23,9 @@ pub(super) struct Edge {
 pub(super) struct Rows {
     /// Those of one polygon come one after the other.
     pub(super) edges: Vec<Edge>,
-    bottom: f64,
-    /// Rows per unit of y.
-    scale: f64,
+    /// Where rows begin, but the first one. As many edges begin in each row, so that edges far from all others leave
+    /// rows as they are.
+    bottoms: Vec<f64>,
     /// Numbers of edges in each row.
     entries: CellLists,
     /// For each row the place of its first group, and one more.
@@ -48,18 +48,9 @@ impl Rows {
         let upward = |[from, to]: [Point2; 2]| if from[1] <= to[1] { [from, to] } else { [to, from] };
         let edges: Vec<Edge> = sides.map(|(polygon, ends)| Edge { ends: upward(ends), polygon }).collect();
         assert!(u32::try_from(edges.len()).is_ok(), "more than 2^32 edges");
-        let bottom = edges.iter().fold(f64::INFINITY, |y, edge| y.min(edge.ends[0][1]));
-        let top = edges.iter().fold(f64::NEG_INFINITY, |y, edge| y.max(edge.ends[1][1]));
-        let height = 0.5 * top - 0.5 * bottom;
-        // The sum of the heights of edges, in units of the whole.
-        let part = |edge: &Edge| (0.5 * edge.ends[1][1] - 0.5 * edge.ends[0][1]) / height;
-        let parts: f64 = if height > 0.0 { edges.iter().map(part).sum() } else { 0.0 };
-        let count = edges.len() as f64;
-        let rows = (ROWS_PER_EDGE * count).min(ENTRIES_PER_EDGE * count / parts.max(1.0)) as usize + 1;
-        let scale = rows as f64 / height * 0.5;
-        let scale = if scale.is_finite() { scale } else { 0.0 };
-        let (entries, starts) = (CellLists::default(), vec![0; rows + 1]);
-        let mut found = Rows { edges, bottom, scale, entries, starts, groups: Vec::new() };
+        let bottoms = bottoms(&edges);
+        let (entries, starts) = (CellLists::default(), vec![0; bottoms.len() + 2]);
+        let mut found = Rows { edges, bottoms, entries, starts, groups: Vec::new() };
         found.fill();
         found
     }
@@ -76,8 +67,7 @@ impl Rows {
     /// The row of a place. It never decreases with y, so an edge that meets the height of a place is in its
     /// row.
     fn row(&self, y: f64) -> usize {
-        // Halves, because a difference may exceed the range of f64.
-        ((0.5 * y - 0.5 * self.bottom) * 2.0 * self.scale).min(self.rows() as f64 - 1.0) as usize
+        row(&self.bottoms, y)
     }
 
     fn fill(&mut self) {
@@ -108,6 +98,13 @@ impl Rows {
                 places[1] = place + 1;
             }
         }
+    }
+
+    /// Number of polygons that a test of a place looks at.
+    #[cfg(test)]
+    pub(super) fn work(&self, place: Point2) -> usize {
+        let row = self.row(place[1]);
+        self.starts[row + 1] - self.starts[row]
     }
 
     /// Where a place lies.
@@ -152,6 +149,32 @@ impl Rows {
             }
         }
         if is_inside { Side::Inside } else { Side::Outside }
+    }
+}
+
+fn row(bottoms: &[f64], y: f64) -> usize {
+    bottoms.partition_point(|&bottom| bottom <= y)
+}
+
+/// Where rows begin, but the first one.
+fn bottoms(edges: &[Edge]) -> Vec<f64> {
+    let mut all: Vec<f64> = edges.iter().map(|edge| edge.ends[0][1]).collect();
+    all.sort_unstable_by(f64::total_cmp);
+    let thinned = |step: usize| {
+        let mut bottoms: Vec<f64> = all.iter().copied().skip(step).step_by(step).collect();
+        bottoms.dedup();
+        bottoms
+    };
+    let bottoms = thinned(EDGES_PER_ROW);
+    let entries = |edge: &Edge| {
+        let [first, last] = edge.ends.map(|end| row(&bottoms, end[1]));
+        last - first + 1
+    };
+    let entries: usize = edges.iter().map(entries).sum();
+    match entries.div_ceil(ENTRIES_PER_EDGE * edges.len().max(1)) {
+        0 | 1 => bottoms,
+        // Edges are in as many fewer rows.
+        times => thinned(times * EDGES_PER_ROW),
     }
 }
 

@@ -1,19 +1,23 @@
 //! Square cells over a network of lines, and what lies in them.
 
 use super::pyramid::{Bits, Pyramid};
-use spmesh_delaunay::cell_lists::CellLists;
-use spmesh_delaunay::cell_walk::{TOLERANCE, for_each_cell};
-use spmesh_delaunay::network::{Network, NetworkSegment};
+use spmesh_delaunay::cell_tree::{self, CellBox, CellTree, Fineness, Grid};
+use spmesh_delaunay::network::Network;
 use spmesh_delaunay::predicates::lexicographic;
 use spmesh_stream::model::points::Point2;
 
-/// Cells per segment and vertex, about, and their least and greatest number.
-const CELLS_PER_ITEM: f64 = 1.0;
-const CELLS_MIN: f64 = 4096.0;
+/// The greatest number of cells of the first grid.
 pub(super) const CELLS_MAX: f64 = 4_194_304.0;
 
-/// Items of all cells, for each segment and vertex, and beside these, at most: with more, cells are larger.
-const ITEMS_MAX: [usize; 2] = [32, 1 << 20];
+/// One cell for each segment and vertex, about.
+const FINENESS: Fineness = Fineness {
+    items_per_cell: 1.0,
+    cells: [4096.0, CELLS_MAX],
+    entries: [32, 1 << 20],
+    crowd: 16,
+    reach: 0.0,
+    is_whole: false,
+};
 
 /// Fine cells along the side of a cell: they say quickly that nothing is near.
 const FINE: usize = 4;
@@ -31,172 +35,71 @@ pub(super) enum Item {
 /// as segments and vertices.
 #[derive(Debug)]
 pub(super) struct Cells {
-    origin: Point2,
-    /// Cells per unit.
-    scale: f64,
-    columns: usize,
-    rows: usize,
     /// Numbers of segments; those of vertices come after all segments.
-    items: CellLists,
+    tree: CellTree,
     segments: u32,
+    /// What is known of each grid of the tree.
+    known: Vec<Known>,
+    /// Whether a segment leaves the mesh.
+    has_leaving: bool,
+}
+
+/// What is known of the cells of a grid that are not divided.
+#[derive(Debug)]
+struct Known {
     /// Fine cells that a segment meets.
-    fine_segments: Bits,
+    segments: Bits,
     /// Fine cells with vertices that were not found yet.
-    fine_vertices: Bits,
-    /// Fine cells with segments that leave the mesh, if there are any.
-    fine_leaving: Option<Bits>,
+    vertices: Bits,
+    /// Fine cells with segments that leave the mesh.
+    leaving: Bits,
+    /// All cells with an item.
     pyramid: Pyramid,
-    /// Cells with an item in them or beside them.
+    /// Cells with an item in them or beside them, divided or not.
     near: Bits,
-}
-
-/// A box in units of cells.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct CellBox {
-    pub(super) min: Point2,
-    pub(super) max: Point2,
-}
-
-impl CellBox {
-    pub(super) fn of(places: &[Point2]) -> CellBox {
-        let mut bounds = CellBox { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
-        places.iter().for_each(|&place| bounds.extend(place));
-        bounds
-    }
-
-    pub(super) fn extend(&mut self, place: Point2) {
-        let [[left, bottom], [right, top]] = [self.min, self.max];
-        self.min = [left.min(place[0]), bottom.min(place[1])];
-        self.max = [right.max(place[0]), top.max(place[1])];
-    }
 }
 
 impl Cells {
     /// Segments that `leaving` says, if it is not empty, leave the mesh.
     pub(super) fn new(network: &Network, leaving: &[bool]) -> Cells {
-        let mut bounds = CellBox::of(&[]);
-        network.vertices.iter().for_each(|vertex| bounds.extend(vertex.place));
-        let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
-        let wanted = CELLS_PER_ITEM * (network.segments.len() + network.vertices.len()) as f64;
-        let wanted = wanted.clamp(CELLS_MIN, CELLS_MAX);
-        // A long thin box has few cells across, and at most as many along as it may have in all.
-        let side = (width * height / wanted).sqrt().max(width.max(height) / wanted);
-        let mut side = if side > 0.0 { side } else { 1.0 };
-        loop {
-            let count = |length: f64| (length / side) as usize + 1;
-            let mut cells = Cells::empty(bounds.min, 1.0 / side, [count(width), count(height)]);
-            if cells.fill(network) {
-                cells.fine_leaving = (!leaving.is_empty()).then(|| {
-                    let numbered = network.segments.iter().zip(leaving);
-                    cells.fine(network, numbered.filter(|(_, leaves)| **leaves).map(|(segment, _)| segment))
-                });
-                return cells;
-            }
-            // One cell has each item once.
-            side *= 2.0;
-        }
+        let segments = network.segments.len() as u32;
+        let item = |item: u32| match network.segments.get(item as usize) {
+            Some(segment) => cell_tree::Item::Segment(network.places(segment)),
+            None => cell_tree::Item::Place(network.vertices[(item - segments) as usize].place),
+        };
+        let tree = CellTree::new(segments + network.vertices.len() as u32, item, &FINENESS);
+        let mut known = Vec::new();
+        tree.for_each_grid(&mut |tree| known.push((tree.number, Known::new(tree))));
+        known.sort_unstable_by_key(|&(number, _)| number);
+        let mut known: Vec<Known> = known.into_iter().map(|(_, known)| known).collect();
+        tree.for_each_grid(&mut |tree| known[tree.number].fill(tree, &item, segments, leaving));
+        Cells { tree, segments, known, has_leaving: leaving.contains(&true) }
     }
 
-    fn empty(origin: Point2, scale: f64, [columns, rows]: [usize; 2]) -> Cells {
-        Cells {
-            origin,
-            scale,
-            columns,
-            rows,
-            items: CellLists::default(),
-            segments: 0,
-            fine_segments: Bits::default(),
-            fine_vertices: Bits::default(),
-            fine_leaving: None,
-            pyramid: Pyramid::default(),
-            near: Bits::default(),
-        }
-    }
-
-    /// Cells per unit.
-    pub(super) fn scale(&self) -> f64 {
-        self.scale
-    }
-
-    /// A place in units of cells.
-    pub(super) fn local(&self, place: Point2) -> Point2 {
-        [0, 1].map(|axis| (place[axis] - self.origin[axis]) * self.scale)
-    }
-
-    /// Enters what is in each cell. Returns whether that is few enough.
-    fn fill(&mut self, network: &Network) -> bool {
-        self.segments = network.segments.len() as u32;
-        let size = [self.columns, self.rows];
-        let count = self.segments + network.vertices.len() as u32;
-        let most = ITEMS_MAX[0] * count as usize + ITEMS_MAX[1];
-        let items = CellLists::of(self.columns * self.rows, count, most, |item, visit| {
-            if let Some(vertex) = item.checked_sub(self.segments) {
-                return visit(self.cell(network.vertices[vertex as usize].place));
-            }
-            let ends = network.places(&network.segments[item as usize]).map(|end| self.local(end));
-            for_each_cell(ends, size, |[column, row]| visit(row * self.columns + column));
-        });
-        let Some(items) = items else { return false };
-        self.pyramid = Pyramid::new(size, |cell| !items.get(cell).is_empty());
-        self.near = self.pyramid.finest_spread();
-        self.items = items;
-        self.fill_fine(network);
-        true
-    }
-
-    fn fill_fine(&mut self, network: &Network) {
-        let mut vertices = Bits::new(self.fine_size());
-        network.vertices.iter().for_each(|vertex| vertices.set(self.fine_cell(vertex.place)));
-        (self.fine_segments, self.fine_vertices) = (self.fine(network, network.segments.iter()), vertices);
-    }
-
-    /// The fine cells that segments meet.
-    fn fine<'n>(&self, network: &Network, segments: impl Iterator<Item = &'n NetworkSegment>) -> Bits {
-        let size = self.fine_size();
-        let mut bits = Bits::new(size);
-        for segment in segments {
-            let ends = network.places(segment).map(|end| self.local(end).map(|x| x * FINE as f64));
-            for_each_cell(ends, size, |cell| bits.set(cell));
-        }
-        bits
-    }
-
-    fn fine_size(&self) -> [usize; 2] {
-        [self.columns, self.rows].map(|count| count * FINE)
-    }
-
-    fn fine_cell(&self, place: Point2) -> [usize; 2] {
-        let (local, size) = (self.local(place), self.fine_size());
-        [0, 1].map(|axis| ((local[axis] * FINE as f64) as usize).min(size[axis] - 1))
-    }
-
-    /// The cell of a place.
-    fn cell(&self, place: Point2) -> usize {
-        let [column, row] = self.local(place).map(|x| x as usize);
-        row.min(self.rows - 1) * self.columns + column.min(self.columns - 1)
-    }
-
-    /// The vertex of the network at a place in the box of the network.
+    /// The vertex of the network at a place.
     pub(super) fn vertex_at(&self, place: Point2, network: &Network) -> Option<u32> {
-        let vertices = self.vertices(self.cell(place));
+        let (tree, cell) = self.tree.leaf(place)?;
+        let vertices = self.vertices(tree, cell);
         let place_of = |item: u32| network.vertices[(item - self.segments) as usize].place;
         let at = vertices.partition_point(|&item| lexicographic(place_of(item), place).is_lt());
         vertices.get(at).filter(|&&item| place_of(item) == place).map(|item| item - self.segments)
     }
 
     /// The items of a cell that are vertices. They grow, and so do their places in lexicographic order.
-    fn vertices(&self, cell: usize) -> &[u32] {
-        let items = self.items.get(cell);
+    fn vertices<'t>(&self, tree: &'t CellTree, cell: usize) -> &'t [u32] {
+        let items = tree.list(cell);
         &items[items.partition_point(|&item| item < self.segments)..]
     }
 
     /// Notes that a vertex is found. `is_found` says which are, this one included.
     pub(super) fn find(&mut self, vertex: u32, network: &Network, is_found: &[bool]) {
         let place = network.vertices[vertex as usize].place;
-        let (vertices, fine) = (self.vertices(self.cell(place)), self.fine_cell(place));
+        let Some((tree, cell)) = self.tree.leaf(place) else { return };
+        let (vertices, grid) = (self.vertices(tree, cell), tree.grid.finer(FINE));
+        let fine = grid.cell(place);
         let is_left = |&item: &u32| {
             let other = (item - self.segments) as usize;
-            !is_found[other] && self.fine_cell(network.vertices[other].place) == fine
+            !is_found[other] && grid.cell(network.vertices[other].place) == fine
         };
         // From the vertex to both sides, as vertices are found about in the order of their places: in a
         // crowded cell, the next one is left.
@@ -204,61 +107,113 @@ impl Cells {
         let beside = |step: usize| [at.checked_sub(step), Some(at + step)];
         let mut others = (1..vertices.len()).flat_map(beside).flatten();
         if !others.any(|other| vertices.get(other).is_some_and(is_left)) {
-            self.fine_vertices.clear(fine);
+            self.known[tree.number].vertices.clear([fine % grid.size[0], fine / grid.size[0]]);
         }
     }
 
-    /// Whether nothing is nearer to a place than the side of a cell; may be false then, too.
+    /// Whether nothing is nearer to a place than a distance; may be false then, too. `is_less` says whether the
+    /// distance is less than another one.
     #[inline]
-    pub(super) fn is_far(&self, place: Point2) -> bool {
-        let (local, size) = (self.local(place), [self.columns, self.rows]);
-        let is_beside = (0..2).any(|axis| local[axis] < -1.0 || local[axis] > size[axis] as f64 + 1.0);
-        is_beside || !self.near.get([0, 1].map(|axis| (local[axis] as usize).min(size[axis] - 1)))
+    pub(super) fn is_far(&self, place: Point2, is_less: impl Fn(f64) -> bool) -> bool {
+        let mut tree = &self.tree;
+        loop {
+            let grid = &tree.grid;
+            let is_known = is_less(0.99 * grid.side) && tree.has_all(place, grid.side);
+            if is_known && self.known[tree.number].is_far(grid.local(place), grid.size) {
+                return true;
+            }
+            match tree.inner_at(place) {
+                Some(inner) => tree = inner,
+                None => return false,
+            }
+        }
     }
 
-    /// Whether no segment is in a box.
+    /// Whether no segment is in a box, which is given in units of the cells of a grid.
     #[inline]
-    pub(super) fn is_free(&self, bounds: &CellBox) -> bool {
-        self.fine_range(bounds).is_none_or(|range| !self.fine_segments.any(range))
+    pub(super) fn is_free(&self, bounds: impl Fn(&Grid) -> CellBox) -> bool {
+        !self.has_any(&self.tree, &bounds, &|known| &known.segments)
     }
 
     /// Whether all vertices in a box were found, and no segment in it leaves the mesh.
     #[inline]
-    pub(super) fn is_found(&self, bounds: &CellBox) -> bool {
-        self.fine_range(bounds).is_none_or(|range| !self.fine_vertices.any(range)) && !self.may_leave(bounds)
+    pub(super) fn is_found(&self, bounds: impl Fn(&Grid) -> CellBox) -> bool {
+        !self.has_any(&self.tree, &bounds, &|known| &known.vertices) && !self.may_leave(bounds)
     }
 
     /// Whether a segment in a box leaves the mesh.
     #[inline]
-    pub(super) fn may_leave(&self, bounds: &CellBox) -> bool {
-        let Some(leaving) = &self.fine_leaving else { return false };
-        self.fine_range(bounds).is_some_and(|range| leaving.any(range))
+    pub(super) fn may_leave(&self, bounds: impl Fn(&Grid) -> CellBox) -> bool {
+        self.has_leaving && self.has_any(&self.tree, &bounds, &|known| &known.leaving)
     }
 
     /// Whether a segment that leaves the mesh is in the cell of a place of the box of the network, and in the
     /// fine one.
     pub(super) fn has(&self, place: Point2, segment: u32) -> bool {
-        let is_fine = self.fine_leaving.as_ref().is_some_and(|leaving| leaving.get(self.fine_cell(place)));
-        is_fine && self.items.get(self.cell(place)).contains(&segment)
+        let Some((tree, cell)) = self.tree.leaf(place).filter(|_| self.has_leaving) else { return false };
+        let grid = tree.grid.finer(FINE);
+        let fine = grid.cell(place);
+        let is_fine = self.known[tree.number].leaving.get([fine % grid.size[0], fine / grid.size[0]]);
+        is_fine && tree.list(cell).contains(&segment)
     }
 
+    /// Whether a fine cell that meets a box has its bit set.
     #[inline]
-    fn fine_range(&self, bounds: &CellBox) -> Option<[[usize; 2]; 2]> {
-        let [min, max] = [bounds.min, bounds.max].map(|corner| corner.map(|x| x * FINE as f64));
-        range(&CellBox { min, max }, self.fine_size())
+    fn has_any(
+        &self,
+        tree: &CellTree,
+        bounds: &impl Fn(&Grid) -> CellBox,
+        bits: &impl Fn(&Known) -> &Bits,
+    ) -> bool {
+        let local = bounds(&tree.grid);
+        let [min, max] = [local.min, local.max].map(|corner| corner.map(|x| x * FINE as f64));
+        let fine = cell_tree::range(&CellBox { min, max }, tree.grid.size.map(|count| count * FINE));
+        let Some(fine) = fine else { return false };
+        bits(&self.known[tree.number]).any(fine)
+            || (!tree.divided().is_empty() && self.has_any_inside(tree, fine, bounds, bits))
     }
 
-    /// Calls `found` with the items of all cells that meet a box and that `meets` accepts, some of them
-    /// several times. `meets` takes a box and may accept too much.
-    pub(super) fn for_each_in(
+    /// [`Cells::has_any`] for the divided cells.
+    fn has_any_inside(
         &self,
-        bounds: &CellBox,
-        meets: impl Fn(&CellBox) -> bool,
+        tree: &CellTree,
+        fine: [[usize; 2]; 2],
+        bounds: &impl Fn(&Grid) -> CellBox,
+        bits: &impl Fn(&Known) -> &Bits,
+    ) -> bool {
+        let [columns, rows] = fine.map(|ends| ends.map(|at| at / FINE));
+        let at = |column: usize, row: usize| (row * tree.grid.size[0] + column) as u32;
+        (rows[0]..=rows[1]).any(|row| {
+            let (first, last) = (at(columns[0], row), at(columns[1], row));
+            let start = tree.divided().partition_point(|&(cell, _)| cell < first);
+            let inner = tree.divided()[start..].iter().take_while(|&&(cell, _)| cell <= last);
+            inner.flat_map(|(_, inner)| inner.trees()).any(|tree| self.has_any(tree, bounds, bits))
+        })
+    }
+
+    /// Calls `found` with the items of all cells that a shape may meet, some of them several times. `shape` is
+    /// given in units of the cells of a grid: as its box, and whether it may meet a box.
+    pub(super) fn for_each_in<M: Fn(&CellBox) -> bool>(
+        &self,
+        shape: impl Fn(&Grid) -> (CellBox, M),
         mut found: impl FnMut(Item),
     ) {
-        let Some(range) = range(bounds, [self.columns, self.rows]) else { return };
+        self.for_each_of(&self.tree, &shape, &mut found);
+    }
+
+    fn for_each_of<M: Fn(&CellBox) -> bool>(
+        &self,
+        tree: &CellTree,
+        shape: &impl Fn(&Grid) -> (CellBox, M),
+        found: &mut impl FnMut(Item),
+    ) {
+        let (bounds, meets) = shape(&tree.grid);
+        let Some(range) = tree.grid.range(&bounds) else { return };
         let mut visit = |cell: usize| {
-            for &item in self.items.get(cell) {
+            if let Some(inner) = tree.inner(cell) {
+                return inner.trees().for_each(|tree| self.for_each_of(tree, shape, found));
+            }
+            for &item in tree.list(cell) {
                 found(match item.checked_sub(self.segments) {
                     None => Item::Segment(item),
                     Some(vertex) => Item::Vertex(vertex),
@@ -269,25 +224,101 @@ impl Cells {
         if columns[1] - columns[0] <= 1 && rows[1] - rows[0] <= 1 {
             // Looking at the items of so few cells is quicker than to leave out one.
             for row in rows[0]..=rows[1] {
-                (columns[0]..=columns[1]).for_each(|column| visit(row * self.columns + column));
+                (columns[0]..=columns[1]).for_each(|column| visit(row * tree.grid.size[0] + column));
             }
             return;
         }
-        self.pyramid.for_each_in(range, meets, visit);
+        self.known[tree.number].pyramid.for_each_in(range, meets, visit);
     }
 }
 
-/// The columns and rows that a box meets; `None` if it is outside.
-#[inline]
-fn range(bounds: &CellBox, size: [usize; 2]) -> Option<[[usize; 2]; 2]> {
-    let mut ranges = [[0; 2]; 2];
-    for axis in 0..2 {
-        let [low, high] = [bounds.min[axis] - TOLERANCE, bounds.max[axis] + TOLERANCE];
-        if high < 0.0 || low > size[axis] as f64 {
-            return None;
-        }
-        // Conversions saturate: what is below zero or not a number becomes zero.
-        ranges[axis] = [low as usize, high as usize].map(|cell| cell.min(size[axis] - 1));
+impl Known {
+    fn new(tree: &CellTree) -> Known {
+        let size = tree.grid.size;
+        let pyramid = Pyramid::new(size, |cell| !tree.list(cell).is_empty());
+        let (near, fine) = (pyramid.finest_spread(), size.map(|count| count * FINE));
+        let [segments, vertices, leaving] = [(); 3].map(|()| Bits::new(fine));
+        Known { segments, vertices, leaving, pyramid, near }
     }
-    Some(ranges)
+
+    fn fill(
+        &mut self,
+        tree: &CellTree,
+        item: &impl Fn(u32) -> cell_tree::Item,
+        segments: u32,
+        leaving: &[bool],
+    ) {
+        let grid = tree.grid.finer(FINE);
+        let is_whole = |fine: [usize; 2]| {
+            let [column, row] = fine.map(|at| at / FINE);
+            tree.inner(row * tree.grid.size[0] + column).is_none()
+        };
+        for number in tree.items() {
+            let bits = if number < segments { &mut self.segments } else { &mut self.vertices };
+            let mut leaving =
+                leaving.get(number as usize).filter(|&&leaves| leaves).map(|_| &mut self.leaving);
+            grid.for_each_cell(item(number), 0.0, &mut |cell| {
+                let fine = [cell % grid.size[0], cell / grid.size[0]];
+                if is_whole(fine) {
+                    bits.set(fine);
+                    leaving.iter_mut().for_each(|leaving| leaving.set(fine));
+                }
+            });
+        }
+    }
+
+    /// Whether nothing is nearer than the side of a cell to a place in units of cells.
+    #[inline]
+    fn is_far(&self, local: Point2, size: [usize; 2]) -> bool {
+        let is_beside = (0..2).any(|axis| local[axis] < -1.0 || local[axis] > size[axis] as f64 + 1.0);
+        is_beside || !self.near.get([0, 1].map(|axis| (local[axis] as usize).min(size[axis] - 1)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spmesh_delaunay::network::{NetworkSegment, NetworkVertex};
+
+    /// Columns of short segments in the unit square, and segments from its middle to other places.
+    fn network(count: u32, others: &[Point2]) -> Network {
+        let side = count.isqrt();
+        let place = |i: u32| [i / side, i % side].map(|step| f64::from(step) / f64::from(side));
+        let mut places: Vec<Point2> = (0..count).map(place).collect();
+        let middle = places[count as usize / 2];
+        places.extend(others);
+        places.sort_unstable_by(|a, b| lexicographic(*a, *b));
+        let at = |place: Point2| places.iter().position(|&other| other == place).unwrap() as u32;
+        let mut ends: Vec<[u32; 2]> = (0..places.len() as u32 - 1).map(|i| [i, i + 1]).collect();
+        ends.retain(|ends| ends.iter().all(|&end| !others.contains(&places[end as usize])));
+        ends.extend(others.iter().map(|&other| [at(middle).min(at(other)), at(middle).max(at(other))]));
+        let vertices = places.iter().map(|&place| NetworkVertex { place, z: None }).collect();
+        let segments = ends.into_iter().map(|ends| NetworkSegment { ends, line: 0, is_hard: false });
+        Network { vertices, segments: segments.collect(), step: 1e-9 }
+    }
+
+    /// The items that small boxes over the unit square meet.
+    fn work(network: &Network) -> usize {
+        let (cells, mut work) = (Cells::new(network, &[]), 0);
+        for at in 0..2500 {
+            let [x, y] = [f64::from(at % 50) / 50.0, f64::from(at / 50) / 50.0];
+            let shape = |grid: &Grid| {
+                let local = [[x, y], [x + 0.005, y + 0.005]].map(|corner| grid.local(corner));
+                (CellBox::of(&local), |_: &CellBox| true)
+            };
+            cells.for_each_in(shape, |_| work += 1);
+        }
+        work
+    }
+
+    #[test]
+    fn far_vertices_at_most_double_the_work() {
+        let ordinary = work(&network(2_000, &[]));
+        for far in [-1e12, -1e3, 3.0, 1e3, 1e6, 1e9, 1e12, 1e15] {
+            for others in [&[[far, 0.5]][..], &[[far, far], [0.2, -far], [-far, 3.0]]] {
+                let with = work(&network(2_000, others));
+                assert!(with <= 2 * ordinary + 2_500, "{far}: {with} instead of {ordinary}");
+            }
+        }
+    }
 }

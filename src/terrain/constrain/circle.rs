@@ -2,7 +2,8 @@
 //!
 //! The error bounds: docs/theory/constrained.md, section 7.
 
-use super::cells::{CELLS_MAX, CellBox};
+use super::cells::CELLS_MAX;
+use spmesh_delaunay::cell_tree::CellBox;
 use spmesh_delaunay::predicates::circle::{self, CircleBounds};
 use spmesh_stream::model::points::Point2;
 

@@ -1,7 +1,8 @@
 //! What of a network a triangle meets.
 
-use super::cells::{CellBox, Cells, Item};
+use super::cells::{Cells, Item};
 use super::circle::Circle;
+use spmesh_delaunay::cell_tree::{CellBox, Grid};
 use spmesh_delaunay::network::{Network, elevation_at};
 use spmesh_delaunay::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
 use spmesh_stream::model::points::Point2;
@@ -21,8 +22,6 @@ pub(super) struct Lines<'n> {
     predicates: FiniteFloatPredicates,
     /// Around the present patch, all vertices within twice this distance were found. In stored units.
     margin: f64,
-    /// A little less than the side of a cell, in stored units.
-    reach: f64,
     segments: Vec<u32>,
     vertices: Vec<u32>,
     /// For each segment whether it may leave the mesh and is to be clipped; empty if none does.
@@ -65,7 +64,6 @@ impl<'n> Lines<'n> {
         let cells = Cells::new(network, &leaving);
         Lines {
             network,
-            reach: 0.99 / cells.scale(),
             cells,
             found: vec![false; network.vertices.len()],
             predicates: FiniteFloatPredicates::default(),
@@ -84,13 +82,12 @@ impl<'n> Lines<'n> {
 
     /// Such segments near a side, in order.
     pub(super) fn leaving_near(&self, side: [Point2; 2]) -> Vec<u32> {
-        let bounds = CellBox::of(&side.map(|end| self.cells.local(end)));
+        let around = |grid: &Grid| CellBox::of(&side.map(|end| grid.local(end)));
         let mut segments = Vec::new();
-        if self.cells.may_leave(&bounds) {
+        if self.cells.may_leave(around) {
             let mut enter = |segment: u32| segments.extend(Some(segment).filter(|&it| self.leaves(it)));
             self.cells.for_each_in(
-                &bounds,
-                |_| true,
+                |grid| (around(grid), |_: &CellBox| true),
                 |item| match item {
                     Item::Segment(number) => enter(number),
                     Item::Vertex(_) => (),
@@ -110,8 +107,7 @@ impl<'n> Lines<'n> {
 
     /// The vertex of the network at a place.
     pub(super) fn vertex_at(&self, place: Point2) -> Option<u32> {
-        let at = self.cells.local(place);
-        if self.cells.is_found(&CellBox { min: at, max: at }) {
+        if self.cells.is_found(|grid| CellBox::of(&[grid.local(place)])) {
             return None;
         }
         self.cells.vertex_at(place, self.network)
@@ -120,12 +116,12 @@ impl<'n> Lines<'n> {
     /// The elevation at a place that is on a segment with elevations, up to the rounding of its ends. Where
     /// several segments meet, the lowest counts.
     pub(super) fn elevation_near(&self, place: Point2) -> Option<f64> {
-        let mut bounds = CellBox::of(&[self.cells.local(place)]);
         let (network, near) = (self.network, NEAR * self.network.step);
-        let reach = near * self.cells.scale();
-        bounds.min = bounds.min.map(|x| x - reach);
-        bounds.max = bounds.max.map(|x| x + reach);
-        if self.cells.is_free(&bounds) {
+        let around = |grid: &Grid| {
+            let (at, reach) = (grid.local(place), near * grid.scale);
+            CellBox { min: at.map(|x| x - reach), max: at.map(|x| x + reach) }
+        };
+        if self.cells.is_free(around) {
             return None;
         }
         let mut lowest: Option<f64> = None;
@@ -138,8 +134,7 @@ impl<'n> Lines<'n> {
             }
         };
         self.cells.for_each_in(
-            &bounds,
-            |_| true,
+            |grid| (around(grid), |_: &CellBox| true),
             |item| match item {
                 Item::Segment(number) => visit(number),
                 Item::Vertex(_) => (),
@@ -152,20 +147,21 @@ impl<'n> Lines<'n> {
     /// vertices.
     pub(super) fn enter(&mut self, places: impl Iterator<Item = Point2>) {
         let mut bounds = CellBox::of(&[]);
-        places.for_each(|place| bounds.extend(self.cells.local(place)));
+        places.for_each(|place| bounds.extend(place));
         let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
         self.margin = 0.0;
         let margin = 0.5 * width.max(height);
-        let around = CellBox { min: bounds.min.map(|x| x - margin), max: bounds.max.map(|x| x + margin) };
-        if margin.is_finite() && self.cells.is_found(&around) {
-            self.margin = 0.49 * margin / self.cells.scale();
+        let corners = [bounds.min.map(|x| x - margin), bounds.max.map(|x| x + margin)];
+        let around = |grid: &Grid| CellBox::of(&corners.map(|corner| grid.local(corner)));
+        if margin.is_finite() && self.cells.is_found(around) {
+            self.margin = 0.49 * margin;
         }
     }
 
     /// What meets a triangle, whose corners are counterclockwise; `None` if nothing does.
     pub(super) fn meeting(&mut self, corners: [Point2; 3]) -> Option<Meeting> {
         // Most triangles are small and far from lines.
-        if is_circle_less(self.reach, corners) && self.cells.is_far(corners[0]) {
+        if self.cells.is_far(corners[0], |length| is_circle_less(length, corners)) {
             return None;
         }
         self.collect(corners);
@@ -191,17 +187,17 @@ impl<'n> Lines<'n> {
     /// Gathers segments near a triangle, and vertices near its circle.
     #[inline]
     fn collect(&mut self, corners: [Point2; 3]) {
-        let local = corners.map(|corner| self.cells.local(corner));
-        let triangle = CellBox::of(&local);
         let is_small = is_circle_less(self.margin, corners);
         let (segments, vertices, found) = (&mut self.segments, &mut self.vertices, &self.found);
         segments.clear();
         vertices.clear();
         self.is_near = false;
-        if !self.cells.is_free(&triangle) {
+        if !self.cells.is_free(|grid| CellBox::of(&corners.map(|corner| grid.local(corner)))) {
             self.cells.for_each_in(
-                &triangle,
-                |bounds| may_meet(local, bounds),
+                |grid| {
+                    let local = corners.map(|corner| grid.local(corner));
+                    (CellBox::of(&local), move |bounds: &CellBox| may_meet(local, bounds))
+                },
                 |item| match item {
                     Item::Segment(number) => segments.push(number),
                     Item::Vertex(_) => (),
@@ -213,11 +209,13 @@ impl<'n> Lines<'n> {
         if is_small {
             return;
         }
-        let circle = Circle::of(corners, local[0], self.cells.scale());
-        if !self.cells.is_found(&circle.bounds()) {
+        let circle = |grid: &Grid| Circle::of(corners, grid.local(corners[0]), grid.scale);
+        if !self.cells.is_found(|grid| circle(grid).bounds()) {
             self.cells.for_each_in(
-                &circle.bounds(),
-                |bounds| circle.may_meet(bounds),
+                |grid| {
+                    let circle = circle(grid);
+                    (circle.bounds(), move |bounds: &CellBox| circle.may_meet(bounds))
+                },
                 |item| match item {
                     Item::Vertex(number) if !found[number as usize] => vertices.push(number),
                     Item::Vertex(_) => (),
@@ -363,7 +361,8 @@ fn may_meet(corners: [Point2; 3], bounds: &CellBox) -> bool {
     (0..3).all(|from| {
         let [u, v] = [corners[from], corners[(from + 1) % 3]];
         let [along, up] = [v[0] - u[0], v[1] - u[1]];
-        // The corner of the box that is farthest to the left of the side.
+        // The corner of the box that is farthest to the left of the side, seen from the nearer end.
+        let u = if u[0].abs() + u[1].abs() <= v[0].abs() + v[1].abs() { u } else { v };
         let x = if up > 0.0 { bounds.min[0] } else { bounds.max[0] };
         let y = if along > 0.0 { bounds.max[1] } else { bounds.min[1] };
         let side = along * (y - u[1]) - up * (x - u[0]);

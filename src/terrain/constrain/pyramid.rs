@@ -1,7 +1,7 @@
 //! Bits for the squares of a grid, and a pyramid of them: each level says which squares of the level below
 //! hold something.
 
-use super::cells::CellBox;
+use spmesh_delaunay::cell_tree::CellBox;
 
 /// Squares in columns and rows; each row starts with a new word.
 #[derive(Debug, Default)]

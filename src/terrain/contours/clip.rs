@@ -1,49 +1,41 @@
 //! Cuts lines at the border of polygons.
 
-use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
+use spmesh_delaunay::cell_tree::{CellTree, Fineness, Item};
+use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::source::Mask;
+use spmesh_pipeline::polygons::{Polygons, Side};
 
-/// Mean number of entries of an edge in slabs.
-const ENTRIES: usize = 4;
+/// A cell for each edge, about.
+const FINENESS: Fineness = Fineness {
+    items_per_cell: 1.0,
+    cells: [1.0, 4_194_304.0],
+    entries: [8, 1 << 10],
+    crowd: 16,
+    reach: 0.0,
+    is_whole: false,
+};
+
 /// Crossings this near to the end of a segment count as being there. Units: lengths of the segment.
 const NEAR: f64 = 1e-9;
 
-/// Polygons, and an index of their edges by ordinates. Coordinates are those of the world.
+/// Polygons, and their edges by cells. Coordinates are those of the world.
 ///
-/// Memory: some 60 bytes for each edge.
+/// Memory: that of [`Polygons`], and some 60 bytes for each edge.
 #[derive(Debug)]
 pub(super) struct Clipper {
-    /// Edges with the numbers of their polygons; those of one polygon in a row.
-    edges: Vec<(u32, [Point2; 2])>,
-    /// The edges that meet each slab between two ordinates; slabs have one height.
-    slabs: Vec<Vec<u32>>,
-    bottom: f64,
-    height: f64,
+    edges: Vec<[Point2; 2]>,
+    cells: CellTree,
+    polygons: Polygons,
 }
 
 impl Clipper {
     pub(super) fn new(mask: &Mask) -> Clipper {
-        let edges: Vec<(u32, [Point2; 2])> = mask.edges().filter(|(_, [p, q])| p != q).collect();
-        let ordinates = || edges.iter().map(|(_, [p, _])| p[1]);
-        let [bottom, top] =
-            [ordinates().fold(f64::INFINITY, f64::min), ordinates().fold(f64::NEG_INFINITY, f64::max)];
-        let mut clipper = Clipper { edges, slabs: Vec::new(), bottom, height: f64::INFINITY };
-        let mut count = clipper.edges.len().max(1);
-        // Fewer slabs, until edges do not meet too many of them.
-        loop {
-            clipper.height = (top - bottom) / count as f64;
-            let entries = |edge: &(u32, [Point2; 2])| clipper.slabs_of(edge.1, count).count();
-            if count == 1 || clipper.edges.iter().map(entries).sum::<usize>() <= ENTRIES * clipper.edges.len()
-            {
-                break;
-            }
-            count /= 2;
-        }
-        let mut slabs = vec![Vec::new(); count];
-        for (number, (_, edge)) in (0..).zip(&clipper.edges) {
-            clipper.slabs_of(*edge, count).for_each(|slab| slabs[slab].push(number));
-        }
-        Clipper { slabs, ..clipper }
+        let of_polygons: Vec<(u32, [Point2; 2])> = mask.edges().filter(|(_, [p, q])| p != q).collect();
+        let edges: Vec<[Point2; 2]> = of_polygons.iter().map(|(_, edge)| *edge).collect();
+        let polygons = Polygons::of_edges(of_polygons.into_iter());
+        let item = |edge: u32| Item::Segment(edges[edge as usize]);
+        let cells = CellTree::new(edges.len() as u32, item, &FINENESS);
+        Clipper { edges, cells, polygons }
     }
 
     /// The parts of a line inside of the polygons, and whether they are closed. A ring does not repeat its first
@@ -96,27 +88,7 @@ impl Clipper {
 
     /// Whether a place is in a polygon, or on the border of one.
     fn contains(&self, place: Point2) -> bool {
-        let mut predicates = FiniteFloatPredicates::default();
-        let polygon_of = |number: &u32| self.edges[*number as usize].0;
-        let Some(slab) = self.slab(place[1]) else { return false };
-        self.slabs[slab].chunk_by(|a, b| polygon_of(a) == polygon_of(b)).any(|edges| {
-            let mut is_inside = false;
-            for &number in edges {
-                let [p, q] = self.edges[number as usize].1;
-                let [low, high] = if p[1] <= q[1] { [p, q] } else { [q, p] };
-                if !(low[1]..=high[1]).contains(&place[1]) {
-                    continue;
-                }
-                match predicates.orient2d(low, high, place) {
-                    Sign::Zero if (low[0].min(high[0])..=low[0].max(high[0])).contains(&place[0]) => {
-                        return true;
-                    }
-                    Sign::Positive if place[1] < high[1] => is_inside = !is_inside,
-                    _ => {}
-                }
-            }
-            is_inside
-        })
+        self.polygons.side(place) != Side::Outside
     }
 
     /// Where a segment meets edges, in increasing order, as shares of its length.
@@ -128,8 +100,10 @@ impl Clipper {
                 p[axis].max(q[axis]) < a[axis].min(b[axis]) || p[axis].min(q[axis]) > a[axis].max(b[axis])
             })
         };
-        for slab in self.slabs_of(segment, self.slabs.len()) {
-            let edges = self.slabs[slab].iter().map(|&number| self.edges[number as usize].1);
+        // Some edges are met several times.
+        let reach = 2.0 * NEAR * (b[0] - a[0]).abs().max((b[1] - a[1]).abs());
+        self.cells.for_each_beside(segment, reach, &mut |numbers| {
+            let edges = numbers.iter().map(|&number| self.edges[number as usize]);
             for edge in edges.filter(|edge| !is_apart(*edge)) {
                 let [p, q] = edge;
                 let side = |[from, to]: [Point2; 2], at: Point2| {
@@ -148,28 +122,11 @@ impl Clipper {
                     hits.push(from / (from - to));
                 }
             }
-        }
+        });
         hits.retain(|hit| (-NEAR..=1.0 + NEAR).contains(hit));
         hits.sort_unstable_by(f64::total_cmp);
         hits.dedup_by(|hit, last| *hit - *last <= NEAR);
         hits
-    }
-
-    /// The slab of an ordinate, unless no polygon reaches it.
-    fn slab(&self, y: f64) -> Option<usize> {
-        let slab = (y - self.bottom) / self.height;
-        let count = self.slabs.len();
-        // The top belongs to the last slab; all edges may be level.
-        (slab >= 0.0 && slab <= count as f64 * (1.0 + f64::EPSILON)).then(|| (slab as usize).min(count - 1))
-    }
-
-    /// The slabs that a segment meets, of `count` slabs.
-    fn slabs_of(&self, [p, q]: [Point2; 2], count: usize) -> impl Iterator<Item = usize> + use<> {
-        let slab = |y: f64| (y - self.bottom) / self.height;
-        let (low, high) = (slab(p[1].min(q[1])), slab(p[1].max(q[1])));
-        // Conversion saturates.
-        let range = (low as usize).min(count - 1)..=(high as usize).min(count - 1);
-        range.filter(move |_| high >= 0.0 && low <= count as f64 * (1.0 + f64::EPSILON))
     }
 }
 

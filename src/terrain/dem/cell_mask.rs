@@ -1,9 +1,12 @@
 //! The cells with centres in polygons.
 
+use std::ops::Range;
+
 use super::axis::Axis;
 use super::search::first;
 use super::tile::{WORD, WORDS, WORDS_OF_TILE};
 use crate::files::TilePlace;
+use spmesh_delaunay::cell_tree::CellBox;
 use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 use spmesh_formats::raster::{Grid, TILE};
 use spmesh_formats::source::Mask;
@@ -14,15 +17,17 @@ use spmesh_formats::source::Mask;
 /// cells on its right in every row that it crosses, and the parity of the flips is the sum along the row. Centres
 /// are f64 coordinates of the world; on which side of an edge they are is decided exactly.
 ///
-/// Cost: for a tile, the rows of its edges and of the edges on its left and right.
+/// Cost: for a tile, a look at each edge in its rows, and the rows of the edges of polygons that reach into it.
 ///
-/// Memory: some 50 bytes for each edge.
+/// Memory: some 50 bytes for each edge and each polygon.
 #[derive(Debug)]
 pub(super) struct CellMask {
     columns: Axis,
     rows: Axis,
     /// Edges with the numbers of their polygons, from the lower end; those of one polygon in a row.
     edges: Vec<(u32, [Point2; 2])>,
+    /// The box of each polygon.
+    boxes: Vec<CellBox>,
     /// For each row of tiles, the edges that meet no other one.
     short: Vec<Vec<u32>>,
     /// The other edges, with their first and last row of tiles.
@@ -38,6 +43,11 @@ impl CellMask {
             (polygon, if (p[1], p[0]) <= (q[1], q[0]) { [p, q] } else { [q, p] })
         };
         let edges: Vec<(u32, [Point2; 2])> = mask.edges().map(upward).filter(|(_, [p, q])| p != q).collect();
+        let mut boxes = Vec::new();
+        for (polygon, ends) in &edges {
+            boxes.resize(boxes.len().max(*polygon as usize + 1), CellBox::of(&[]));
+            ends.iter().for_each(|&end| boxes[*polygon as usize].extend(end));
+        }
         let mut short = vec![Vec::new(); (grid.rows as usize).div_ceil(TILE)];
         let mut long = Vec::new();
         for (number, (_, [low, high])) in (0..).zip(&edges) {
@@ -52,7 +62,7 @@ impl CellMask {
                 long.push((number, bands));
             }
         }
-        CellMask { columns, rows, edges, short, long }
+        CellMask { columns, rows, edges, boxes, short, long }
     }
 
     /// The cells of a tile: a bit for each, row by row.
@@ -66,14 +76,31 @@ impl CellMask {
         let mut predicates = FiniteFloatPredicates::default();
         let polygon_of = |number: &u32| self.edges[*number as usize].0;
         for edges in numbers.chunk_by(|a, b| polygon_of(a) == polygon_of(b)) {
+            let Some(rows) = self.rows_of(polygon_of(&edges[0]), at) else { continue };
             for &number in edges {
                 self.add(self.edges[number as usize].1, at, &mut flips, &mut inside, &mut predicates);
             }
-            for (row, inside) in flips.chunks_exact_mut(WORDS).zip(inside.chunks_exact_mut(WORDS)) {
-                add_parities(row, inside);
-            }
+            let words = rows.start * WORDS..rows.end * WORDS;
+            let flips = flips[words.clone()].chunks_exact_mut(WORDS);
+            flips
+                .zip(inside[words].chunks_exact_mut(WORDS))
+                .for_each(|(row, inside)| add_parities(row, inside));
         }
         inside
+    }
+
+    /// The rows of a tile that a polygon reaches; `None` if it reaches no cell. On the left of the tile, it has an even
+    /// number of edges in each row.
+    fn rows_of(&self, polygon: u32, at: TilePlace) -> Option<Range<usize>> {
+        let CellBox { min, max } = self.boxes[polygon as usize];
+        let [left, top] = at.map(|place| (place * TILE) as u32);
+        let right = (left + TILE as u32).min(self.columns.count);
+        if max[0] < self.columns.at(left) || min[0] > self.columns.at(right - 1) {
+            return None;
+        }
+        let rows = self.rows.cells(min[1], max[1]);
+        let (first, behind) = (rows.start.max(top), rows.end.min(top + TILE as u32));
+        (first < behind).then(|| (first - top) as usize..(behind - top) as usize)
     }
 
     /// Flips the cells of a tile at an edge, in the rows that it crosses, and adds those with centres on it.

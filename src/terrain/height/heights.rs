@@ -6,7 +6,7 @@ use super::blocks::{Blocks, LoadedBlock, Triangle};
 use super::boxes::Box2;
 use super::ground::Ground;
 use super::nearest::Nearest;
-use super::point_grid::{PointGrid, Rows, height_of, set_height};
+use super::point_grid::{MANY, PointGrid, Share, height_of, set_height};
 use super::surface::{PLAIN_MAX, beyond_numbers, height, plain_shares, rounded, shares};
 use spmesh_base::error::Result;
 use spmesh_delaunay::parallel;
@@ -49,7 +49,7 @@ pub enum Outside {
 /// Cost of a batch: a few nanoseconds for each pair of a point and a triangle in neighbouring cells of a grid
 /// over the batch; blocks of triangles without a point nearby are not read.
 ///
-/// Memory: 36 bytes for each point of a batch; one block of triangles for each thread.
+/// Memory: 40 bytes for each point of a batch, at most twice as much if they are uneven; one block of triangles for each thread.
 #[derive(Debug)]
 pub struct Heights<'g> {
     blocks: &'g Blocks,
@@ -82,7 +82,7 @@ impl<'g> Heights<'g> {
         self.grid.fill(points);
         let parts = self.threads.get().min(points.len() / SHARE_MIN).max(1);
         let (blocks, unit) = (self.blocks, self.unit);
-        let work = |(rows, points)| search(blocks, &rows, points, unit);
+        let work = |(share, points)| search(blocks, &share, points, unit);
         parallel::map(self.threads, self.grid.split(parts), work)?;
         heights.clear();
         heights.resize(points.len(), f64::NAN);
@@ -103,19 +103,23 @@ impl<'g> Heights<'g> {
     }
 }
 
-/// Finds the heights of points in some rows.
-fn search(blocks: &Blocks, rows: &Rows, points: &mut [Point], unit: Unit) -> Result<()> {
+/// Finds the heights of a share of the points.
+fn search(blocks: &Blocks, share: &Share, points: &mut [Point], unit: Unit) -> Result<()> {
     let (mut block, mut cells) = (LoadedBlock::default(), Vec::new());
-    for number in blocks.that(|bounds| rows.has_points_in(bounds)) {
+    for number in blocks.that(|bounds| share.has_points_in(bounds)) {
         blocks.read(number, &mut block)?;
         cells.clear();
-        cells.extend(block.vertices().iter().map(|vertex| rows.cell_of(vertex)));
+        cells.extend(block.vertices().iter().map(|vertex| share.cell_of(vertex)));
         for &corners in block.corners() {
             let [a, b, c] = corners.map(|corner| cells[usize::from(corner)]);
             let min = [0, 1].map(|axis| a[axis].min(b[axis]).min(c[axis]));
             let max = [0, 1].map(|axis| a[axis].max(b[axis]).max(c[axis]));
             let triangle = block.triangle(corners);
-            for range in rows.ranges(min, max) {
+            for range in share.ranges(min, max) {
+                if range.len() > MANY {
+                    share.for_each_near(&triangle, &mut |range| meet(&triangle, &mut points[range], unit))?;
+                    break;
+                }
                 meet(&triangle, &mut points[range], unit)?;
             }
         }
