@@ -72,8 +72,8 @@ impl Output {
     /// Binary data on stdout are marked if the program fails ([`crate::upstream`]).
     ///
     /// # Errors
-    /// Usage, if `binary` data would go to a terminal, or the file is an input of this run; I/O, if stdout is closed or the folder cannot be
-    /// written to.
+    /// Usage, if `binary` data would go to a terminal, or the file is an input of this run; I/O, if stdout is
+    /// closed or the folder cannot be written to.
     pub fn create(path: &Path, binary: bool) -> Result<Output> {
         let _claim = Claim::new(path)?;
         if path == Path::new("-") {

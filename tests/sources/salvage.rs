@@ -42,7 +42,11 @@ fn records_before_the_cut_are_read() {
         let start = u32::from_le_bytes(bytes[96..100].try_into().expect("four bytes")) as usize;
         for cut in [start + record_len, start + 3000 * record_len + 5, bytes.len() - 1] {
             let whole = (cut - start) / record_len;
-            let counts = format!("read {whole} points, lost {}", POINTS as usize - whole);
+            let counts = format!(
+                "read {whole} point{}, lost {}",
+                if whole == 1 { "" } else { "s" },
+                POINTS as usize - whole
+            );
             assert!(salvaged(&bytes[..cut], &[], &[&counts]) == first(whole), "format {format} cut at {cut}");
         }
         let folder = Folder::new();

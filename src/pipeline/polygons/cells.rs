@@ -2,7 +2,7 @@
 
 use super::Side;
 use super::rows::Edge;
-use spmesh_delaunay::cell_tree::{CellBox, Grid, Item};
+use spmesh_delaunay::cell_tree::{CellBox, Grid, Item, box_of_most};
 use spmesh_stream::model::points::Point2;
 
 /// Cells per edge, about, and their least and greatest number.
@@ -17,9 +17,11 @@ const EDGE: u8 = 255;
 const UNKNOWN: u8 = 0;
 const INSIDE: u8 = Side::Inside as u8;
 
-/// Square cells over the box of all edges. If polygons are small and far apart, most are in cells with edges.
+/// Square cells over the box of most edges. If polygons are small and far apart, most are in cells with edges.
 #[derive(Debug)]
 pub(super) struct Cells {
+    /// The box of all edges.
+    bounds: CellBox,
     grid: Grid,
     states: Vec<u8>,
 }
@@ -30,8 +32,10 @@ impl Cells {
         let wanted = (CELLS_PER_EDGE * edges.len() as f64).clamp(CELLS[0], CELLS[1]);
         let mut bounds = CellBox::of(&[]);
         edges.iter().flat_map(|edge| edge.ends).for_each(|end| bounds.extend(end));
-        let grid = grid(bounds, wanted);
-        let mut cells = Cells { grid, states: vec![UNKNOWN; grid.len()] };
+        let boxes: Vec<CellBox> = edges.iter().map(|edge| CellBox::of(&edge.ends)).collect();
+        let grid = grid(box_of_most(&boxes), wanted);
+        drop(boxes);
+        let mut cells = Cells { bounds, grid, states: vec![UNKNOWN; grid.len()] };
         for edge in edges {
             grid.for_each_cell(Item::Segment(edge.ends), 0.0, &mut |cell| cells.states[cell] = EDGE);
         }
@@ -39,11 +43,12 @@ impl Cells {
         cells
     }
 
-    /// Where a place lies: outside of the box of all edges; with all of its cell; or [`None`] if an edge meets that.
+    /// Where a place lies: outside of the box of all edges; with all of its cell; or [`None`] if an edge meets
+    /// that, or there is no cell.
     #[inline]
     pub(super) fn side(&self, place: Point2) -> Option<Side> {
         if !self.grid.bounds.contains(place) {
-            return Some(Side::Outside);
+            return if self.bounds.contains(place) { None } else { Some(Side::Outside) };
         }
         match self.states[self.grid.cell(place)] {
             EDGE => None,
@@ -92,5 +97,8 @@ impl Cells {
 fn grid(bounds: CellBox, wanted: f64) -> Grid {
     let grid = Grid::new(bounds, wanted, false);
     let most = bounds.min.iter().chain(&bounds.max).fold(0.0f64, |most, value| most.max(value.abs()));
-    if grid.side < most * CELL_MIN { Grid::with_side(bounds, most * CELL_MIN) } else { grid }
+    let grid = if grid.side < most * CELL_MIN { Grid::with_side(bounds, most * CELL_MIN) } else { grid };
+    // Edges beyond the box may meet the last cells, too.
+    let whole = |axis: usize| bounds.max[axis].max(bounds.min[axis] + grid.size[axis] as f64 * grid.side);
+    Grid { bounds: CellBox { max: [whole(0), whole(1)], ..bounds }, ..grid }
 }

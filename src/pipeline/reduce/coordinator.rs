@@ -82,14 +82,15 @@ where
 /// Pieces of the input, the last of which may be an error.
 type Batch<const D: usize> = Vec<Result<Piece<D>>>;
 
-/// The next pieces of the input: one that is large, or several.
+/// The next pieces of the input: one that is large, or several of one block. The input may be silent after it, and
+/// must not hold them back.
 fn next_batch<R: Read, const D: usize>(
     reader: &mut CellReader<R, D>,
     raw: &BufferPool<Residual<D>>,
 ) -> ControlFlow<Batch<D>, Batch<D>> {
-    let (mut batch, mut points) = (Vec::new(), 0);
-    while points < BATCH_POINTS {
-        let piece = reader.next(|| raw.take());
+    let (mut batch, mut points, mut fresh) = (Vec::new(), 0, || raw.take());
+    let mut next = Some(reader.next(&mut fresh));
+    while let Some(piece) = next.take() {
         points += match &piece {
             Ok(Piece::Cell { tagged, .. }) => tagged.points.len().max(PIECE_POINTS_MIN),
             Ok(Piece::Read { .. }) => BATCH_POINTS,
@@ -99,6 +100,9 @@ fn next_batch<R: Read, const D: usize>(
             }
         };
         batch.push(piece);
+        if points < BATCH_POINTS {
+            next = reader.next_read(&mut fresh).transpose();
+        }
     }
     ControlFlow::Continue(batch)
 }

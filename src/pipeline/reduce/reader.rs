@@ -68,23 +68,30 @@ impl<R: Read, const D: usize> CellReader<R, D> {
         CellReader { reader, buffer, tags: VecDeque::new(), cells: 0, report, reported: 0, empty: 0 }
     }
 
-    /// The next piece; must not be called after the end. `fresh` gives empty residuals whose memory is used
-    /// again.
+    /// The next piece that can be had without reading, which may wait. `fresh` gives empty residuals whose memory
+    /// is used again.
+    pub(super) fn next_read(&mut self, fresh: &mut impl FnMut() -> Residual<D>) -> Result<Option<Piece<D>>> {
+        while let Some(cell) = self.tags.pop_front() {
+            self.cells += 1;
+            let tagged = self.buffer.tag(cell, &mut *fresh).map_err(|e| self.reader.locate(e))?;
+            if !tagged.is_nothing() {
+                self.empty = 0;
+                return Ok(Some(Piece::Cell { tagged, held: self.buffer.held() }));
+            }
+            self.empty += 1;
+            if self.empty == EMPTY_REPORTED {
+                self.empty = 0;
+                return Ok(Some(self.read()));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The next piece; must not be called after the end. `fresh` is as in [`CellReader::next_read`].
     pub(super) fn next(&mut self, mut fresh: impl FnMut() -> Residual<D>) -> Result<Piece<D>> {
         loop {
-            if let Some(cell) = self.tags.pop_front() {
-                self.cells += 1;
-                let tagged = self.buffer.tag(cell, &mut fresh).map_err(|e| self.reader.locate(e))?;
-                if !tagged.is_nothing() {
-                    self.empty = 0;
-                    return Ok(Piece::Cell { tagged, held: self.buffer.held() });
-                }
-                self.empty += 1;
-                if self.empty == EMPTY_REPORTED {
-                    self.empty = 0;
-                    return Ok(self.read());
-                }
-                continue;
+            if let Some(piece) = self.next_read(&mut fresh)? {
+                return Ok(piece);
             }
             match self.reader.next_event()? {
                 Some(Event::Points(points)) => {
