@@ -56,6 +56,7 @@ pub struct Grid {
 
 impl CellBox {
     /// The least box around some places; none has infinite bounds.
+    #[inline]
     pub fn of(places: &[Point2]) -> CellBox {
         let mut bounds = CellBox { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
         places.iter().for_each(|&place| bounds.extend(place));
@@ -81,6 +82,7 @@ impl CellBox {
     }
 
     /// What both have in common, perhaps nothing: then a bound is beyond the other.
+    #[inline]
     pub fn within(&self, other: &CellBox) -> CellBox {
         CellBox {
             min: [0, 1].map(|axis| self.min[axis].max(other.min[axis])),
@@ -160,6 +162,7 @@ impl Grid {
     }
 
     /// Number of cells.
+    #[inline]
     pub fn len(&self) -> usize {
         self.size[0] * self.size[1]
     }
@@ -183,6 +186,7 @@ impl Grid {
     }
 
     /// A cell as a box of coordinates, up to roundings. It may reach beyond the bounds.
+    #[inline]
     pub fn cell_box(&self, cell: usize) -> CellBox {
         let at = [cell % self.size[0], cell / self.size[0]];
         let corner =
@@ -203,6 +207,7 @@ impl Grid {
     }
 
     /// Cells of a fraction of the side.
+    #[inline]
     pub fn finer(&self, by: usize) -> Grid {
         let part = by as f64;
         Grid {

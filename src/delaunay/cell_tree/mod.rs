@@ -75,6 +75,7 @@ impl Cut {
 
 impl Inner {
     /// The trees that together have what is in the cell; a place is in one of them.
+    #[inline]
     pub fn trees(&self) -> impl Iterator<Item = &CellTree> {
         std::iter::once(&self.bulk).chain(self.beyond.iter().map(|(_, tree)| tree))
     }
