@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 use std::fs::{self, File};
-use std::io::{self, IsTerminal, Read};
-use std::os::fd::AsFd;
+use std::io::{IsTerminal, Read};
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -24,7 +23,8 @@ struct Files {
 }
 
 /// From now on, an output that would replace a file that this process has read, or reads later, is an error.
-/// Programs call this at their start. A process of several runs may well replace what an earlier run has read.
+/// Programs call this at their start. A process of several runs may well replace what an earlier run has
+/// read.
 pub fn watch() {
     run().get_or_insert_default();
 }
@@ -44,12 +44,17 @@ pub fn open(path: &Path) -> Result<File> {
     Ok(file)
 }
 
+/// Whether a file that is open is a regular one.
+pub fn is_regular(file: &File) -> bool {
+    file.metadata().is_ok_and(|metadata| metadata.is_file())
+}
+
 /// Takes note of a file that a library opens by its path, or that another run needs.
 ///
 /// # Errors
 /// Usage, if it is one of the outputs.
 pub fn note(path: &Path) -> Result<()> {
-    enter(path, Place::of(path, io::stdin().as_fd()))
+    enter(path, Place::of_input(path))
 }
 
 /// Opens the file beside `path` that has one of these endings, and returns its path, too.
@@ -74,15 +79,19 @@ pub fn open_beside(path: &Path, endings: &[&str]) -> Result<Option<(File, PathBu
 /// As [`open`]; malformed, if the file is longer.
 pub fn read(path: &Path, subject: &str, most: u64) -> Result<Vec<u8>> {
     let file = open(path)?;
-    let reading = |e| Error::io("reading", e);
-    limits::check_len(subject, file.metadata().map_err(reading)?.len(), most)?;
-    let mut content = Vec::new();
+    limits::check_len(subject, file.metadata().map_err(|e| Error::io("reading", e))?.len(), most)?;
     // A pipe or a file of /proc says nothing of its length.
-    file.take(most + 1).read_to_end(&mut content).map_err(reading)?;
-    if content.len() as u64 > most {
-        return Err(Error::malformed(format!("{subject} more than {most} bytes")));
-    }
-    Ok(content)
+    content(file, most)?.ok_or_else(|| Error::malformed(format!("{subject} more than {most} bytes")))
+}
+
+/// The content of a file; `None` if it is longer than `most`.
+///
+/// # Errors
+/// I/O, if reading fails.
+pub fn content(file: File, most: u64) -> Result<Option<Vec<u8>>> {
+    let mut content = Vec::new();
+    file.take(most + 1).read_to_end(&mut content).map_err(|e| Error::io("reading", e))?;
+    Ok(Some(content).filter(|content| content.len() as u64 <= most))
 }
 
 /// Refuses what is not read as a file: folders, and devices other than a terminal and /dev/null, which may be
@@ -115,8 +124,11 @@ fn enter(path: &Path, place: Option<Place>) -> Result<()> {
 /// # Errors
 /// Usage, with the name of the input.
 pub fn check_output(path: &Path) -> Result<()> {
-    let place = Place::of(path, io::stdout().as_fd());
-    match place.and_then(|place| run().as_ref()?.inputs.get(&place).cloned()) {
+    check_place(path, Place::of_output(path).as_ref())
+}
+
+fn check_place(path: &Path, place: Option<&Place>) -> Result<()> {
+    match place.and_then(|place| run().as_ref()?.inputs.get(place).cloned()) {
         Some(input) => Err(would_replace(&name_of_output(path), &input)),
         None => Ok(()),
     }
@@ -135,8 +147,8 @@ impl Claim {
     /// # Errors
     /// As [`check_output`].
     pub(crate) fn new(path: &Path) -> Result<Claim> {
-        check_output(path)?;
-        let place = Place::of(path, io::stdout().as_fd());
+        let place = Place::of_output(path);
+        check_place(path, place.as_ref())?;
         if let (Some(files), Some(place)) = (run().as_mut(), &place) {
             files.outputs.insert(place.clone(), name_of_output(path));
         }

@@ -207,8 +207,8 @@ pub fn geopackage_value_max(len: u64) -> i32 {
     len.saturating_add(1 << 16).min(1 << 30) as i32
 }
 
-/// Most steps of SQLite for a GeoPackage of so many bytes. A row with a geometry takes three to seven steps, and
-/// at least 35 bytes; rows beyond [`LINE_VERTICES_MAX`] have too many vertices, whatever the length is.
+/// Most steps of SQLite for a GeoPackage of so many bytes. A row with a geometry takes three to seven steps,
+/// and at least 35 bytes; rows beyond [`LINE_VERTICES_MAX`] have too many vertices, whatever the length is.
 pub fn geopackage_steps_max(len: u64) -> u64 {
     len.saturating_add(1_000_000).min(8 * LINE_VERTICES_MAX as u64)
 }

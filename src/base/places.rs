@@ -26,7 +26,7 @@ pub(crate) enum Place {
 impl Place {
     /// The place of `path`, or of `standard` for "-". `None` for devices, which may be given several times,
     /// for pipes (see [`pipe_at`]), for folders, and for paths that cannot be created.
-    pub(crate) fn of(path: &Path, standard: BorrowedFd<'_>) -> Option<Place> {
+    fn of(path: &Path, standard: BorrowedFd<'_>) -> Option<Place> {
         match found_at(path, standard) {
             Ok(found) => {
                 (found.kind == FileType::RegularFile).then_some(Place::File(found.device, found.inode))
@@ -38,6 +38,15 @@ impl Place {
                 Some(Place::New(folder.join(target.file_name()?)))
             }
         }
+    }
+
+    /// The place of an input, which may name a layer of a file.
+    pub(crate) fn of_input(path: &Path) -> Option<Place> {
+        Place::of(file_and_layer(path).0, io::stdin().as_fd())
+    }
+
+    pub(crate) fn of_output(path: &Path) -> Option<Place> {
+        Place::of(path, io::stdout().as_fd())
     }
 
     /// The place of an open file, if it is a regular one.
@@ -74,17 +83,13 @@ pub struct Inputs {
 impl Inputs {
     /// The files at these paths; "-" is stdin.
     pub fn of<'p>(paths: impl IntoIterator<Item = &'p Path>) -> Inputs {
-        let stdin = io::stdin();
-        let place = |path: &'p Path| {
-            let (file, _) = file_and_layer(path);
-            Some((Place::of(file, stdin.as_fd())?, name_of_input(path)))
-        };
+        let place = |path: &'p Path| Some((Place::of_input(path)?, name_of_input(path)));
         Inputs { names: paths.into_iter().filter_map(place).collect() }
     }
 
     /// The name of the input that an output at `path` would replace, if there is one; "-" is stdout.
     pub fn at(&self, path: &Path) -> Option<&str> {
-        let place = Place::of(path, io::stdout().as_fd())?;
+        let place = Place::of_output(path)?;
         self.names.get(&place).map(String::as_str)
     }
 }
@@ -136,7 +141,7 @@ pub fn check_pipes<'p>(inputs: impl IntoIterator<Item = &'p Path>) -> Result<()>
 /// Whether two outputs are one: a file, or a pipe.
 fn is_same(a: &Path, b: &Path) -> bool {
     let stdout = io::stdout();
-    let place = |path| Place::of(path, stdout.as_fd());
+    let place = Place::of_output;
     let pipe = |path| pipe_at(path, stdout.as_fd());
     is_standard(a) && is_standard(b)
         || place(a).is_some_and(|a| Some(a) == place(b))

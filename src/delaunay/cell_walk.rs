@@ -5,15 +5,9 @@ use crate::points::Point2;
 /// Places are off by far less than this after they are put on a grid. Unit: cells.
 pub const TOLERANCE: f64 = 1e-6;
 
-/// Calls `found` with the column and row of each cell that a segment meets, and perhaps of others beside it; row by
-/// row. Places are in units of cells; what is beyond the columns and rows of `size` counts for those at the border.
-#[inline]
-pub fn for_each_cell(ends: [Point2; 2], size: [usize; 2], found: impl FnMut([usize; 2])) {
-    for_each_cell_within(ends, size, TOLERANCE, found);
-}
-
-/// As [`for_each_cell`], with the cells that places within `reach` of the segment on both axes are in, in
-/// units of cells.
+/// Calls `found` with the column and row of each cell that has a place within `reach` of a segment on both
+/// axes, and perhaps of others beside it; row by row. Places and `reach` are in units of cells; what is
+/// beyond the columns and rows of `size` counts for those at the border.
 #[inline]
 pub fn for_each_cell_within(
     ends: [Point2; 2],

@@ -3,7 +3,7 @@
 mod bits;
 pub mod cell_lists;
 pub mod cell_tree;
-pub mod cell_walk;
+mod cell_walk;
 pub mod constrained2;
 pub mod delaunay2;
 pub mod delaunay3;

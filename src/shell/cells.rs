@@ -39,11 +39,6 @@ pub struct CellFlags {
 }
 
 impl CellFlags {
-    /// The raster whose grid is taken.
-    pub fn like(&self) -> Option<&PathBuf> {
-        self.like.as_ref()
-    }
-
     /// The grid that the flags ask for, for data in `crs`. `window` returns the extent of the data; it is called only if no flag
     /// states the extent.
     pub fn grid(&self, crs: &Crs, window: impl FnOnce() -> Result<Window>) -> Result<Grid> {

@@ -35,7 +35,7 @@ use spmesh_base::system;
 pub use spmesh_base::system::peak_memory;
 use spmesh_base::temporary::remove_names_at_signals;
 use spmesh_formats::detect::BYTE_ORDER_MARK;
-use spmesh_formats::source::{Plain, is_manifest, name_of, open_file, open_manifest, open_stdin};
+use spmesh_formats::source::{Plain, is_manifest, name_of, open_manifest, open_stdin};
 use spmesh_stream::StreamReader;
 use spmesh_stream::model::bounds::Bounds;
 pub use stats::{Report, StatsFlag};
@@ -194,7 +194,7 @@ fn open_as(
         let input = plain(Box::new(open_stdin()?)).map_err(reading)?;
         return Ok((Box::new(input), name));
     }
-    let (file, _) = open_file(path).map_err(|e| e.of_input(&name))?;
+    let file = inputs::open(path).map_err(|e| e.of_input(&name))?;
     if is_manifest(&file) {
         return Ok((Box::new(open_manifest(path)?), name));
     }

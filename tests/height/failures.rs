@@ -83,7 +83,8 @@ fn heights_may_not_overflow() {
     assert!(code == Some(2) && message.contains("record 0") && message.contains("32 bits"), "{message}");
 }
 
-/// Coordinates that are no finite numbers in the world, or in steps of the ground. Each program refuses the former.
+/// Coordinates that are no finite numbers in the world, or in steps of the ground. Each program refuses the
+/// former.
 #[test]
 fn coordinates_may_not_overflow() {
     let folder = Folder::new();

@@ -63,6 +63,14 @@ impl CellBox {
         bounds
     }
 
+    /// The least box around others.
+    pub fn around(boxes: impl IntoIterator<Item = CellBox>) -> CellBox {
+        boxes.into_iter().fold(CellBox::of(&[]), |mut all, one| {
+            [one.min, one.max].into_iter().for_each(|corner| all.extend(corner));
+            all
+        })
+    }
+
     /// Makes the box contain a place.
     #[inline]
     pub fn extend(&mut self, place: Point2) {
@@ -163,13 +171,8 @@ impl Grid {
 
     /// Number of cells.
     #[inline]
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.size[0] * self.size[1]
-    }
-
-    /// Whether there are no cells: never.
-    pub fn is_empty(&self) -> bool {
-        false
     }
 
     /// A place in units of cells.
@@ -218,7 +221,8 @@ impl Grid {
         }
     }
 
-    /// Calls `found` with the cells that an item is in: for a segment, also those of all places within `reach` of it.
+    /// Calls `found` with the cells that an item is in: for a segment, also those of all places within
+    /// `reach` of it.
     pub fn for_each_cell(&self, item: Item, reach: f64, found: &mut dyn FnMut(usize)) {
         match item {
             Item::Place(place) => found(self.cell(place)),

@@ -3,8 +3,8 @@
 use super::{CellBox, CellTree, Cut, Fineness, Grid, Inner, Item};
 use crate::cell_lists::CellLists;
 
-/// Grids in grids that do not part the items, one after the other, at most: many segments that meet in one place are
-/// in one cell of any grid.
+/// Grids in grids that do not part the items, one after the other, at most: many segments that meet in one
+/// place are in one cell of any grid.
 const TRIES: u32 = 4;
 
 /// A grid parts the items if a cell has at most this part of them.
@@ -43,11 +43,11 @@ impl<I: Fn(u32) -> Item> Making<'_, I> {
         most: usize,
     ) -> CellTree {
         loop {
-            let lists = CellLists::of(grid.len(), count, most, |at, visit| {
+            let lists = CellLists::of(grid.count(), count, most, |at, visit| {
                 grid.for_each_cell((self.item)(number(at)), self.fineness.reach, visit);
             });
             // One cell has each item once.
-            if let Some(lists) = lists.or_else(|| (grid.len() == 1).then(|| CellLists::whole(count))) {
+            if let Some(lists) = lists.or_else(|| (grid.count() == 1).then(|| CellLists::whole(count))) {
                 let (number, count) = (self.grids, count as usize);
                 self.grids += 1;
                 let around = CellBox { min: [f64::NEG_INFINITY; 2], max: [f64::INFINITY; 2] };
@@ -59,7 +59,7 @@ impl<I: Fn(u32) -> Item> Making<'_, I> {
 
     /// Divides crowded cells. `tries` is the number of grids around that did not part the items.
     pub(super) fn divide(&mut self, tree: &mut CellTree, tries: u32) {
-        for cell in 0..tree.grid.len() {
+        for cell in 0..tree.grid.count() {
             let items = tree.list(cell);
             if items.len() <= self.fineness.crowd {
                 continue;
@@ -67,9 +67,8 @@ impl<I: Fn(u32) -> Item> Making<'_, I> {
             let is_parted = items.len() as f64 <= SHARE * tree.count as f64;
             let tries = if is_parted { 0 } else { tries + 1 };
             if tries <= TRIES
-                && let Some(inner) = self.inner(tree.grid.cell_around(cell, self.fineness), items, tries)
+                && let Some(mut inner) = self.inner(tree.grid.cell_around(cell, self.fineness), items, tries)
             {
-                let mut inner = inner;
                 inner.shift(tree.positions(cell).start);
                 tree.inner.push((cell as u32, inner));
             }
@@ -96,7 +95,7 @@ impl<I: Fn(u32) -> Item> Making<'_, I> {
             around = inside;
         }
         let bulk = self.tree(around, &rest, tries)?;
-        if bulk.grid.len() == 1 && beyond.is_empty() {
+        if bulk.grid.count() == 1 && beyond.is_empty() {
             return None;
         }
         let beyond = beyond.into_iter().map(|(cut, outside, others)| {
@@ -108,12 +107,7 @@ impl<I: Fn(u32) -> Item> Making<'_, I> {
 
     /// The tree of some items over the box of their parts in a box.
     fn tree(&mut self, around: CellBox, items: &[u32], tries: u32) -> Option<CellTree> {
-        let met = items.iter().filter_map(|&item| self.met(item, &around));
-        let mut bounds = met.fold(CellBox::of(&[]), |mut all, met| {
-            all.extend(met.min);
-            all.extend(met.max);
-            all
-        });
+        let mut bounds = CellBox::around(items.iter().filter_map(|&item| self.met(item, &around)));
         if self.fineness.is_whole {
             bounds =
                 CellBox { min: bounds.min.map(f64::floor), max: bounds.max.map(f64::ceil) }.within(&around);
@@ -126,7 +120,7 @@ impl<I: Fn(u32) -> Item> Making<'_, I> {
         tree.lists.renumber(|at| items[at as usize]);
         tree.around = around;
         self.left = self.left.checked_sub(tree.lists.entries())?;
-        if tree.grid.len() > 1 {
+        if tree.grid.count() > 1 {
             self.divide(&mut tree, tries);
         }
         Some(tree)
@@ -139,8 +133,7 @@ impl<I: Fn(u32) -> Item> Making<'_, I> {
 
 /// The box of most of some boxes: without what leads far beyond it.
 pub fn box_of_most(boxes: &[CellBox]) -> CellBox {
-    let mut all = CellBox::of(&[]);
-    boxes.iter().flat_map(|b| [b.min, b.max]).for_each(|corner| all.extend(corner));
+    let all = CellBox::around(boxes.iter().copied());
     if boxes.is_empty() {
         return all;
     }

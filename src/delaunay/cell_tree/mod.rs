@@ -1,8 +1,8 @@
 //! Places and segments by the cells of a grid, in which crowded cells have grids of their own.
 //!
-//! A grid over a box is as good as what is in it is even: one place far from all others puts these into one cell. So
-//! the box of most of the items in a crowded cell has a grid of its own, the rest of the cell has trees for what little
-//! is in it, and so on. Where items are even, there is one grid.
+//! A grid over a box is as good as what is in it is even: one place far from all others puts these into one
+//! cell. So the box of most of the items in a crowded cell has a grid of its own, the rest of the cell has
+//! trees for what little is in it, and so on. Where items are even, there is one grid.
 
 mod grid;
 mod making;
@@ -132,7 +132,7 @@ impl CellTree {
         if self.number == 0 {
             return (0..self.count as u32).collect();
         }
-        let mut items: Vec<u32> = (0..self.grid.len()).flat_map(|cell| self.list(cell)).copied().collect();
+        let mut items: Vec<u32> = (0..self.grid.count()).flat_map(|cell| self.list(cell)).copied().collect();
         items.sort_unstable();
         items.dedup();
         items
@@ -175,7 +175,7 @@ impl CellTree {
         &self,
         visit: &mut impl FnMut(&Grid, usize, &[u32]) -> Result<(), E>,
     ) -> Result<(), E> {
-        (0..self.grid.len()).try_for_each(|cell| match self.inner(cell) {
+        (0..self.grid.count()).try_for_each(|cell| match self.inner(cell) {
             Some(inner) => inner.trees().try_for_each(|tree| tree.for_each_leaf(visit)),
             None => visit(&self.grid, cell, self.list(cell)),
         })
@@ -193,7 +193,7 @@ impl CellTree {
         if self.inner.is_empty() {
             return order.extend_from_slice(self.lists.numbers());
         }
-        for cell in 0..self.grid.len() {
+        for cell in 0..self.grid.count() {
             match self.inner(cell) {
                 Some(inner) => inner.trees().for_each(|tree| tree.append_order(order)),
                 None => order.extend_from_slice(self.list(cell)),

@@ -44,7 +44,7 @@ fn middle(item: &Item) -> Point2 {
 fn work(items: &[Item], searched: &[Item]) -> usize {
     let tree = tree_of(items, &FINENESS);
     let (mut cells, mut work) = (0, 0);
-    tree.for_each_grid(&mut |tree| (cells, work) = (cells + tree.grid.len(), work + tree.lists.entries()));
+    tree.for_each_grid(&mut |tree| (cells, work) = (cells + tree.grid.count(), work + tree.lists.entries()));
     assert!(cells < 8 * items.len() + 100, "{cells} cells for {} items", items.len());
     let list = |item| tree.leaf(middle(item)).map_or(0, |(tree, cell)| tree.list(cell).len());
     work + searched.iter().map(list).sum::<usize>()

@@ -115,8 +115,8 @@ fn small_sets_in_buffers_of_others() {
     }
 }
 
-/// Points of two lines have as many tetrahedra as there are pairs of edges; with threads or without, the kernel
-/// stops at the limit, and makes as many as it may.
+/// Points of two lines have as many tetrahedra as there are pairs of edges; with threads or without, the
+/// kernel stops at the limit, and makes as many as it may.
 #[test]
 fn tetrahedra_have_a_limit() {
     let side = |t: i32| [[f64::from(t), 0.0, 0.0], [0.0, f64::from(t), 1.0]];

@@ -1,9 +1,10 @@
 //! Crossings, and the segments that pass through hot pixels, by division of the plane.
 //!
-//! A cell is a rectangle of pixels; the first ones are those of a grid ([`CellTree`]). It is divided until few segments meet it, or until it has no vertex and [`super::chords`] proves that no two of its
-//! segments meet in it. A cell of one pixel needs no division either: it is hot if it has a vertex or a
-//! crossing, and then all of its segments are bent to its centre. So segments that share a vertex, or run
-//! close to each other, are compared in pairs nowhere.
+//! A cell is a rectangle of pixels; the first ones are those of a grid ([`CellTree`]). It is divided until
+//! few segments meet it, or until it has no vertex and [`super::chords`] proves that no two of its segments
+//! meet in it. A cell of one pixel needs no division either: it is hot if it has a vertex or a crossing, and
+//! then all of its segments are bent to its centre. So segments that share a vertex, or run close to each
+//! other, are compared in pairs nowhere.
 
 use super::chords::Chords;
 use super::collinear::Segments;
@@ -17,8 +18,8 @@ const FEW: usize = 12;
 /// Segments of a cell that have a say in how it is divided.
 const SAMPLE: usize = 32;
 
-/// The grids where the division starts. A segment is listed in all cells that places are in within so many pixels of
-/// it: more than half of a pixel, for the sides of cells, and all rounding errors.
+/// The grids where the division starts. A segment is listed in all cells that places are in within so many
+/// pixels of it: more than half of a pixel, for the sides of cells, and all rounding errors.
 const STARTS: Fineness = Fineness {
     items_per_cell: 12.0,
     cells: [1.0, f64::INFINITY],
@@ -136,7 +137,8 @@ pub(super) fn search(places: &[Place], segments: &Segments, crossings_max: usize
     Ok(search.found)
 }
 
-/// Segments and, with numbers behind theirs, places in cells. A pixel begins half of its side before its centre.
+/// Segments and, with numbers behind theirs, places in cells. A pixel begins half of its side before its
+/// centre.
 fn starts(places: &[Place], segments: &Segments) -> CellTree {
     let at = |place: u32| places[place as usize].map(|value| value as f64 + 0.5);
     let count = segments.ends.len();

@@ -13,9 +13,6 @@ const ELLIPSOIDAL_HEIGHTS: std::ops::RangeInclusive<u16> = 5001..=5033;
 /// Codes of datums that GeoTIFF 1.0 used for heights, with the codes of the EPSG dataset.
 const OLD_HEIGHTS: [(u16, u16); 6] =
     [(5101, 5701), (5102, 5702), (5103, 5703), (5104, 5736), (5105, 5705), (5106, 5706)];
-/// The model types of geographic and of geocentric systems.
-const GEOGRAPHIC: u16 = 2;
-const GEOCENTRIC: u16 = 3;
 
 /// The system that `keys` define.
 pub(crate) fn system(keys: &GeoKeys) -> System {
@@ -45,7 +42,7 @@ impl System {
             return self.local(keys);
         }
         // Without a type, coordinates that have a unit of lengths are no degrees either.
-        if !matches!(model, Some(GEOGRAPHIC | GEOCENTRIC))
+        if !matches!(model, Some(keys::GEOGRAPHIC_MODEL | keys::GEOCENTRIC_MODEL))
             && length_unit(keys).is_some()
             && let Some(local) = self.local(keys)
         {
@@ -78,7 +75,7 @@ impl System {
             unit: Unit::metre(),
         });
         let is_geocentric = matches!(horizontal.kind, Kind::Geocentric(_));
-        if keys.short(keys::MODEL_TYPE) == Some(GEOCENTRIC) && !is_geocentric {
+        if keys.short(keys::MODEL_TYPE) == Some(keys::GEOCENTRIC_MODEL) && !is_geocentric {
             self.remarks.push(format!(
                 "key 1024 calls the coordinates geocentric, but EPSG:{code} ({}) is not: taking the key",
                 horizontal.name

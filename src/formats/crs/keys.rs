@@ -42,8 +42,10 @@ pub(crate) const VERTICAL_CITATION: u16 = 4097;
 pub(crate) const VERTICAL_DATUM: u16 = 4098;
 pub(crate) const VERTICAL_UNIT: u16 = 4099;
 
-/// The value of [`MODEL_TYPE`] of projected systems.
+/// The values of [`MODEL_TYPE`] of projected, geographic and geocentric systems.
 pub(crate) const PROJECTED_MODEL: u16 = 1;
+pub(crate) const GEOGRAPHIC_MODEL: u16 = 2;
+pub(crate) const GEOCENTRIC_MODEL: u16 = 3;
 
 /// The value of a key for what other keys define.
 pub(crate) const USER_DEFINED: u16 = 32767;

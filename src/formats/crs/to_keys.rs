@@ -15,8 +15,6 @@ use crate::crs::units::Unit;
 const HEADER: [u16; 3] = [1, 1, 1];
 /// Codes that keys can hold.
 const CODES: std::ops::RangeInclusive<u32> = 1024..=32766;
-const GEOGRAPHIC: u16 = 2;
-const GEOCENTRIC: u16 = 3;
 const PIXEL_IS_AREA: u16 = 1;
 /// EPSG code of the meridian of Greenwich.
 const GREENWICH: u16 = 8901;
@@ -64,12 +62,12 @@ impl Writer {
 
     fn horizontal(&mut self, system: &Horizontal) {
         let model = match system.kind {
-            Kind::Geographic(_) => GEOGRAPHIC,
-            Kind::Geocentric(_) => GEOCENTRIC,
-            Kind::Unresolved if system.is_angular() => GEOGRAPHIC,
+            Kind::Geographic(_) => keys::GEOGRAPHIC_MODEL,
+            Kind::Geocentric(_) => keys::GEOCENTRIC_MODEL,
+            Kind::Unresolved if system.is_angular() => keys::GEOGRAPHIC_MODEL,
             Kind::Projected(..) | Kind::Unresolved => keys::PROJECTED_MODEL,
         };
-        if model == GEOCENTRIC {
+        if model == keys::GEOCENTRIC_MODEL {
             return self.lose(format!("a GeoTIFF cannot hold the geocentric system {:?}", system.name));
         }
         let contradictions = contradictions(system);

@@ -24,8 +24,9 @@ use std::sync::Arc;
 
 use crate::detect::{self, BYTE_ORDER_MARK, Format, read_head};
 use crate::source::gzip::Plain;
-use crate::source::origin::{name_of, open_file, open_stdin};
+use crate::source::origin::{name_of, open_stdin};
 use spmesh_base::error::{Error, Result};
+use spmesh_base::inputs;
 use spmesh_base::places::file_and_layer;
 use spmesh_stream::model::points::Point2;
 
@@ -116,8 +117,8 @@ impl Breaklines {
 /// Y. The vertices of a line may continue on the next lines of text. `nan` stands for an unknown Z.
 ///
 /// In GeoJSON, third coordinates are elevations. Points are lines of one vertex. A Shapefile may have Z; its
-/// system is in the `.prj` file beside it. Of a GeoPackage, all tables of features are read, or one layer: the
-/// layer `rivers` of `map.gpkg` is `map.gpkg:rivers`.
+/// system is in the `.prj` file beside it. Of a GeoPackage, all tables of features are read, or one layer:
+/// the layer `rivers` of `map.gpkg` is `map.gpkg:rivers`.
 ///
 /// # Errors
 /// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a
@@ -143,8 +144,9 @@ fn read(path: &Path, read_text: ReadText) -> Result<Breaklines> {
     let (input, is_file): (Box<dyn Read>, bool) = if path.as_os_str() == "-" {
         (Box::new(open_stdin()?), false)
     } else {
-        let (file, kind) = open_file(path)?;
-        (Box::new(file), kind.is_file())
+        let file = inputs::open(path)?;
+        let is_file = inputs::is_regular(&file);
+        (Box::new(file), is_file)
     };
     let mut input = Plain::held(input).map_err(|e| Error::io("reading", e))?;
     // Other formats are read by their names again, or with files beside them.

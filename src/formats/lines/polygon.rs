@@ -17,8 +17,8 @@ pub(crate) fn fan(corners: &[u64]) -> Result<VecDeque<[u64; 3]>> {
     }
 }
 
-/// The triangles of strips, all with the orientation of the first one. Those with a vertex twice join parts of a
-/// strip, and are left out.
+/// The triangles of strips, all with the orientation of the first one. Those with a vertex twice join parts
+/// of a strip, and are left out.
 pub(crate) fn strips(corners: &[u64]) -> Result<VecDeque<[u64; 3]>> {
     let mut triangles = VecDeque::new();
     for strip in corners.split(|&corner| corner == RESTART).filter(|strip| !strip.is_empty()) {

@@ -46,9 +46,9 @@ const NAMES: [(&str, PolylineKind); 4] = [
     ("linear", PolylineKind::Linear),
 ];
 
-/// Reads the polylines of a file, and what it says about their system and its layers. A line of text is a word, `corner`,
-/// `crease`, `smooth-crease` or `linear`, and coordinates X Y X Y ... Other formats are those of
-/// [`super::read_breaklines`]: points are corners, and lines and rings of polygons are creases, unless a
+/// Reads the polylines of a file, and what it says about their system and its layers. A line of text is a
+/// word, `corner`, `crease`, `smooth-crease` or `linear`, and coordinates X Y X Y ... Other formats are those
+/// of [`super::read_breaklines`]: points are corners, and lines and rings of polygons are creases, unless a
 /// feature has a property `spline` with one of these words.
 ///
 /// Coordinates are not transformed; third coordinates are ignored.

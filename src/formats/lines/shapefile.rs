@@ -196,12 +196,10 @@ fn numbers(bytes: &[u8]) -> Vec<f64> {
 fn system(path: &Path) -> Result<Crs> {
     let Some((file, beside)) = inputs::open_beside(path, &["prj", "PRJ"])? else { return Ok(Crs::Unknown) };
     let named = |e: Error| e.of_input(beside.display().to_string());
-    let mut text = Vec::new();
-    file.take(CRS_LEN_MAX as u64 + 1).read_to_end(&mut text).map_err(|e| named(Error::io("reading", e)))?;
-    if text.len() > CRS_LEN_MAX {
+    let text = inputs::content(file, CRS_LEN_MAX as u64).map_err(named)?.ok_or_else(|| {
         let message = format!("more than {CRS_LEN_MAX} bytes, expected well-known text of a system");
-        return Err(named(Error::malformed(message)));
-    }
+        named(Error::malformed(message))
+    })?;
     let text = String::from_utf8_lossy(&text);
     let text = text.trim_start_matches('\u{feff}').trim();
     Ok(if text.is_empty() { Crs::Unknown } else { Crs::Wkt(text.to_string()) })

@@ -48,7 +48,7 @@ pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
 
 use self::builder::StructureBuilder;
 use crate::source::gzip::Plain;
-use crate::source::origin::{open_file, open_stdin};
+use crate::source::origin::open_stdin;
 use crate::text::lines::Lines;
 
 use crate::detect::{self, HEAD_LEN, TESS3, read_head};
@@ -56,6 +56,7 @@ use crate::drivers::{AnyInput, Format};
 use crate::obj::read::open_obj;
 use crate::ply::read::open_ply;
 use spmesh_base::error::{Error, Result};
+use spmesh_base::inputs;
 use spmesh_base::limits::STRUCTURE_LINE_MAX;
 use spmesh_stream::Coordinates;
 
@@ -74,8 +75,9 @@ pub fn read_structure(path: &Path, format: Option<Format>) -> Result<Structure> 
         return read_structure_from(open_stdin()?, "stdin", format);
     }
     let name = path.display().to_string();
-    let (file, kind) = open_file(path).map_err(|e| e.of_input(&name))?;
-    read(file, &name, format, kind.is_file().then_some(path))
+    let file = inputs::open(path).map_err(|e| e.of_input(&name))?;
+    let is_file = inputs::is_regular(&file);
+    read(file, &name, format, is_file.then_some(path))
 }
 
 /// As [`read_structure`], from any reader. Messages call the input `name`.

@@ -6,8 +6,8 @@ use crate::crs::{GeoKeys, System, differences};
 use crate::raster::Grid;
 use crate::raster::geotiff::{KEY_DIRECTORY, KEY_DOUBLES, KEY_TEXTS, PIXEL_SCALE, TIEPOINT};
 use crate::raster::tags::{HEIGHT, Tags, WIDTH};
-use crate::source::open_file;
 use spmesh_base::error::{Error, Result};
+use spmesh_base::inputs;
 use spmesh_stream::Crs;
 
 impl Grid {
@@ -48,7 +48,7 @@ fn located<T>(path: &Path, result: Result<T>) -> Result<T> {
 
 /// The cells, and what x and y are.
 fn read(path: &Path) -> Result<(Grid, System)> {
-    let (file, _) = open_file(path)?;
+    let file = inputs::open(path)?;
     let malformed = |fault| Error::malformed(format!("this cannot be read as TIFF: {fault}"));
     let tags = Tags::read(&file).map_err(malformed)?;
     let (Some(columns), Some(rows)) = (tags.integer(WIDTH), tags.integer(HEIGHT)) else {

@@ -10,8 +10,8 @@ use spmesh_stream::Coordinates;
 /// Whole numbers that stand for no data: of rasters, and the least ones of 16 bits.
 const WHOLE: [f64; 5] = [-9999.0, -99999.0, -999999.0, -32767.0, -32768.0];
 
-/// Great ones, of either sign, which files write with few digits: round ones, those of netCDF and Surfer, and the
-/// greatest f32 and f64.
+/// Great ones, of either sign, which files write with few digits: round ones, those of netCDF and Surfer, and
+/// the greatest f32 and f64.
 const GREAT: [f64; 6] = [1e20, 1e30, 9.969_21e36, 1.701_41e38, 3.402_82e38, 1.797_69e308];
 
 /// Elevations between these are no fill values.

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::source::gzip::Plain;
-use crate::source::origin::open_file;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::limits::MANIFEST_LEN_MAX;
@@ -157,7 +156,7 @@ fn open_part(path: &Path) -> Result<OpenedPart> {
     if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
         return Err(named(Error::malformed("a part of a mesh is no regular file")));
     }
-    let (file, _) = open_file(path).map_err(named)?;
+    let file = inputs::open(path).map_err(named)?;
     let plain = Plain::new(file).map_err(|e| named(Error::io("reading", e)))?;
     Ok((Box::new(plain), name))
 }

@@ -60,7 +60,7 @@ pub use input::Input;
 pub use manifest::{Manifest, ManifestPart, is_manifest, open_manifest};
 pub use opened::{Opened, open_knots, open_planar};
 pub use options::{InvalidAdvice, SourceOptions};
-pub use origin::{name_of, open_file, open_stdin};
+pub use origin::{name_of, open_stdin};
 pub use placement::Alignment;
 pub use point_events::PointEvents;
 pub use reader::{Description, PointReader};

@@ -1,6 +1,6 @@
 //! Holds the place of an input's bytes, so that each pass can read them from the start.
 
-use std::fs::{File, FileType};
+use std::fs::File;
 use std::io::{self, Cursor, Read, Seek, SeekFrom, Stdin};
 use std::os::fd::AsFd;
 use std::os::unix::fs::FileExt;
@@ -64,20 +64,6 @@ pub fn open_stdin() -> Result<Watched<Stdin>> {
     Ok(Watched(stdin))
 }
 
-/// Opens a file for reading, and says of which type it is.
-///
-/// # Errors
-/// As [`inputs::open`].
-pub fn open_file(path: &Path) -> Result<(File, FileType)> {
-    let file = inputs::open(path)?;
-    let kind = type_of(&file)?;
-    Ok((file, kind))
-}
-
-fn type_of(file: &File) -> Result<FileType> {
-    Ok(file.metadata().map_err(|e| Error::io("opening", e))?.file_type())
-}
-
 impl Origin {
     fn at(place: Place) -> Origin {
         Origin { place, purpose: Use::Passed }
@@ -103,8 +89,8 @@ impl Origin {
         }
         let name = path.display().to_string();
         let mut open = || -> Result<Origin> {
-            let (file, kind) = open_file(path)?;
-            if kind.is_file() {
+            let file = inputs::open(path)?;
+            if inputs::is_regular(&file) {
                 return Ok(Origin::at(Place::Path(path.to_path_buf())));
             }
             spool_pipe(file, &name, admitted, temp_dir, notices)
@@ -121,7 +107,7 @@ impl Origin {
         let descriptor = stdin.as_fd().try_clone_to_owned().map_err(|e| Error::io("opening", e))?;
         let mut file = File::from(descriptor);
         inputs::check_type(&file)?;
-        if type_of(&file)?.is_file() && file.stream_position().is_ok_and(|position| position == 0) {
+        if inputs::is_regular(&file) && file.stream_position().is_ok_and(|position| position == 0) {
             return Ok(Origin::at(Place::Open(Arc::new(file))));
         }
         spool_pipe(Watched(file), "stdin", admitted, temp_dir, notices)

@@ -197,7 +197,8 @@ fn choose<'a>(
     Ok((columns(delimiter, usual, found.len(), found.len() == 2), Some(names)))
 }
 
-/// Takes the third of three columns as the value, if points need one and no column is called z; returns a notice.
+/// Takes the third of three columns as the value, if points need one and no column is called z; returns a
+/// notice.
 ///
 /// # Errors
 /// Usage, if points need a value, and several columns may have it.

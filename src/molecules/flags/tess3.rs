@@ -69,10 +69,10 @@ truncated input, 5 not enough memory, 6 input of another version of spmesh, 141 
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
-/// Reads PDB, PQR, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF, VTK and
-/// LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table, also of areas, volumes,
-/// contacts and pockets of atoms as balls. The triangulation is exact and canonical: it depends on the set of
-/// points only.
+/// Reads PDB, PQR, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF,
+/// VTK and LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table, also of areas,
+/// volumes, contacts and pockets of atoms as balls. The triangulation is exact and canonical: it depends on
+/// the set of points only.
 #[derive(Debug, Parser)]
 #[command(name = "tess3", version, after_help = EXAMPLES)]
 #[command(mut_arg("stats", |stats| stats.help("Print statistics on stderr")))]

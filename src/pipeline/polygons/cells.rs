@@ -17,7 +17,8 @@ const EDGE: u8 = 255;
 const UNKNOWN: u8 = 0;
 const INSIDE: u8 = Side::Inside as u8;
 
-/// Square cells over the box of most edges. If polygons are small and far apart, most are in cells with edges.
+/// Square cells over the box of most edges. If polygons are small and far apart, most are in cells with
+/// edges.
 #[derive(Debug)]
 pub(super) struct Cells {
     /// The box of all edges.
@@ -30,12 +31,11 @@ impl Cells {
     /// The cells over `edges`. `side` says where a place lies.
     pub(super) fn new(edges: &[Edge], side: impl Fn(Point2) -> Side) -> Cells {
         let wanted = (CELLS_PER_EDGE * edges.len() as f64).clamp(CELLS[0], CELLS[1]);
-        let mut bounds = CellBox::of(&[]);
-        edges.iter().flat_map(|edge| edge.ends).for_each(|end| bounds.extend(end));
         let boxes: Vec<CellBox> = edges.iter().map(|edge| CellBox::of(&edge.ends)).collect();
+        let bounds = CellBox::around(boxes.iter().copied());
         let grid = grid(box_of_most(&boxes), wanted);
         drop(boxes);
-        let mut cells = Cells { bounds, grid, states: vec![UNKNOWN; grid.len()] };
+        let mut cells = Cells { bounds, grid, states: vec![UNKNOWN; grid.count()] };
         for edge in edges {
             grid.for_each_cell(Item::Segment(edge.ends), 0.0, &mut |cell| cells.states[cell] = EDGE);
         }
@@ -43,8 +43,8 @@ impl Cells {
         cells
     }
 
-    /// Where a place lies: outside of the box of all edges; with all of its cell; or [`None`] if an edge meets
-    /// that, or there is no cell.
+    /// Where a place lies: outside of the box of all edges; with all of its cell; or [`None`] if an edge
+    /// meets that, or there is no cell.
     #[inline]
     pub(super) fn side(&self, place: Point2) -> Option<Side> {
         if !self.grid.bounds.contains(place) {

@@ -23,8 +23,8 @@ pub(super) struct Edge {
 pub(super) struct Rows {
     /// Those of one polygon come one after the other.
     pub(super) edges: Vec<Edge>,
-    /// Where rows begin, but the first one. As many edges begin in each row, so that edges far from all others leave
-    /// rows as they are.
+    /// Where rows begin, but the first one. As many edges begin in each row, so that edges far from all
+    /// others leave rows as they are.
     bottoms: Vec<f64>,
     /// Numbers of edges in each row.
     entries: CellLists,

@@ -82,8 +82,8 @@ where
 /// Pieces of the input, the last of which may be an error.
 type Batch<const D: usize> = Vec<Result<Piece<D>>>;
 
-/// The next pieces of the input: one that is large, or several of one block. The input may be silent after it, and
-/// must not hold them back.
+/// The next pieces of the input: one that is large, or several of one block. The input may be silent after
+/// it, and must not hold them back.
 fn next_batch<R: Read, const D: usize>(
     reader: &mut CellReader<R, D>,
     raw: &BufferPool<Residual<D>>,

@@ -52,8 +52,8 @@ pub(super) struct CellReader<R: Read, const D: usize> {
     /// Tags that were read and not passed on.
     tags: VecDeque<CellCode>,
     cells: u64,
-    /// Points after which the next piece is a [`Piece::Read`], points at the last one, and tags of empty cells
-    /// since the last piece.
+    /// Points after which the next piece is a [`Piece::Read`], points at the last one, and tags of empty
+    /// cells since the last piece.
     report: u64,
     reported: u64,
     empty: u64,
@@ -68,8 +68,8 @@ impl<R: Read, const D: usize> CellReader<R, D> {
         CellReader { reader, buffer, tags: VecDeque::new(), cells: 0, report, reported: 0, empty: 0 }
     }
 
-    /// The next piece that can be had without reading, which may wait. `fresh` gives empty residuals whose memory
-    /// is used again.
+    /// The next piece that can be had without reading, which may wait. `fresh` gives empty residuals whose
+    /// memory is used again.
     pub(super) fn next_read(&mut self, fresh: &mut impl FnMut() -> Residual<D>) -> Result<Option<Piece<D>>> {
         while let Some(cell) = self.tags.pop_front() {
             self.cells += 1;

@@ -232,7 +232,8 @@ impl<const D: usize> Schedule<D> {
         (numbers, residuals, self.stats)
     }
 
-    /// Adds the node of `cell`, over those inside it, with `raw` points of its own, if there are any of either.
+    /// Adds the node of `cell`, over those inside it, with `raw` points of its own, if there are any of
+    /// either.
     fn add(&mut self, cell: CellCode, mut raw: Residual<D>, is_leaf: bool) {
         let region = self.boxes.region(cell);
         let mut parts = Vec::new();

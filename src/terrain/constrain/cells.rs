@@ -111,8 +111,8 @@ impl Cells {
         }
     }
 
-    /// Whether nothing is nearer to a place than a distance; may be false then, too. `is_less` says whether the
-    /// distance is less than another one.
+    /// Whether nothing is nearer to a place than a distance; may be false then, too. `is_less` says whether
+    /// the distance is less than another one.
     #[inline]
     pub(super) fn is_far(&self, place: Point2, is_less: impl Fn(f64) -> bool) -> bool {
         let mut tree = &self.tree;
@@ -191,8 +191,8 @@ impl Cells {
         })
     }
 
-    /// Calls `found` with the items of all cells that a shape may meet, some of them several times. `shape` is
-    /// given in units of the cells of a grid: as its box, and whether it may meet a box.
+    /// Calls `found` with the items of all cells that a shape may meet, some of them several times. `shape`
+    /// is given in units of the cells of a grid: as its box, and whether it may meet a box.
     pub(super) fn for_each_in<M: Fn(&CellBox) -> bool>(
         &self,
         shape: impl Fn(&Grid) -> (CellBox, M),

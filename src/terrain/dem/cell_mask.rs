@@ -17,7 +17,8 @@ use spmesh_formats::source::Mask;
 /// cells on its right in every row that it crosses, and the parity of the flips is the sum along the row. Centres
 /// are f64 coordinates of the world; on which side of an edge they are is decided exactly.
 ///
-/// Cost: for a tile, a look at each edge in its rows, and the rows of the edges of polygons that reach into it.
+/// Cost: for a tile, a look at each edge in its rows, and the rows of the edges of polygons that reach into
+/// it.
 ///
 /// Memory: some 50 bytes for each edge and each polygon.
 #[derive(Debug)]
@@ -89,8 +90,8 @@ impl CellMask {
         inside
     }
 
-    /// The rows of a tile that a polygon reaches; `None` if it reaches no cell. On the left of the tile, it has an even
-    /// number of edges in each row.
+    /// The rows of a tile that a polygon reaches; `None` if it reaches no cell. On the left of the tile, it
+    /// has an even number of edges in each row.
     fn rows_of(&self, polygon: u32, at: TilePlace) -> Option<Range<usize>> {
         let CellBox { min, max } = self.boxes[polygon as usize];
         let [left, top] = at.map(|place| (place * TILE) as u32);

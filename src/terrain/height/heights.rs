@@ -49,7 +49,8 @@ pub enum Outside {
 /// Cost of a batch: a few nanoseconds for each pair of a point and a triangle in neighbouring cells of a grid
 /// over the batch; blocks of triangles without a point nearby are not read.
 ///
-/// Memory: 40 bytes for each point of a batch, at most twice as much if they are uneven; one block of triangles for each thread.
+/// Memory: 40 bytes for each point of a batch, at most twice as much if they are uneven; one block of
+/// triangles for each thread.
 #[derive(Debug)]
 pub struct Heights<'g> {
     blocks: &'g Blocks,

@@ -1,12 +1,13 @@
 //! Where the index of LAStools is: in a record of the file, or in a file beside it.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use crate::las::header::{EVLR_HEADER_LEN, LAX, LasHeader};
-use crate::source::origin::{FileView, Origin, open_file};
+use crate::source::origin::{FileView, Origin};
 use spmesh_base::error::{Error, Result};
+use spmesh_base::inputs;
 use spmesh_base::limits::{LAX_LEN_MAX, check_len};
 
 /// Finds an index, and returns its name in messages and its bytes; `None` if there is none.
@@ -47,7 +48,7 @@ fn read_beside(of: &Path, path: &Path) -> Result<Vec<u8>> {
     if changed(path)? < changed(of)? {
         return Err(Error::malformed("it is older than the file"));
     }
-    let (file, _): (File, _) = open_file(path)?;
+    let file = inputs::open(path)?;
     let len = file.metadata().map_err(|e| Error::io("reading", e))?.len();
     read(file, len)
 }

@@ -22,7 +22,6 @@ use crate::molecules::elements::Element;
 use crate::molecules::guess::Labels;
 use crate::molecules::model::{AtomView, Structure};
 use crate::molecules::selection::Selected;
-use crate::source::origin::open_file;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::limits::RADII_LEN_MAX;
@@ -162,7 +161,7 @@ impl Radii {
     /// lines give different radii to the same atoms.
     pub fn read(path: &Path) -> Result<Radii> {
         let name = path.display().to_string();
-        let (input, _) = open_file(path).map_err(|e| e.of_input(&name))?;
+        let input = inputs::open(path).map_err(|e| e.of_input(&name))?;
         Radii::read_from(input, &name)
     }
 
@@ -186,13 +185,11 @@ impl Radii {
             let tables = Radii::NAMES.join(", ");
             Error::usage(format!("--radii {name}: {e}; expected a file of radii, or one of {tables}"))
         })?;
-        let mut content = Vec::new();
-        let reading = |e| Error::io("reading", e).of_input(name);
-        input.take(RADII_LEN_MAX + 1).read_to_end(&mut content).map_err(reading)?;
-        if content.len() as u64 > RADII_LEN_MAX {
+        let content = inputs::content(input, RADII_LEN_MAX).map_err(|e| e.of_input(name))?;
+        let content = content.ok_or_else(|| {
             let message = format!("more than {} MB: this is no file of radii", RADII_LEN_MAX >> 20);
-            return Err(Error::malformed(message).of_input(name));
-        }
+            Error::malformed(message).of_input(name)
+        })?;
         let radii = Radii::read_from(&content[..], name)?;
         Ok(LoadedRadii { radii, file: Some(content) })
     }

@@ -119,8 +119,8 @@ type Axes = Option<Vec<[f64; 2]>>;
 /// Those of an axis that keeps its indices.
 const INDICES: [f64; 2] = [0.0, 1.0];
 
-/// By vectors: each may have a component along its own axis only. `none` marks axes that are not spatial, which
-/// `scalar` tells of.
+/// By vectors: each may have a component along its own axis only. `none` marks axes that are not spatial,
+/// which `scalar` tells of.
 fn by_directions(fields: &Fields, scalar: Option<&[[f64; 2]]>) -> std::result::Result<Axes, String> {
     let Some(directions) = fields.get("space directions") else { return Ok(None) };
     let directions = vectors(directions)?;

@@ -13,7 +13,8 @@ use spmesh_shell::parse_numbers;
 #[command(next_help_heading = "Polygons")]
 pub(super) struct AreaFlags {
     /// Keep only points inside of these polygons or on their border: GeoJSON, Shapefile, GeoPackage
-    /// (FILE.gpkg:LAYER for one layer) or WKT. May be given several times: one of the polygons must have the point
+    /// (FILE.gpkg:LAYER for one layer) or WKT. May be given several times: one of the polygons must have
+    /// the point
     #[arg(long, value_name = "FILE")]
     pub(super) clip: Vec<PathBuf>,
 
