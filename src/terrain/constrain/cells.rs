@@ -22,6 +22,9 @@ const FINENESS: Fineness = Fineness {
 /// Fine cells along the side of a cell: they say quickly that nothing is near.
 const FINE: usize = 4;
 
+/// Columns and rows of fine cells, ends included.
+type FineRange = [[usize; 2]; 2];
+
 /// What lies in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Item {
@@ -40,8 +43,6 @@ pub(super) struct Cells {
     segments: u32,
     /// What is known of each grid of the tree.
     known: Vec<Known>,
-    /// Whether a segment leaves the mesh.
-    has_leaving: bool,
 }
 
 /// What is known of the cells of a grid that are not divided.
@@ -51,8 +52,6 @@ struct Known {
     segments: Bits,
     /// Fine cells with vertices that were not found yet.
     vertices: Bits,
-    /// Fine cells with segments that leave the mesh.
-    leaving: Bits,
     /// All cells with an item.
     pyramid: Pyramid,
     /// Cells with an item in them or beside them, divided or not.
@@ -60,8 +59,7 @@ struct Known {
 }
 
 impl Cells {
-    /// Segments that `leaving` says, if it is not empty, leave the mesh.
-    pub(super) fn new(network: &Network, leaving: &[bool]) -> Cells {
+    pub(super) fn new(network: &Network) -> Cells {
         let segments = network.segments.len() as u32;
         let item = |item: u32| match network.segments.get(item as usize) {
             Some(segment) => cell_tree::Item::Segment(network.places(segment)),
@@ -72,8 +70,8 @@ impl Cells {
         tree.for_each_grid(&mut |tree| known.push((tree.number, Known::new(tree))));
         known.sort_unstable_by_key(|&(number, _)| number);
         let mut known: Vec<Known> = known.into_iter().map(|(_, known)| known).collect();
-        tree.for_each_grid(&mut |tree| known[tree.number].fill(tree, &item, segments, leaving));
-        Cells { tree, segments, known, has_leaving: leaving.contains(&true) }
+        tree.for_each_grid(&mut |tree| known[tree.number].fill(tree, &item, segments));
+        Cells { tree, segments, known }
     }
 
     /// The vertex of the network at a place.
@@ -132,54 +130,48 @@ impl Cells {
     /// Whether no segment is in a box, which is given in units of the cells of a grid.
     #[inline]
     pub(super) fn is_free(&self, bounds: impl Fn(&Grid) -> CellBox) -> bool {
-        !self.has_any(&self.tree, &bounds, &|known| &known.segments)
+        !self.has_any(&self.tree, &bounds, &|known, fine| known.segments.any(fine))
     }
 
-    /// Whether all vertices in a box were found, and no segment in it leaves the mesh.
+    /// Whether all vertices in a box were found, and no segment is in it if `segments` count, too.
     #[inline]
-    pub(super) fn is_found(&self, bounds: impl Fn(&Grid) -> CellBox) -> bool {
-        !self.has_any(&self.tree, &bounds, &|known| &known.vertices) && !self.may_leave(bounds)
+    pub(super) fn is_found(&self, bounds: impl Fn(&Grid) -> CellBox, segments: bool) -> bool {
+        let is_any = |known: &Known, fine| known.vertices.any(fine) || segments && known.segments.any(fine);
+        !self.has_any(&self.tree, &bounds, &is_any)
     }
 
-    /// Whether a segment in a box leaves the mesh.
-    #[inline]
-    pub(super) fn may_leave(&self, bounds: impl Fn(&Grid) -> CellBox) -> bool {
-        self.has_leaving && self.has_any(&self.tree, &bounds, &|known| &known.leaving)
-    }
-
-    /// Whether a segment that leaves the mesh is in the cell of a place of the box of the network, and in the
-    /// fine one.
+    /// Whether a segment is in the cell of a place of the box of the network, and one in the fine cell.
     pub(super) fn has(&self, place: Point2, segment: u32) -> bool {
-        let Some((tree, cell)) = self.tree.leaf(place).filter(|_| self.has_leaving) else { return false };
+        let Some((tree, cell)) = self.tree.leaf(place) else { return false };
         let grid = tree.grid.finer(FINE);
         let fine = grid.cell(place);
-        let is_fine = self.known[tree.number].leaving.get([fine % grid.size[0], fine / grid.size[0]]);
+        let is_fine = self.known[tree.number].segments.get([fine % grid.size[0], fine / grid.size[0]]);
         is_fine && tree.list(cell).contains(&segment)
     }
 
-    /// Whether a fine cell that meets a box has its bit set.
+    /// Whether one of the fine cells that meet a box is what `is_any` says of a range of them.
     #[inline]
     fn has_any(
         &self,
         tree: &CellTree,
         bounds: &impl Fn(&Grid) -> CellBox,
-        bits: &impl Fn(&Known) -> &Bits,
+        is_any: &impl Fn(&Known, FineRange) -> bool,
     ) -> bool {
         let local = bounds(&tree.grid);
         let [min, max] = [local.min, local.max].map(|corner| corner.map(|x| x * FINE as f64));
         let fine = cell_tree::range(&CellBox { min, max }, tree.grid.size.map(|count| count * FINE));
         let Some(fine) = fine else { return false };
-        bits(&self.known[tree.number]).any(fine)
-            || (!tree.divided().is_empty() && self.has_any_inside(tree, fine, bounds, bits))
+        is_any(&self.known[tree.number], fine)
+            || (!tree.divided().is_empty() && self.has_any_inside(tree, fine, bounds, is_any))
     }
 
     /// [`Cells::has_any`] for the divided cells.
     fn has_any_inside(
         &self,
         tree: &CellTree,
-        fine: [[usize; 2]; 2],
+        fine: FineRange,
         bounds: &impl Fn(&Grid) -> CellBox,
-        bits: &impl Fn(&Known) -> &Bits,
+        is_any: &impl Fn(&Known, FineRange) -> bool,
     ) -> bool {
         let [columns, rows] = fine.map(|ends| ends.map(|at| at / FINE));
         let at = |column: usize, row: usize| (row * tree.grid.size[0] + column) as u32;
@@ -187,7 +179,7 @@ impl Cells {
             let (first, last) = (at(columns[0], row), at(columns[1], row));
             let start = tree.divided().partition_point(|&(cell, _)| cell < first);
             let inner = tree.divided()[start..].iter().take_while(|&&(cell, _)| cell <= last);
-            inner.flat_map(|(_, inner)| inner.trees()).any(|tree| self.has_any(tree, bounds, bits))
+            inner.flat_map(|(_, inner)| inner.trees()).any(|tree| self.has_any(tree, bounds, is_any))
         })
     }
 
@@ -237,17 +229,10 @@ impl Known {
         let size = tree.grid.size;
         let pyramid = Pyramid::new(size, |cell| !tree.list(cell).is_empty());
         let (near, fine) = (pyramid.finest_spread(), size.map(|count| count * FINE));
-        let [segments, vertices, leaving] = [(); 3].map(|()| Bits::new(fine));
-        Known { segments, vertices, leaving, pyramid, near }
+        Known { segments: Bits::new(fine), vertices: Bits::new(fine), pyramid, near }
     }
 
-    fn fill(
-        &mut self,
-        tree: &CellTree,
-        item: &impl Fn(u32) -> cell_tree::Item,
-        segments: u32,
-        leaving: &[bool],
-    ) {
+    fn fill(&mut self, tree: &CellTree, item: &impl Fn(u32) -> cell_tree::Item, segments: u32) {
         let grid = tree.grid.finer(FINE);
         let is_whole = |fine: [usize; 2]| {
             let [column, row] = fine.map(|at| at / FINE);
@@ -255,13 +240,10 @@ impl Known {
         };
         for number in tree.items() {
             let bits = if number < segments { &mut self.segments } else { &mut self.vertices };
-            let mut leaving =
-                leaving.get(number as usize).filter(|&&leaves| leaves).map(|_| &mut self.leaving);
             grid.for_each_cell(item(number), 0.0, &mut |cell| {
                 let fine = [cell % grid.size[0], cell / grid.size[0]];
                 if is_whole(fine) {
                     bits.set(fine);
-                    leaving.iter_mut().for_each(|leaving| leaving.set(fine));
                 }
             });
         }
@@ -299,7 +281,7 @@ mod tests {
 
     /// The items that small boxes over the unit square meet.
     fn work(network: &Network) -> usize {
-        let (cells, mut work) = (Cells::new(network, &[]), 0);
+        let (cells, mut work) = (Cells::new(network), 0);
         for at in 0..2500 {
             let [x, y] = [f64::from(at % 50) / 50.0, f64::from(at / 50) / 50.0];
             let shape = |grid: &Grid| {

@@ -4,39 +4,27 @@
 //! grid on this side becomes a vertex, and the way to it from the last vertex on the segment a segment of its
 //! own. Rings of areas are left as they are: they cut the mesh.
 //!
-//! Triangles must wait whose circles contain the new vertex, so it must be known before which segments leave:
-//! those of lines that leave the box of the mesh.
+//! Triangles must wait whose circles contain the new vertex. It is close to the hull of the mesh, so such a
+//! circle reaches beyond what is known of the hull, and near the segment. Borders that are inside of the hull, of
+//! meshes that are not convex, get no new vertices.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use super::leaving::{Rings, crossing};
+use super::leaving::crossing;
 use super::near::Lines;
 use super::strip::Work;
-use foldhash::HashSet;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::constrained2::Region;
-use spmesh_delaunay::network::{Network, NetworkSegment, elevation_between};
+use spmesh_delaunay::network::{NetworkSegment, elevation_between};
 use spmesh_delaunay::predicates::Point2;
-use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Segment};
 
 /// Steps of the grid from the border to the new vertex: the first that suits is taken.
 const STEPS: [f64; 12] = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0];
 
-/// For each segment whether its line leaves the box of the mesh, and it is no border of areas; empty if none
-/// does.
-pub(super) fn leaving(network: &Network, bounds: Option<Bounds>, rings: &Rings) -> Vec<bool> {
-    let Some(Bounds { min, max }) = bounds else { return Vec::new() };
-    let is_out = |place: Point2| (0..2).any(|axis| !(min[axis]..=max[axis]).contains(&place[axis]));
-    let out = network.segments.iter().filter(|it| network.places(it).into_iter().any(is_out));
-    let lines: HashSet<u32> = out.map(|segment| segment.line).collect();
-    if lines.is_empty() {
-        return Vec::new();
-    }
-    let numbered = (0..).zip(&network.segments);
-    numbered.map(|(number, it)| lines.contains(&it.line) && !rings.is_border(number)).collect()
-}
+/// With its rounding, the new vertex is nearer to the border than so many steps.
+pub(super) const STEPS_MAX: f64 = 258.0;
 
 /// Where a segment comes into the mesh.
 struct Entry {
@@ -78,10 +66,16 @@ impl Work {
         coordinates: &Coordinates,
     ) -> Result<Vec<Segment>> {
         let mut clipped: Vec<Segment> = Vec::new();
-        if !self.segments.iter().any(|&segment| lines.leaves(segment)) {
+        // All triangles are in the region that a segment divides, so an end that is in the mesh was found.
+        let is_found = |end: u32| lines.found[end as usize];
+        let ends = |segment: u32| lines.network.segments[segment as usize].ends;
+        let is_left =
+            |&segment: &u32| !lines.rings.is_border(segment) && !ends(segment).into_iter().all(is_found);
+        let leaving: Vec<u32> = self.segments.iter().copied().filter(is_left).collect();
+        if leaving.is_empty() {
             return Ok(clipped);
         }
-        for (segment, entries) in entries(region, lines) {
+        for (segment, entries) in entries(region, &leaving, lines) {
             let NetworkSegment { line, ends, .. } = lines.network.segments[segment as usize];
             let ends = ends.map(|end| lines.network.vertices[end as usize].place);
             let mut on: Vec<u32> = (0..self.places.len() as u32).collect();
@@ -186,19 +180,19 @@ impl Work {
 }
 
 /// The places where segments that leave the mesh come into it, from one end or the other.
-fn entries(region: &Region, lines: &mut Lines) -> BTreeMap<u32, Vec<Entry>> {
+fn entries(region: &Region, leaving: &[u32], lines: &mut Lines) -> BTreeMap<u32, Vec<Entry>> {
     let mut entries: BTreeMap<u32, Vec<Entry>> = BTreeMap::new();
     for side in region.border() {
-        for segment in lines.leaving_near(side.ends) {
+        for segment in lines.near_side(side.ends, leaving) {
             let ends = lines.network.places(&lines.network.segments[segment as usize]);
             if let Some(inwards) = crossing(side.ends, ends, lines.predicates()) {
                 let entry = Entry::new(side.ends, inwards, lines.network.step);
-                entries.entry(segment).or_default().push(entry);
+                if !lines.hull.contains(entry.at, 0.0) {
+                    entries.entry(segment).or_default().push(entry);
+                }
             }
         }
     }
-    // The border of a mesh that is not convex is crossed more often.
-    entries.retain(|_, of_segment| of_segment.len() <= 2);
     entries
         .values_mut()
         .for_each(|two| two.sort_by(|a, b| a.at.partial_cmp(&b.at).unwrap_or(Ordering::Equal)));

@@ -14,6 +14,7 @@ mod clip;
 mod cut;
 mod draped;
 mod held;
+mod hull;
 mod leaving;
 mod near;
 mod pyramid;
@@ -115,10 +116,8 @@ pub fn constrain<R: Read, W: Write>(
     let compressed = options.compress;
     let header = Header { compressed, constrained, ..header_of(reader.header(), network) };
     let rings = Rings::new(areas, network.segments.len());
-    let leaving = clip::leaving(network, reader.header().bounds, &rings);
     let mut filter = Filter {
-        lines: Lines::new(network, leaving),
-        rings,
+        lines: Lines::new(network, &rings),
         holding: Holding::default(),
         live: LiveVertices::new(),
         writing: Writing::new(StreamWriter::new(output, header)?, network, cut)?,
@@ -179,7 +178,6 @@ fn header_of(header: &Header, network: &Network) -> Header {
 
 struct Filter<'n, W: Write> {
     lines: Lines<'n>,
-    rings: Rings,
     holding: Holding,
     live: LiveVertices<Point>,
     writing: Writing<W>,
@@ -282,9 +280,8 @@ impl<W: Write> Filter<'_, W> {
     /// Triangulates a component anew.
     fn strip(&mut self, triangles: &[Held]) -> Result<()> {
         let first_clipped = (self.stats.segments + self.stats.clipped) as u32;
-        let (lines, rings) = (&mut self.lines, &self.rings);
-        let strip =
-            strip::triangulate(triangles, &self.holding, lines, rings, &self.coordinates, first_clipped)?;
+        let (lines, coordinates) = (&mut self.lines, &self.coordinates);
+        let strip = strip::triangulate(triangles, &self.holding, lines, coordinates, first_clipped)?;
         self.stats.clipped += strip.clipped.len() as u64;
         self.stats.strips += 1;
         self.stats.added += strip.new.len() as u64;

@@ -2,6 +2,9 @@
 
 use super::cells::{Cells, Item};
 use super::circle::Circle;
+use super::clip::STEPS_MAX;
+use super::hull::KnownHull;
+use super::leaving::Rings;
 use spmesh_delaunay::cell_tree::{CellBox, Grid};
 use spmesh_delaunay::network::{Network, elevation_at};
 use spmesh_delaunay::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
@@ -16,17 +19,22 @@ const NEAR: f64 = 0.75;
 #[derive(Debug)]
 pub(super) struct Lines<'n> {
     pub(super) network: &'n Network,
+    /// The borders of areas among the segments.
+    pub(super) rings: &'n Rings,
+    /// Whether other segments may leave the mesh, and are to be clipped.
+    is_clipped: bool,
+    /// Such segments leave it beyond this.
+    pub(super) hull: KnownHull,
     cells: Cells,
     /// For each vertex of the network whether it is a vertex of the mesh.
     pub(super) found: Vec<bool>,
     predicates: FiniteFloatPredicates,
-    /// Around the present patch, all vertices within twice this distance were found. In stored units.
+    /// Around the present patch, all vertices within twice this distance were found, and no segment leaves
+    /// the mesh. In stored units.
     margin: f64,
     segments: Vec<u32>,
     vertices: Vec<u32>,
-    /// For each segment whether it may leave the mesh and is to be clipped; empty if none does.
-    leaving: Vec<bool>,
-    /// Whether one of these may meet the circle of the present triangle.
+    /// Whether a segment may leave the mesh inside of the circle of the present triangle.
     is_near: bool,
 }
 
@@ -60,37 +68,32 @@ impl Meeting {
 }
 
 impl<'n> Lines<'n> {
-    pub(super) fn new(network: &'n Network, leaving: Vec<bool>) -> Lines<'n> {
-        let cells = Cells::new(network, &leaving);
+    pub(super) fn new(network: &'n Network, rings: &'n Rings) -> Lines<'n> {
         Lines {
             network,
-            cells,
+            rings,
+            is_clipped: (0..network.segments.len() as u32).any(|segment| !rings.is_border(segment)),
+            hull: KnownHull::new(STEPS_MAX * network.step),
+            cells: Cells::new(network),
             found: vec![false; network.vertices.len()],
             predicates: FiniteFloatPredicates::default(),
             margin: 0.0,
             segments: Vec::new(),
             vertices: Vec::new(),
-            leaving,
             is_near: false,
         }
     }
 
-    /// Whether a segment may leave the mesh, and is to be clipped.
-    pub(super) fn leaves(&self, segment: u32) -> bool {
-        self.leaving.get(segment as usize) == Some(&true)
-    }
-
-    /// Such segments near a side, in order.
-    pub(super) fn leaving_near(&self, side: [Point2; 2]) -> Vec<u32> {
+    /// Those of some segments, given in order, that are near a side, in order.
+    pub(super) fn near_side(&self, side: [Point2; 2], of: &[u32]) -> Vec<u32> {
         let around = |grid: &Grid| CellBox::of(&side.map(|end| grid.local(end)));
         let mut segments = Vec::new();
-        if self.cells.may_leave(around) {
-            let mut enter = |segment: u32| segments.extend(Some(segment).filter(|&it| self.leaves(it)));
+        if !self.cells.is_free(around) {
             self.cells.for_each_in(
                 |grid| (around(grid), |_: &CellBox| true),
                 |item| match item {
-                    Item::Segment(number) => enter(number),
-                    Item::Vertex(_) => (),
+                    Item::Segment(number) if of.binary_search(&number).is_ok() => segments.push(number),
+                    _ => (),
                 },
             );
         }
@@ -107,7 +110,7 @@ impl<'n> Lines<'n> {
 
     /// The vertex of the network at a place.
     pub(super) fn vertex_at(&self, place: Point2) -> Option<u32> {
-        if self.cells.is_found(|grid| CellBox::of(&[grid.local(place)])) {
+        if self.cells.is_found(|grid| CellBox::of(&[grid.local(place)]), false) {
             return None;
         }
         self.cells.vertex_at(place, self.network)
@@ -145,15 +148,21 @@ impl<'n> Lines<'n> {
 
     /// Takes note of the box of a patch: whether all vertices around it were found. `places` are those of its
     /// vertices.
-    pub(super) fn enter(&mut self, places: impl Iterator<Item = Point2>) {
+    pub(super) fn enter(&mut self, places: impl Iterator<Item = Point2> + Clone) {
         let mut bounds = CellBox::of(&[]);
-        places.for_each(|place| bounds.extend(place));
+        places.clone().for_each(|place| bounds.extend(place));
+        if self.is_clipped {
+            self.hull.extend(&bounds, places);
+        }
         let [width, height] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
         self.margin = 0.0;
         let margin = 0.5 * width.max(height);
         let corners = [bounds.min.map(|x| x - margin), bounds.max.map(|x| x + margin)];
         let around = |grid: &Grid| CellBox::of(&corners.map(|corner| grid.local(corner)));
-        if margin.is_finite() && self.cells.is_found(around) {
+        let centre = [0, 1].map(|axis| 0.5 * (bounds.min[axis] + bounds.max[axis]));
+        let may_leave =
+            self.is_clipped && !self.hull.contains(centre, 0.5 * width.hypot(height) + 1.5 * margin);
+        if margin.is_finite() && self.cells.is_found(around, may_leave) {
             self.margin = 0.49 * margin;
         }
     }
@@ -209,17 +218,18 @@ impl<'n> Lines<'n> {
         if is_small {
             return;
         }
-        let circle = |grid: &Grid| Circle::of(corners, grid.local(corners[0]), grid.scale);
-        if !self.cells.is_found(|grid| circle(grid).bounds()) {
+        let circle = Circle::of(corners);
+        let may_leave = self.is_clipped && !circle.is_within(&self.hull);
+        if !self.cells.is_found(|grid| circle.among(grid).bounds(), may_leave) {
             self.cells.for_each_in(
                 |grid| {
-                    let circle = circle(grid);
+                    let circle = circle.among(grid);
                     (circle.bounds(), move |bounds: &CellBox| circle.may_meet(bounds))
                 },
                 |item| match item {
                     Item::Vertex(number) if !found[number as usize] => vertices.push(number),
                     Item::Vertex(_) => (),
-                    Item::Segment(number) => self.is_near |= self.leaving.get(number as usize) == Some(&true),
+                    Item::Segment(number) => self.is_near |= may_leave && !self.rings.is_border(number),
                 },
             );
         }

@@ -1,7 +1,7 @@
 //! Triangulates a component of waiting triangles anew.
 
 use super::held::{Held, Holding};
-use super::leaving::{OfAreas, Rings};
+use super::leaving::OfAreas;
 use super::near::Lines;
 use foldhash::HashMap;
 use spmesh_base::error::{Error, Result};
@@ -45,7 +45,6 @@ pub(super) fn triangulate(
     triangles: &[Held],
     holding: &Holding,
     lines: &mut Lines,
-    rings: &Rings,
     coordinates: &Coordinates,
     first_clipped: u32,
 ) -> Result<Strip> {
@@ -74,7 +73,7 @@ pub(super) fn triangulate(
     let parts = work.parts(triangles, lines);
     work.constrain(&parts, lines, &mut region)?;
     let clipped = work.clip(first_clipped, lines, &mut region, coordinates)?;
-    let (pieces, crossed) = (region.pieces().collect(), rings.leaving(triangles, &region, lines));
+    let (pieces, crossed) = (region.pieces().collect(), lines.rings.leaving(triangles, &region, lines));
     let Work { corners, places, new, open, .. } = work;
     Ok(Strip { corners, places, new, clipped, pieces, open, far, crossed })
 }
