@@ -138,5 +138,5 @@ fn stated_elevations_far_from_points_are_counted() {
     let lines = folder.write("lines.geojson", collection(&[line([0, 104])]));
     let (code, messages) = outcome(&run("spconstrain", &["--lines", &lines], &mesh));
     assert_eq!(code, Some(0), "{messages}");
-    assert!(messages.contains("1 vertices took elevations from lines that are far from"), "{messages}");
+    assert!(messages.contains("1 vertex took elevations from lines that are far from"), "{messages}");
 }

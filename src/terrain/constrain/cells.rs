@@ -89,15 +89,16 @@ impl Cells {
         &items[items.partition_point(|&item| item < self.segments)..]
     }
 
-    /// Notes that a vertex is found. `is_found` says which are, this one included.
-    pub(super) fn find(&mut self, vertex: u32, network: &Network, is_found: &[bool]) {
+    /// Notes that a vertex is found. `found` has those that are, this one included; the others
+    /// are NaN.
+    pub(super) fn find(&mut self, vertex: u32, network: &Network, found: &[f64]) {
         let place = network.vertices[vertex as usize].place;
         let Some((tree, cell)) = self.tree.leaf(place) else { return };
         let (vertices, grid) = (self.vertices(tree, cell), tree.grid.finer(FINE));
         let fine = grid.cell(place);
         let is_left = |&item: &u32| {
             let other = (item - self.segments) as usize;
-            !is_found[other] && grid.cell(network.vertices[other].place) == fine
+            found[other].is_nan() && grid.cell(network.vertices[other].place) == fine
         };
         // From the vertex to both sides, as vertices are found about in the order of their places: in a
         // crowded cell, the next one is left.

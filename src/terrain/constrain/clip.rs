@@ -67,7 +67,7 @@ impl Work {
     ) -> Result<Vec<Segment>> {
         let mut clipped: Vec<Segment> = Vec::new();
         // All triangles are in the region that a segment divides, so an end that is in the mesh was found.
-        let is_found = |end: u32| lines.found[end as usize];
+        let is_found = |end: u32| lines.is_found(end);
         let ends = |segment: u32| lines.network.segments[segment as usize].ends;
         let is_left =
             |&segment: &u32| !lines.rings.is_border(segment) && !ends(segment).into_iter().all(is_found);

@@ -73,7 +73,7 @@ impl Rings {
         let is_ring = |segment: &u32| self.is_border(*segment);
         let is_open = |segment: &u32| {
             let ends = lines.network.segments[*segment as usize].ends;
-            !ends.iter().all(|&end| lines.found[end as usize])
+            !ends.iter().all(|&end| lines.is_found(end))
         };
         let segments = triangles.iter().flat_map(|held| &held.segments).copied();
         let mut open: Vec<u32> = segments.filter(is_ring).filter(is_open).collect();

@@ -12,7 +12,7 @@ mod cells;
 mod circle;
 mod clip;
 mod cut;
-mod draped;
+mod divided;
 mod held;
 mod hull;
 mod leaving;
@@ -67,9 +67,6 @@ pub struct Stats {
     pub found: u64,
     /// Vertices of the network that were added to the mesh.
     pub added: u64,
-    /// Of these, vertices that took the elevation of the surface, though they divide a part of a shore
-    /// between two vertices that the mesh had, neither of which is as high or as low.
-    pub draped: u64,
     /// Vertices of the network or on it whose stated elevation is far from that of the mesh.
     pub far: u64,
     /// Vertices of the network outside of the mesh.
@@ -117,15 +114,13 @@ pub fn constrain<R: Read, W: Write>(
     let header = Header { compressed, constrained, ..header_of(reader.header(), network) };
     let rings = Rings::new(areas, network.segments.len());
     let mut filter = Filter {
-        lines: Lines::new(network, &rings),
+        lines: Lines::new(network, &rings, &areas.shores),
         holding: Holding::default(),
         live: LiveVertices::new(),
         writing: Writing::new(StreamWriter::new(output, header)?, network, cut)?,
         coordinates,
         numbers: Vec::new(),
         open: Vec::new(),
-        soft: Vec::new(),
-        elevations: vec![f64::NAN; network.vertices.len()],
         stats: Stats { segments: network.segments.len() as u64, ..Stats::default() },
     };
     while let Some(event) = reader.next_event()? {
@@ -134,7 +129,7 @@ pub fn constrain<R: Read, W: Write>(
                 filter.patch(patch, reader.rows()).map_err(|error| reader.locate(error))?;
                 progress(reader.totals().vertices);
             }
-            Event::End(totals) => return filter.end(totals.points, totals.merged, &areas.shores),
+            Event::End(totals) => return filter.end(totals.points, totals.merged),
             _ => return Err(reader.locate(Error::usage("expected a mesh of triangles only"))),
         }
     }
@@ -187,10 +182,6 @@ struct Filter<'n, W: Write> {
     numbers: Vec<Option<u32>>,
     /// Segments that are not wholly edges.
     open: Vec<u32>,
-    /// Vertices of the network that were added without an elevation of their own.
-    soft: Vec<u32>,
-    /// The elevations of vertices of the network that are in the mesh; NaN of the others.
-    elevations: Vec<f64>,
 }
 
 impl<W: Write> Filter<'_, W> {
@@ -222,10 +213,9 @@ impl<W: Write> Filter<'_, W> {
             let place = [point[0], point[1]];
             let z = match self.lines.vertex_at(place) {
                 Some(vertex) => {
-                    self.lines.find(vertex);
                     self.stats.found += 1;
                     let z = self.lines.network.vertices[vertex as usize].z;
-                    self.elevations[vertex as usize] = z.unwrap_or(point[2]);
+                    self.lines.find(vertex, z.unwrap_or(point[2]));
                     z
                 }
                 None => self.lines.elevation_near(place).map(|z| self.coordinates.rounded(z)),
@@ -287,12 +277,7 @@ impl<W: Write> Filter<'_, W> {
         self.stats.added += strip.new.len() as u64;
         self.stats.far += strip.far;
         self.open.extend(&strip.open);
-        let network = self.lines.network;
-        let new = || strip.new.iter().filter_map(|&(vertex, [.., z])| Some((vertex?, z)));
-        new().for_each(|(vertex, z)| self.elevations[vertex as usize] = z);
-        self.stats.ends += (strip.new.len() - new().count()) as u64;
-        let is_soft = |vertex: &u32| network.vertices[*vertex as usize].z.is_none();
-        self.soft.extend(new().map(|(vertex, _)| vertex).filter(is_soft));
+        self.stats.ends += strip.new.iter().filter(|(vertex, _)| vertex.is_none()).count() as u64;
         let ids: Vec<u64> = strip.corners.iter().map(|&corner| self.holding.vertex(corner).id).collect();
         let mut finalized = Vec::new();
         for corner in triangles.iter().flat_map(|held| held.corners) {
@@ -306,18 +291,17 @@ impl<W: Write> Filter<'_, W> {
     }
 
     /// Ends the stream.
-    fn end(mut self, points: u64, merged: u64, shores: &[u32]) -> Result<(W, Stats)> {
+    fn end(mut self, points: u64, merged: u64) -> Result<(W, Stats)> {
         if !self.holding.is_empty() {
             return Err(Error::malformed("vertices of the mesh are not finalized at its end"));
         }
         let network = self.lines.network;
-        let is_outside = |vertex: u32| !self.lines.found[vertex as usize];
+        let is_outside = |vertex: u32| !self.lines.is_found(vertex);
         // Without triangles, no segment has an edge, also between vertices of the mesh.
         let is_empty = self.stats.triangles[0] == 0;
         let is_open = |ends: [u32; 2]| is_empty || ends.into_iter().any(is_outside);
         let outside = (0..).zip(&network.segments).filter(|(_, segment)| is_open(segment.ends));
         self.open.extend(outside.map(|(number, _)| number));
-        self.stats.draped = draped::count(network, self.soft, &self.elevations, shores);
         self.stats.outside =
             network.vertices.len() as u64 + self.stats.ends - self.stats.found - self.stats.added;
         self.stats.held_max = self.holding.triangles_max as u64;

@@ -26,8 +26,10 @@ pub(super) struct Lines<'n> {
     /// Such segments leave it beyond this.
     pub(super) hull: KnownHull,
     cells: Cells,
-    /// For each vertex of the network whether it is a vertex of the mesh.
-    pub(super) found: Vec<bool>,
+    /// Numbers of the lines that may be shores, in order.
+    pub(super) shores: &'n [u32],
+    /// The elevations of vertices of the network that are in the mesh; NaN of the others.
+    found: Vec<f64>,
     predicates: FiniteFloatPredicates,
     /// Around the present patch, all vertices within twice this distance were found, and no segment leaves
     /// the mesh. In stored units.
@@ -68,14 +70,15 @@ impl Meeting {
 }
 
 impl<'n> Lines<'n> {
-    pub(super) fn new(network: &'n Network, rings: &'n Rings) -> Lines<'n> {
+    pub(super) fn new(network: &'n Network, rings: &'n Rings, shores: &'n [u32]) -> Lines<'n> {
         Lines {
             network,
             rings,
             is_clipped: (0..network.segments.len() as u32).any(|segment| !rings.is_border(segment)),
             hull: KnownHull::new(STEPS_MAX * network.step),
             cells: Cells::new(network),
-            found: vec![false; network.vertices.len()],
+            shores,
+            found: vec![f64::NAN; network.vertices.len()],
             predicates: FiniteFloatPredicates::default(),
             margin: 0.0,
             segments: Vec::new(),
@@ -227,7 +230,7 @@ impl<'n> Lines<'n> {
                     (circle.bounds(), move |bounds: &CellBox| circle.may_meet(bounds))
                 },
                 |item| match item {
-                    Item::Vertex(number) if !found[number as usize] => vertices.push(number),
+                    Item::Vertex(number) if found[number as usize].is_nan() => vertices.push(number),
                     Item::Vertex(_) => (),
                     Item::Segment(number) => self.is_near |= may_leave && !self.rings.is_border(number),
                 },
@@ -235,9 +238,20 @@ impl<'n> Lines<'n> {
         }
     }
 
-    /// Notes that a vertex of the network is a vertex of the mesh.
-    pub(super) fn find(&mut self, vertex: u32) {
-        self.found[vertex as usize] = true;
+    /// Whether a vertex of the network is in the mesh.
+    pub(super) fn is_found(&self, vertex: u32) -> bool {
+        !self.found[vertex as usize].is_nan()
+    }
+
+    /// The elevation of a vertex of the network, if it states one or is in the mesh.
+    pub(super) fn elevation(&self, vertex: u32) -> Option<f64> {
+        let z = self.found[vertex as usize];
+        self.network.vertices[vertex as usize].z.or((!z.is_nan()).then_some(z))
+    }
+
+    /// Notes that a vertex of the network is a vertex of the mesh, and its elevation.
+    pub(super) fn find(&mut self, vertex: u32, z: f64) {
+        self.found[vertex as usize] = z;
         self.cells.find(vertex, self.network, &self.found);
     }
 

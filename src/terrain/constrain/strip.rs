@@ -1,5 +1,6 @@
 //! Triangulates a component of waiting triangles anew.
 
+use super::divided;
 use super::held::{Held, Holding};
 use super::leaving::OfAreas;
 use super::near::Lines;
@@ -40,7 +41,7 @@ pub(super) struct Strip {
 ///
 /// Vertices with elevations come first, and the segments, as far as they lead from one vertex on them to the
 /// next. The others take their elevation from this surface. So a shore whose vertices are in the mesh already
-/// bounds its water, whether its file states elevations or not.
+/// bounds its water, whether its file states elevations or not; those that divide it get theirs before.
 pub(super) fn triangulate(
     triangles: &[Held],
     holding: &Holding,
@@ -51,12 +52,15 @@ pub(super) fn triangulate(
     let mut work = Work::new(triangles, holding);
     let mut region = Region::new(&work.places, &work.triangles);
     let vertices = work.new_vertices(triangles, lines);
-    let z_of = |new: &New, lines: &Lines| lines.network.vertices[new.vertex as usize].z;
-    let (hard, soft): (Vec<New>, Vec<New>) = vertices.into_iter().partition(|new| z_of(new, lines).is_some());
-    let mut far = 0;
-    for new in hard {
-        let z = z_of(&new, lines).expect("the vertex has an elevation");
-        far += u64::from(is_far(coordinates, z, work.range_of(new.triangle)));
+    let divided = divided::elevations(lines, &work.segments);
+    let (mut far, mut soft) = (0, Vec::new());
+    for new in vertices {
+        let stated = lines.network.vertices[new.vertex as usize].z;
+        let Some(z) = stated.or(divided.get(&new.vertex).map(|&z| coordinates.rounded(z))) else {
+            soft.push(new);
+            continue;
+        };
+        far += u64::from(stated.is_some() && is_far(coordinates, z, work.range_of(new.triangle)));
         work.add(&new, z, lines, &mut region);
     }
     if !soft.is_empty() {
@@ -192,7 +196,7 @@ impl Work {
         self.elevations.push(z);
         self.new.push((Some(new.vertex), [place[0], place[1], z]));
         self.points.insert(new.vertex, number);
-        lines.find(new.vertex);
+        lines.find(new.vertex, z);
         region.insert(number, place, new.triangle, lines.predicates());
     }
 

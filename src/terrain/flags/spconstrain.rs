@@ -41,7 +41,7 @@ nor on their directions. Lines that cross, touch or overlap get common vertices 
 
 Vertices of lines that the mesh does not have are added. Where a line states an elevation, it counts, and \
 not that of a point at the same place, also amid a segment; a vertex without one takes the elevation of the \
-surface. Lines that leave the box of the mesh end at its border; parts outside are left out, with a notice. Lines \
+surface. Lines that leave the mesh end at its border; parts outside are left out, with a notice. Lines \
 with elevations extend the mesh if spfinalize has them, too.
 
 Polygons of --hull and --holes are lines, too, so the mesh ends exactly there. Where a ring leaves the \
@@ -136,9 +136,6 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if stats.open_segments > 0 {
         flags.notice(&about_open(&stats));
     }
-    if stats.draped > 0 {
-        flags.notice(&about_draped(&stats));
-    }
     if stats.far > 0 {
         flags.notice(&about_far(&stats));
     }
@@ -162,21 +159,11 @@ fn about_open(stats: &Stats) -> String {
     )
 }
 
-/// The notice about vertices that do not have the elevation of their line.
-fn about_draped(stats: &Stats) -> String {
-    format!(
-        "{} lines between vertices of the mesh took the elevation of the surface: \
-         shores of water are not level there. Give spfinalize the same lines and --densify, and the \
-         polygons of --hull and --holes as --lines",
-        counted(stats.draped, "vertex that divides", "vertices that divide")
-    )
-}
-
 /// The notice about stated elevations.
 fn about_far(stats: &Stats) -> String {
     format!(
-        "{} vertices took elevations from lines that are far from the surface there. Check them; {ABOUT_FAR}",
-        stats.far
+        "{} elevations from lines that are far from the surface there. Check them; {ABOUT_FAR}",
+        counted(stats.far, "vertex took", "vertices took")
     )
 }
 
@@ -192,7 +179,7 @@ fn about_divided(stats: &Stats, densify: Option<f64>) -> String {
     )
 }
 
-fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 20] {
+fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 19] {
     [
         ("triangles read", "triangles_read", stats.triangles[0]),
         ("triangles written", "triangles", stats.triangles[1]),
@@ -207,7 +194,6 @@ fn counts(stats: &Stats, input_bytes: u64, output_bytes: u64) -> [Row<u64>; 20] 
         ("segments that were cut off", "cut_segments", stats.cut_segments),
         ("line vertices in the mesh", "vertices_found", stats.found),
         ("line vertices added", "vertices_added", stats.added),
-        ("line vertices off their line", "vertices_draped", stats.draped),
         ("elevations far from the mesh", "far", stats.far),
         ("line vertices outside", "vertices_outside", stats.outside),
         ("elevations taken from lines", "raised", stats.raised),
