@@ -162,3 +162,9 @@ impl std::error::Error for Error {}
 pub fn counted(number: u64, one: &str, many: &str) -> String {
     format!("{number} {}", if number == 1 { one } else { many })
 }
+
+/// A part of a count: "1 of 1 point is", "1 of 3 points is", "2 of 3 points are". `of` are the words for what is
+/// counted, in the singular and the plural, and `verbs` those for what is said of the part.
+pub fn counted_of(number: u64, all: u64, of: [&str; 2], verbs: [&str; 2]) -> String {
+    format!("{number} of {} {}", counted(all, of[0], of[1]), verbs[usize::from(number != 1)])
+}

@@ -27,7 +27,7 @@ pub use spheres::{Measure, measure};
 
 use std::time::Duration;
 
-use spmesh_base::error::counted;
+use spmesh_base::error::{counted, counted_of};
 use spmesh_delaunay::predicates::PredicateCounts;
 use spmesh_formats::molecules::{RadiusCounts, Selection};
 use spmesh_formats::sink::TableFormat;
@@ -149,9 +149,8 @@ impl Report {
         texts.extend(self.radii.notices());
         texts.extend(self.labels.warnings());
         if self.without_cell > 0 {
-            let verb = if self.without_cell == 1 { "has" } else { "have" };
-            let (without, atoms) = (self.without_cell, self.atoms);
-            texts.push(format!("{without} of {atoms} atoms {verb} no cell: others take all of it"));
+            let without = counted_of(self.without_cell, self.atoms, ["atom", "atoms"], ["has", "have"]);
+            texts.push(format!("{without} no cell: others take all of it"));
         }
         if self.left_out > 0 {
             let reason = "rounding leaves the border of their surface in doubt";
@@ -163,13 +162,14 @@ impl Report {
         }
         let merged = self.atoms - self.vertices;
         if merged > 0 {
-            let verb = if merged == 1 { "coincides" } else { "coincide" };
-            texts.push(format!("{merged} of {} points {verb} with an earlier one", self.atoms));
+            let merged = counted_of(merged, self.atoms, ["point", "points"], ["coincides", "coincide"]);
+            texts.push(format!("{merged} with an earlier one"));
         }
         let missing = self.rounding.missing;
         if missing > 0 && self.hull_facets > 0 {
-            let message = "points are in no tetrahedron: rounding in floating-point arithmetic left them out";
-            texts.push(format!("{missing} of {} {message}", self.vertices));
+            let missing = counted_of(missing, self.vertices, ["point", "points"], ["is", "are"]);
+            let why = "rounding in floating-point arithmetic left them out";
+            texts.push(format!("{missing} in no tetrahedron: {why}"));
         }
         if self.hull_facets == 0 {
             let few = self.vertices < 4;

@@ -11,7 +11,7 @@ use super::{Threads, check_stdin, say};
 use crate::splinefit::{
     Candidate, Condition, Excess, Extent, Jump, Layout, Points, Smoothness, Spline, Statistics, Summary,
 };
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_formats::detect::SPLINEFIT;
 use spmesh_formats::raster::Window;
@@ -136,7 +136,7 @@ fn line(label: &str, value: &str) -> String {
 }
 
 fn residuals_text(residuals: &Statistics) -> String {
-    let mut text = line("residuals", &format!("of {} points", residuals.count));
+    let mut text = line("residuals", &format!("of {}", counted(residuals.count, "point", "points")));
     for (label, _, value) in residual_rows(residuals) {
         text += &line("", &format!("{:<22} {value:.6e}", label.trim()));
     }

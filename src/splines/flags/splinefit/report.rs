@@ -57,7 +57,7 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
         }
     }
     if let Some(rejected) = rejected {
-        notices.push(format!("{rejected} of {} points rejected", report.points));
+        notices.push(format!("{rejected} of {} rejected", counted(report.points, "point", "points")));
     }
     if report.residuals.outside > 0 {
         notices.push(outside(&report.residuals));
