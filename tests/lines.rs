@@ -27,7 +27,7 @@ fn read(lines: &[PathBuf], target: &Target, options: &Options) -> Result<(Networ
 }
 
 fn network(name: &str, target: &Target) -> (Network, Changes) {
-    let options = Options { densify: None, lists_changes: true };
+    let options = Options { lists_changes: true, ..Options::default() };
     read(&[sample(name)], target, &options).expect("lines")
 }
 

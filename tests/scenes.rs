@@ -238,7 +238,7 @@ fn try_scene(folder: &Folder, scene: &Scene) -> Result<(), String> {
     let are_all = |is_so: &dyn Fn([f64; 2]) -> bool| scene.all().iter().flatten().all(|&at| is_so(at));
     let is_inside = are_all(&|at| is_well_in(&hull, at));
     let leaves = !are_all(&|at| is_in(&hull, at) || distance(&hull, at) < 0.05);
-    let says_so = messages.contains("leave the mesh");
+    let says_so = messages.contains(" the mesh: parts outside");
     if scene.hull.is_none() && (says_so && is_inside || leaves && !says_so) {
         return Err(format!("lines leave the mesh: {leaves}. {messages}"));
     }

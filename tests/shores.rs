@@ -104,7 +104,7 @@ fn water_without_points_is_left_out() {
         let water = [std::slice::from_ref(&near), &far[..]].concat();
         let Run { mesh, messages } = meshed(&folder, &water, &[], &[]);
         assert!(vertices(&mesh) == vertices(&alone.mesh), "{far:?}");
-        let message = "1 of 2 polygons of water are left out, as no points are in them or near their shores; \
+        let message = "1 of 2 polygons of water is left out, as no points are in the water or near its shore; \
                        the first is ";
         assert!(messages[0].contains(message), "{far:?}: {}", messages[0]);
         assert!(messages[0].contains("water.geojson: feature 1"), "{far:?}: {}", messages[0]);
@@ -126,11 +126,11 @@ fn stated_elevations_far_from_points_are_counted() {
             None => assert!(!messages[0].contains("far from"), "{}", messages[0]),
         }
     };
-    far(&[lake(0, "", ",0")], &[], Some("4 of 4 elevations that lines and water state are far from"));
+    far(&[lake(0, "", ",0")], &[], Some("4 of 4 elevations that lines or water state are far from"));
     far(&[lake(0, r#""level":0"#, "")], &[], Some("4 of 4 elevations"));
     far(&[lake(0, r#""level":150"#, "")], &[line([104, 106])], Some("4 of 6 elevations"));
     far(&[lake(0, "", "")], &[line([0, 0])], Some("2 of 2 elevations"));
-    far(&[], &[line([0, 104])], Some("1 of 2 elevations"));
+    far(&[], &[line([0, 104])], Some("1 of 2 elevations that lines or water state is far from"));
     far(&[lake(0, "", ",100")], &[line([104, 107])], None);
     // In a mesh that exists already.
     let points = run("spfinalize", &[&SCALE[..], &["-"]].concat(), walls().as_bytes()).stdout;

@@ -1,6 +1,6 @@
 //! All limits of inputs in one place, so that no input makes a reader allocate without bound.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result, counted};
 
 /// Longest header body of a stream, in bytes.
 pub const HEADER_BODY_MAX: usize = 1 << 20;
@@ -121,15 +121,23 @@ pub const BREAKLINE_VERTICES_MAX: usize = 1 << 20;
 /// Most vertices of lines that become edges of a mesh: noding takes 2 GB for them.
 pub const LINE_VERTICES_MAX: usize = 1 << 24;
 
-/// Checks a number of vertices of lines.
+/// Memory of a vertex of lines while they are read and noded, in bytes.
+pub const LINE_VERTEX_BYTES: u64 = 120;
+
+/// Checks a number of vertices of lines, of which memory has room for `most`.
 ///
 /// # Errors
-/// Malformed, if there are more than [`LINE_VERTICES_MAX`].
-pub fn check_line_vertices(count: usize) -> Result<()> {
-    if count <= LINE_VERTICES_MAX {
+/// Malformed, if there are more than [`LINE_VERTICES_MAX`]; memory, if there are more than `most`.
+pub fn check_line_vertices(count: usize, most: usize) -> Result<()> {
+    if count > LINE_VERTICES_MAX {
+        return Err(Error::malformed(format!("more than {LINE_VERTICES_MAX} vertices of lines")));
+    }
+    if count <= most {
         return Ok(());
     }
-    Err(Error::malformed(format!("more than {LINE_VERTICES_MAX} vertices of lines")))
+    let found = counted(count as u64, "vertex", "vertices");
+    let message = format!("{found} of lines so far, and --memory has room for {most}");
+    Err(Error::new(ErrorKind::Memory, format!("{message}: raise it, or give fewer lines at once")))
 }
 
 /// Most crossings of lines: each becomes a vertex, and ends four edges.
@@ -222,9 +230,11 @@ mod tests {
 
     #[test]
     fn lines_have_two_sides() {
-        assert!(check_line_vertices(LINE_VERTICES_MAX).is_ok());
-        let message = check_line_vertices(LINE_VERTICES_MAX + 1).unwrap_err().to_string();
+        assert!(check_line_vertices(LINE_VERTICES_MAX, usize::MAX).is_ok());
+        let message = check_line_vertices(LINE_VERTICES_MAX + 1, usize::MAX).unwrap_err().to_string();
         assert_eq!(message, "more than 16777216 vertices of lines");
+        assert!(check_line_vertices(7, 7).is_ok());
+        assert_eq!(check_line_vertices(8, 7).unwrap_err().kind(), ErrorKind::Memory);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::ascending::{Ascending, Place};
 use super::event::Patch;
 use crate::model::bounds::Point;
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, ErrorKind, Result, counted};
 
 /// Vertices between their patch and their finalization, with a value `T` that the consumer keeps for each.
 ///
@@ -15,11 +15,19 @@ pub struct LiveVertices<T> {
     /// Where the imported vertices of the current patch are.
     places: Vec<Place>,
     live_max: usize,
+    /// Most vertices that may be live.
+    most: usize,
 }
 
 impl<T> Default for LiveVertices<T> {
     fn default() -> Self {
-        LiveVertices { live: Ascending::default(), local: Vec::new(), places: Vec::new(), live_max: 0 }
+        LiveVertices {
+            live: Ascending::default(),
+            local: Vec::new(),
+            places: Vec::new(),
+            live_max: 0,
+            most: usize::MAX,
+        }
     }
 }
 
@@ -29,12 +37,22 @@ impl<T: Copy> LiveVertices<T> {
         LiveVertices::default()
     }
 
+    /// No vertices, and memory for so many bytes of them.
+    pub fn within(bytes: u64) -> Self {
+        let most = usize::try_from(bytes / Self::BYTES).unwrap_or(usize::MAX);
+        LiveVertices { most, ..LiveVertices::default() }
+    }
+
+    /// Bytes of a vertex.
+    pub const BYTES: u64 = (size_of::<T>() + 4) as u64 * 9 / 8 + 1;
+
     /// Adds the new vertices of `patch`, with the values that `value_of` gives them. Returns id and value of
     /// each local vertex, and forgets the vertices that the patch finalizes. Patches come in the order of the
     /// stream.
     ///
     /// # Errors
-    /// [`spmesh_base::error::ErrorKind::Malformed`] if the patch uses a vertex that is finalized or unknown.
+    /// [`spmesh_base::error::ErrorKind::Malformed`] if the patch uses a vertex that is finalized or unknown;
+    /// [`spmesh_base::error::ErrorKind::Memory`] if more vertices are live than memory has room for.
     pub fn enter(&mut self, patch: &Patch, mut value_of: impl FnMut(u64, Point) -> T) -> Result<&[(u64, T)]> {
         self.local.clear();
         for (&point, id) in patch.new.iter().zip(patch.first_id..) {
@@ -56,7 +74,16 @@ impl<T: Copy> LiveVertices<T> {
             count += 1;
         }
         self.live.forget(&self.places[..count]);
+        if self.live.len() > self.most {
+            return Err(self.too_many());
+        }
         Ok(&self.local)
+    }
+
+    fn too_many(&self) -> Error {
+        let (found, most) = (counted(self.live.len() as u64, "vertex is", "vertices are"), self.most);
+        let message = format!("{found} not final so far, and --memory has room for {most}");
+        Error::new(ErrorKind::Memory, format!("{message}: raise it, or make the mesh with spdelaunay2d"))
     }
 
     /// Finds the imported vertices of a patch.

@@ -5,9 +5,10 @@ use std::path::Path;
 use bytemuck::Pod;
 use foldhash::{HashMap, HashMapExt};
 
-use crate::files::{CELLS, TilePlace};
-use spmesh_base::error::Result;
+use crate::files::{CELLS, TilePlace, tiles_of};
+use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::temporary::Records;
+use spmesh_formats::raster::Grid;
 
 /// A tile in memory.
 #[derive(Debug)]
@@ -20,7 +21,7 @@ struct Held<C> {
 
 /// The cells of all tiles that something was added to.
 ///
-/// Memory: the budget, or one tile of 65,536 cells if that is more.
+/// Memory: the budget.
 #[derive(Debug)]
 pub(crate) struct Accumulators<C> {
     /// A cell that nothing was added to.
@@ -36,6 +37,10 @@ pub(crate) struct Accumulators<C> {
     /// Number of tiles written to the temporary file.
     pub(crate) spilled: u64,
 }
+
+/// A place where tiles meet has so many. With fewer in memory, what is near it writes tiles and reads them back in
+/// turn, which takes hours.
+const HELD_MIN: usize = 4;
 
 #[derive(Debug, Clone, Copy)]
 enum Place {
@@ -57,18 +62,34 @@ impl<C: Pod> Accumulators<C> {
     /// Bytes of a tile.
     const TILE_LEN: u64 = (CELLS * size_of::<C>()) as u64;
 
-    /// No cells. Those in memory take `memory` bytes at most.
-    pub(crate) fn new(blank: C, memory: u64, temp_dir: Option<&Path>) -> Self {
-        Accumulators {
+    /// No cells of a raster. Those in memory take `memory` bytes at most.
+    ///
+    /// # Errors
+    /// Memory, if this is too little for tiles that triangles and cells of points have in common.
+    pub(crate) fn new(blank: C, grid: &Grid, memory: u64, temp_dir: Option<&Path>) -> Result<Self> {
+        let held_max = usize::try_from(memory / Self::TILE_LEN).unwrap_or(usize::MAX);
+        let [across, down] = tiles_of(grid)?;
+        let needed = (across * down).min(HELD_MIN);
+        if held_max < needed {
+            let [tile, all] =
+                [Self::TILE_LEN, Self::TILE_LEN * needed as u64].map(|len| len.div_ceil(1 << 10));
+            let message = format!(
+                "the sums of a tile of cells take {tile} KiB, those of {needed} tiles {all} KiB, and their part of \
+                 --memory is {} KiB: raise it, or take larger cells",
+                memory >> 10
+            );
+            return Err(Error::new(ErrorKind::Memory, message));
+        }
+        Ok(Accumulators {
             blank,
             held: Vec::new(),
-            held_max: usize::try_from(memory / Self::TILE_LEN).unwrap_or(usize::MAX).max(1),
+            held_max,
             places: HashMap::new(),
             last: (NOWHERE, 0),
             clock: 0,
             spill: Records::new(temp_dir, Self::TILE_LEN),
             spilled: 0,
-        }
+        })
     }
 
     /// A cell of a tile, to be changed.

@@ -106,6 +106,7 @@ impl Settings {
         let options = spmesh_pipeline::reduce::Options {
             duplicates: Duplicates::Highest,
             threads: *threads,
+            memory: Some(*memory),
             ..spmesh_pipeline::reduce::Options::default()
         };
         self.stream(move |output| {

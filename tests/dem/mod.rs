@@ -66,6 +66,7 @@ fn options(quantity: Quantity) -> Options {
         mask: None,
         fill: None,
         memory: 1 << 30,
+        vertices_memory: None,
         raster: RasterOptions::default(),
         crs: None,
     }

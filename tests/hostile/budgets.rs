@@ -30,9 +30,9 @@ const fn refused(name: &'static str, line: &'static str, most: f64, part: &'stat
 /// What `--memory` of some programs stands beside: the program itself, and what is live of a mesh.
 const BESIDE: f64 = START_MAX + 8.0;
 
-/// A limit of the process is one of all; polygons are refused when they have been read, and `dd4` takes about
-/// as much as it may.
-const RUNS: [Run; 14] = [
+/// A limit of the process is one of all; polygons are refused when they have been read, `spheight` has tables of its
+/// own size for the ground, and `dd4` takes about as much as it may.
+const RUNS: [Run; 24] = [
     kept("tags of a plane", "spdelaunay2d --memory 32M --threads 1 tags.spm", 32.0),
     kept("tags, on threads", "spdelaunay2d --memory 32M --threads 2 tags.spm", 32.0),
     kept("tags of space", "spdelaunay3d --memory 32M --threads 1 tags3.spm", 32.0),
@@ -51,17 +51,79 @@ const RUNS: [Run; 14] = [
     refused("long edges", "spconstrain --kill 0.001 --memory 1M mesh.spm", 1.0 + BESIDE, "--kill"),
     refused("an outline", "spdem --concave 0.001 --memory 1M mesh.spm -o o.tif", 1.0 + BESIDE, "--concave"),
     kept("tiles", "spdem --columns 2000 --memory 1M mesh.spm -o o.tif", 1.0 + BESIDE),
+    refused(
+        "lines",
+        "spconstrain --lines lines.txt --memory 1M mesh.spm -o c.spm",
+        1.0 + BESIDE,
+        "of lines so far",
+    ),
+    refused(
+        "lines of points",
+        "spfinalize --lines lines.txt --memory 40M --threads 1 plane.txt",
+        40.0,
+        "so far",
+    ),
+    refused(
+        "triangles at lines",
+        "spconstrain --lines zigzag.txt --memory 1M mesh.spm -o c.spm",
+        1.0 + BESIDE,
+        "wait for others",
+    ),
+    refused(
+        "a mesh in any order, and lines",
+        "spconstrain --lines line.txt --memory 1M soup.spm -o c.spm",
+        1.0 + BESIDE,
+        "not final so far",
+    ),
+    refused(
+        "a mesh in any order",
+        "spdem --step 10 --bounds 0,0,200,200 --memory 1M soup.spm -o o.tif",
+        1.0 + BESIDE,
+        "not final so far",
+    ),
+    refused(
+        "a ground in any order",
+        "spheight --ground soup.spm --memory 1M --threads 1 tile.laz -o h.laz",
+        1.0 + 40.0 + BESIDE,
+        "not final so far",
+    ),
+    refused(
+        "sums of triangles",
+        "spdem --sample mean --columns 2000 --memory 1M mesh.spm -o o.tif",
+        1.0 + BESIDE,
+        "the sums of a tile",
+    ),
+    refused(
+        "sums of points",
+        "spdem --points --kind mean --columns 2000 --memory 1M order.spm -o o.tif",
+        1.0 + BESIDE,
+        "the sums of a tile",
+    ),
+    refused(
+        "a canopy",
+        "spcanopy --ground ground.spm --step 0.1 --memory 64M --threads 1 tile.laz -o c.tif",
+        START_MAX,
+        "is too little",
+    ),
+    kept(
+        "a canopy with room",
+        "spcanopy --ground ground.spm --step 0.1 --memory 80M --threads 1 tile.laz -o c.tif",
+        80.0,
+    ),
     refused("cells of four dimensions", "dd4 --memory 16M curve4.txt", 20.0, "too many cells"),
 ];
 
 /// The inputs, each made by a program.
-const INPUTS: [&str; 6] = [
+const INPUTS: [&str; 9] = [
     "spfinalize --level 11 plane.txt -o tags.spm",
     "spfinalize --octree --level 7 plane.txt -o tags3.spm",
     "spfinalize --octree curve.txt -o curve.spm",
     "spfinalize --preserve --level 8 many.txt -o order.spm",
     "spfinalize --cell-points 1 nested.txt -o deep.spm",
     "spdelaunay2d order.spm -o mesh.spm",
+    "spconvert soup.obj -o soup.spm",
+    "spfinalize tile.laz -o tile.spm",
+    "spdelaunay2d tile.spm -o ground.spm",
 ];
 
 /// Lines of numbers.
@@ -83,12 +145,36 @@ fn write_points(folder: &Path) {
         text(3_000, |i| [(20.0 * TAU * at(i)).cos(), (20.0 * TAU * at(i)).sin(), 10.0 * at(i)]),
     );
     write("curve4.txt", text(500, |i| [1, 2, 3, 4].map(|power| (i as f64 / 500.0).powi(power))));
+    let line = |count: usize, steps: usize| {
+        let at = |i: usize| {
+            format!(" {} {}", 1e3 * (i as f64 / count as f64), 1e3 * (i % steps) as f64 / steps as f64)
+        };
+        "soft".to_string() + &(0..count).map(|i| at(i) + "\n").collect::<String>()
+    };
+    write("lines.txt", line(20_000, 7));
+    write("zigzag.txt", line(2_000, 2));
+    write("line.txt", line(2, 2));
+    write("soup.obj", soup());
+    let tile = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lareunion.laz");
+    fs::copy(tile, folder.join("tile.laz")).expect("a sample");
     let square = |_| {
         let [x, y] = [1e3 * unit(), 1e3 * unit()];
         let [u, v] = [x + 1.0, y + 1.0];
         format!("POLYGON(({x} {y},{u} {y},{u} {v},{x} {v},{x} {y}))\n")
     };
     write("squares.wkt", (0..30_000).map(square).collect());
+}
+
+/// A mesh of which no vertex is final before its end: the format does not say which are.
+fn soup() -> String {
+    const SIDE: usize = 200;
+    let vertex = |i: usize| format!("v {} {} {}\n", i % SIDE, i / SIDE, i % 7);
+    let faces = |i: usize| {
+        let a = 1 + i / (SIDE - 1) * SIDE + i % (SIDE - 1);
+        let (b, c, d) = (a + 1, a + SIDE, a + SIDE + 1);
+        format!("f {a} {b} {d}\nf {a} {d} {c}\n")
+    };
+    (0..SIDE * SIDE).map(vertex).chain((0..(SIDE - 1) * (SIDE - 1)).map(faces)).collect()
 }
 
 /// The command of a line, in a folder.

@@ -86,7 +86,7 @@ fn segments_of_meshes_without_triangles_are_no_edges() {
     let run = run("spconstrain", &["--lines", &lines], &triangles);
     let (code, message) = outcome(&run);
     assert_eq!(code, Some(0), "{message}");
-    assert!(message.contains("1 of 1 segments leave the mesh"), "{message}");
+    assert!(message.contains("1 of 1 segment leaves the mesh"), "{message}");
     audit(&run.stdout);
 }
 

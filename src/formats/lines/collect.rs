@@ -19,16 +19,21 @@ pub(crate) enum Shape {
 }
 
 /// Collects lines.
-#[derive(Default)]
 pub(crate) struct Collector {
     lines: Vec<Breakline>,
     polygons: u32,
     vertices: usize,
+    vertices_max: usize,
     /// Those of the feature whose lines are entered.
     properties: Arc<Properties>,
 }
 
 impl Collector {
+    /// No lines yet. Memory has room for so many vertices.
+    pub(crate) fn new(vertices_max: usize) -> Collector {
+        Collector { lines: Vec::new(), polygons: 0, vertices: 0, vertices_max, properties: Arc::default() }
+    }
+
     /// Starts a feature.
     pub(crate) fn feature(&mut self, properties: Properties) {
         // Most features have the properties of the one before.
@@ -51,7 +56,7 @@ impl Collector {
         position: impl Fn() -> String,
     ) -> Result<()> {
         self.vertices += vertices.len();
-        check_line_vertices(self.vertices).map_err(|error| error.at(position()))?;
+        check_line_vertices(self.vertices, self.vertices_max).map_err(|error| error.at(position()))?;
         if let Some(index) = vertices.iter().position(|[x, y, _]| !(x.is_finite() && y.is_finite())) {
             let [x, y, _] = vertices[index];
             let message = format!("vertex {index} is at {x}, {y}, expected finite coordinates");

@@ -30,14 +30,14 @@ pub(crate) fn is_json(head: &[u8]) -> bool {
 }
 
 /// Reads GeoJSON.
-pub(crate) fn read(mut input: impl Read) -> Result<Breaklines> {
+pub(crate) fn read(mut input: impl Read, vertices_max: usize) -> Result<Breaklines> {
     let mut start = Vec::new();
     let len = BYTE_ORDER_MARK.len() as u64;
     input.by_ref().take(len).read_to_end(&mut start).map_err(|e| Error::io("reading", e))?;
     if start == BYTE_ORDER_MARK {
         start.clear();
     }
-    let mut file = File { lines: Collector::default(), feature: 0, system: None, failure: None };
+    let mut file = File { lines: Collector::new(vertices_max), feature: 0, system: None, failure: None };
     let mut json = serde_json::Deserializer::from_reader(start.chain(input));
     let read = Object { file: &mut file, is_root: true }.deserialize(&mut json);
     let read = read.and_then(|root| root.finish(&mut file).map_err(serde_json::Error::custom));

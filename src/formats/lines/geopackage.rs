@@ -28,7 +28,7 @@ struct Table {
 
 /// Reads all tables of features, or the one of this name. The file is never changed: it is opened as one that
 /// nobody writes.
-pub(crate) fn read(path: &Path, layer: Option<&str>) -> Result<Breaklines> {
+pub(crate) fn read(path: &Path, layer: Option<&str>, vertices_max: usize) -> Result<Breaklines> {
     let flags =
         OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     check_complete(path)?;
@@ -44,12 +44,17 @@ pub(crate) fn read(path: &Path, layer: Option<&str>) -> Result<Breaklines> {
             return Err(Error::usage(format!("has no layer {layer:?}: its layers are {names}")));
         }
     }
-    read_tables(&database, &tables, layers.clone())
+    read_tables(&database, &tables, layers.clone(), vertices_max)
         .map_err(|error| layers.iter().fold(error, |error, layers| error.noting(layers)))
 }
 
-fn read_tables(database: &Connection, tables: &[Table], layers: Option<String>) -> Result<Breaklines> {
-    let mut lines = Collector::default();
+fn read_tables(
+    database: &Connection,
+    tables: &[Table],
+    layers: Option<String>,
+    vertices_max: usize,
+) -> Result<Breaklines> {
+    let mut lines = Collector::new(vertices_max);
     let mut crs: Option<(Crs, &Table)> = None;
     for table in tables {
         let own = system(database, table.system)?;

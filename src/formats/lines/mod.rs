@@ -122,24 +122,26 @@ impl Breaklines {
 ///
 /// # Errors
 /// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a
-/// coordinate is not finite, or there are more than `LINE_VERTICES_MAX` vertices.
-pub fn read_breaklines(path: &Path) -> Result<Breaklines> {
-    read(path, text_of_lines).map_err(|error| error.of_input(name_of(path)))
+/// coordinate is not finite, or there are more than `LINE_VERTICES_MAX` vertices; memory, if there are more than
+/// `vertices_max`.
+pub fn read_breaklines(path: &Path, vertices_max: usize) -> Result<Breaklines> {
+    read(path, text_of_lines, vertices_max).map_err(|error| error.of_input(name_of(path)))
 }
 
-/// How what is no GeoJSON, Shapefile or GeoPackage is read: its first bytes, and all of it.
-type ReadText = fn(&[u8], &mut dyn Read) -> Result<Breaklines>;
+/// How what is no GeoJSON, Shapefile or GeoPackage is read: its first bytes, all of it, and the most vertices.
+type ReadText = fn(&[u8], &mut dyn Read, usize) -> Result<Breaklines>;
 
-fn text_of_lines(head: &[u8], input: &mut dyn Read) -> Result<Breaklines> {
+fn text_of_lines(head: &[u8], input: &mut dyn Read, vertices_max: usize) -> Result<Breaklines> {
     check_text(head)?;
-    text::read(input)
+    text::read(input, vertices_max)
 }
 
-fn text_or_wkt(head: &[u8], input: &mut dyn Read) -> Result<Breaklines> {
-    if wkt::is_wkt(head) { wkt::read(input) } else { text_of_lines(head, input) }
+fn text_or_wkt(head: &[u8], input: &mut dyn Read, vertices_max: usize) -> Result<Breaklines> {
+    let is_wkt = wkt::is_wkt(head);
+    if is_wkt { wkt::read(input, vertices_max) } else { text_of_lines(head, input, vertices_max) }
 }
 
-fn read(path: &Path, read_text: ReadText) -> Result<Breaklines> {
+fn read(path: &Path, read_text: ReadText, vertices_max: usize) -> Result<Breaklines> {
     let (path, layer) = file_and_layer(path);
     let (input, is_file): (Box<dyn Read>, bool) = if path.as_os_str() == "-" {
         (Box::new(open_stdin()?), false)
@@ -156,7 +158,7 @@ fn read(path: &Path, read_text: ReadText) -> Result<Breaklines> {
     let check_plain = |format: &str| if is_plain { Ok(()) } else { Err(not_in_pipe(format)) };
     if head.starts_with(SQLITE_MAGIC) {
         check_plain("GeoPackage")?;
-        return read_geopackage(path, layer.as_deref());
+        return read_geopackage(path, layer.as_deref(), vertices_max);
     }
     if let Some(layer) = layer {
         let message = format!("only GeoPackages have layers: give the file without \":{layer}\"");
@@ -164,9 +166,12 @@ fn read(path: &Path, read_text: ReadText) -> Result<Breaklines> {
     }
     if head.starts_with(SHAPEFILE_MAGIC) {
         check_plain("Shapefile")?;
-        return shapefile::read(whole, path);
+        return shapefile::read(whole, path, vertices_max);
     }
-    if geojson::is_json(&head) { geojson::read(whole) } else { read_text(&head, &mut whole) }
+    match geojson::is_json(&head) {
+        true => geojson::read(whole, vertices_max),
+        false => read_text(&head, &mut whole, vertices_max),
+    }
 }
 
 /// Bytes without the byte order mark before them, if there is one.
@@ -191,12 +196,12 @@ fn not_in_pipe(format: &str) -> Error {
 }
 
 #[cfg(feature = "geopackage")]
-fn read_geopackage(path: &Path, layer: Option<&str>) -> Result<Breaklines> {
-    geopackage::read(path, layer)
+fn read_geopackage(path: &Path, layer: Option<&str>, vertices_max: usize) -> Result<Breaklines> {
+    geopackage::read(path, layer, vertices_max)
 }
 
 #[cfg(not(feature = "geopackage"))]
-fn read_geopackage(_: &Path, _: Option<&str>) -> Result<Breaklines> {
+fn read_geopackage(_: &Path, _: Option<&str>, _: usize) -> Result<Breaklines> {
     Err(Error::usage(
         "this program was built without the feature `geopackage`: convert the file first, for example with ogr2ogr \
          lines.geojson lines.gpkg",

@@ -56,9 +56,9 @@ const NAMES: [(&str, PolylineKind); 4] = [
 /// # Errors
 /// If reading fails, a line or geometry is not of these forms, or there is none at all.
 pub fn read_polylines(path: &Path) -> Result<(Vec<Polyline>, LineSystem, Option<String>)> {
-    let of_text = |head: &[u8], input: &mut dyn Read| check_text(head).and_then(|()| text(input));
+    let of_text = |head: &[u8], input: &mut dyn Read, _: usize| check_text(head).and_then(|()| text(input));
     let name = |error: Error| error.of_input(name_of(path));
-    let file = read(path, of_text).map_err(name)?;
+    let file = read(path, of_text, usize::MAX).map_err(name)?;
     file.check_properties().map_err(name)?;
     let polylines = polylines(&file.lines).map_err(|error| name(file.noting_layers(error)))?;
     Ok((polylines, file.system, file.layers))
@@ -109,7 +109,7 @@ fn kind_of(name: &[u8]) -> Result<PolylineKind> {
 
 /// Reads lines of text: the words are properties.
 fn text(input: impl Read) -> Result<Breaklines> {
-    let mut lines = Collector::default();
+    let mut lines = Collector::new(usize::MAX);
     let mut count = 0;
     for_each_line_at(input, |number, words| {
         let kind = kind_of(words[0])?;

@@ -29,7 +29,7 @@ pub fn read_polygons(
     let (mut polygons, mut notices) = (Vec::new(), Vec::new());
     for path in paths {
         let name = name_of(path);
-        let file = read(path, text_or_wkt).map_err(|error| error.of_input(&name))?;
+        let file = read(path, text_or_wkt, usize::MAX).map_err(|error| error.of_input(&name))?;
         notices.extend(file.system.check(&name, crs)?);
         notices.extend(file.layers.clone());
         for same in file.lines.chunk_by(|a, b| a.polygon == b.polygon) {

@@ -52,11 +52,11 @@ fn unknown(code: i32) -> Error {
 }
 
 /// Reads the main file, and the system beside it.
-pub(crate) fn read(mut input: impl Read, path: &Path) -> Result<Breaklines> {
+pub(crate) fn read(mut input: impl Read, path: &Path, vertices_max: usize) -> Result<Breaklines> {
     let mut header = [0; HEADER_LEN];
     fill(&mut input, &mut header).map_err(|e| e.at("header"))?;
     kind(i32_le(&header[32..]))?;
-    let mut lines = Collector::default();
+    let mut lines = Collector::new(vertices_max);
     let mut content = Vec::new();
     // The header states the length of the file in words of two bytes, itself included.
     let stated = 2 * i64::from(i32::from_be_bytes([header[24], header[25], header[26], header[27]]));

@@ -19,8 +19,8 @@ struct Open {
 }
 
 /// Reads lines of text: see [`crate::lines::read_breaklines`].
-pub(crate) fn read(input: impl Read) -> Result<Breaklines> {
-    let mut lines = Collector::default();
+pub(crate) fn read(input: impl Read, vertices_max: usize) -> Result<Breaklines> {
+    let mut lines = Collector::new(vertices_max);
     let mut open: Option<Open> = None;
     for_each_line_at(input, |number, words| {
         let mut words = words;
@@ -63,7 +63,7 @@ impl Open {
             let z = vertex.get(2).map_or(Ok(f64::NAN), |&word| elevation(word))?;
             self.vertices.push([finite(vertex[0])?, finite(vertex[1])?, z]);
         }
-        check_line_vertices(self.vertices.len())
+        check_line_vertices(self.vertices.len(), usize::MAX)
     }
 }
 

@@ -146,7 +146,7 @@ mod tests {
     use spmesh_stream::Crs;
 
     fn read(bytes: &[u8]) -> Result<Vec<(usize, Option<f64>)>> {
-        let mut lines = Collector::default();
+        let mut lines = Collector::new(usize::MAX);
         enter(bytes, &mut lines, &|| "row 1".to_string())?;
         let lines = lines.finish(Crs::Unknown)?.lines;
         Ok(lines.into_iter().map(|line| (line.vertices.len(), line.elevations[0])).collect())

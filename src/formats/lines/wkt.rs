@@ -18,14 +18,14 @@ pub(crate) fn is_wkt(head: &[u8]) -> bool {
 }
 
 /// Reads any number of `POLYGON` and `MULTIPOLYGON`, each with an optional `SRID=N;` before it.
-pub(crate) fn read(input: impl Read) -> Result<Breaklines> {
+pub(crate) fn read(input: impl Read, vertices_max: usize) -> Result<Breaklines> {
     let mut bytes = Vec::new();
     input.take(WKT_LEN_MAX + 1).read_to_end(&mut bytes).map_err(|e| Error::io("reading", e))?;
     if bytes.len() as u64 > WKT_LEN_MAX {
         return Err(Error::malformed(format!("more than {WKT_LEN_MAX} bytes: simplify the polygons")));
     }
     let mut text = Text { rest: without_mark(&bytes), line: 1 };
-    let mut polygons = Polygons::default();
+    let mut polygons = Polygons { lines: Collector::new(vertices_max), count: 0 };
     while text.peek().is_some() {
         polygons.geometry(&mut text).map_err(|error| error.at(format!("line {}", text.line)))?;
     }
@@ -33,7 +33,6 @@ pub(crate) fn read(input: impl Read) -> Result<Breaklines> {
 }
 
 /// The polygons that were read.
-#[derive(Default)]
 struct Polygons {
     lines: Collector,
     count: u64,

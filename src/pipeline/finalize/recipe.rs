@@ -14,14 +14,12 @@ use super::select::{Areas, Selected};
 use super::shores::{Shores, extent, shore_width, with_points};
 use super::weigh::{Weighed, Weighing};
 use crate::lines::{self, ABOUT_FAR, Changes, Levels, Lines, Sources, Target, Water, is_far};
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted_of};
+use spmesh_base::limits::LINE_VERTEX_BYTES;
 use spmesh_delaunay::network::Network;
 use spmesh_formats::source::{Description, Dropped, Input, SourceOptions};
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::{Bounds, Point};
-
-/// Bytes of a vertex of lines, while they are read.
-const LINE_BYTES: u64 = 120;
 
 /// What is finalized, and how.
 #[derive(Debug, Clone)]
@@ -175,7 +173,7 @@ impl Recipe {
         let what = format!("{edges} edges of polygons take");
         let budget = self.options.budget.beside(bytes, &what, "give simpler polygons")?;
         let what = format!("{vertices} vertices of lines take");
-        budget.beside(LINE_BYTES * vertices as u64, &what, "give fewer lines at once")
+        budget.beside(LINE_VERTEX_BYTES * vertices as u64, &what, "give fewer lines at once")
     }
 
     /// Lines and water, and what was changed about them.
@@ -189,7 +187,7 @@ impl Recipe {
             Some(_) => {
                 let sources =
                     Sources { lines: &self.lines, water: &self.flatten.files, ..Sources::default() };
-                lines::read(&sources, target, &self.line_options)
+                lines::read(&sources, target, &self.line_options.within(self.options.budget.bytes()))
             }
         }
     }
@@ -225,11 +223,11 @@ fn about_far(stated: &[Point], around: Vec<Option<[f64; 2]>>, coordinates: &Coor
     let (first, around) = far.next()?;
     let [x, y, z] = coordinates.to_decimal(first);
     let [least, most] = around.map(|z| coordinates.to_decimal([0.0, 0.0, z])[2]);
+    let elevations = ["elevation that lines or water state", "elevations that lines or water state"];
     Some(format!(
-        "{} of {} elevations that lines and water state are far from those of the points around, the first at \
-         {x}, {y}: {z}, amid points from {least} to {most}. Check them; {ABOUT_FAR}",
-        far.count() + 1,
-        stated.len()
+        "{} far from those of the points around, the first at {x}, {y}: {z}, amid points from {least} to {most}. \
+         Check them; {ABOUT_FAR}",
+        counted_of(far.count() as u64 + 1, stated.len() as u64, elevations, ["is", "are"])
     ))
 }
 

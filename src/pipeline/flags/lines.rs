@@ -50,7 +50,7 @@ impl LineFlags {
 
     /// How the lines are read.
     pub fn options(&self) -> Options {
-        Options { densify: self.densify, lists_changes: self.report.is_some() }
+        Options { densify: self.densify, lists_changes: self.report.is_some(), ..Options::default() }
     }
 
     /// Creates the file for the report, if one is asked for.

@@ -22,7 +22,7 @@ mod water;
 use std::borrow::Cow;
 
 use spmesh_base::error::{Error, Result};
-use spmesh_base::limits::{LINE_CROSSINGS_MAX, check_line_vertices};
+use spmesh_base::limits::{LINE_CROSSINGS_MAX, LINE_VERTEX_BYTES, check_line_vertices};
 use spmesh_delaunay::network::{Network, NetworkVertex};
 use spmesh_delaunay::noding::{LineVertex, Noded, NodingOptions, node_lines};
 use spmesh_formats::source::{Breaklines, Description, name_of, read_breaklines};
@@ -64,12 +64,29 @@ impl Target {
 }
 
 /// How lines are read.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Longest part of a line, in world units; longer parts are divided evenly.
     pub densify: Option<f64>,
     /// Whether changes are listed, and not counted alone.
     pub lists_changes: bool,
+    /// So many vertices memory has room for, in all files.
+    pub vertices_max: usize,
+}
+
+impl Options {
+    /// The same for memory of so many bytes.
+    #[must_use]
+    pub fn within(self, bytes: u64) -> Options {
+        let vertices_max = usize::try_from(bytes / LINE_VERTEX_BYTES).unwrap_or(usize::MAX);
+        Options { vertices_max, ..self }
+    }
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { densify: None, lists_changes: false, vertices_max: usize::MAX }
+    }
 }
 
 /// Lines, and what was made of them.
@@ -95,7 +112,8 @@ pub struct Lines {
 ///
 /// # Errors
 /// Those of reading; usage, if the system of a file differs from that of the stream, a coordinate is beyond
-/// the grid of the stream, or there is water and points have no elevation; malformed, if there are too many
+/// the grid of the stream, or there is water and points have no elevation; memory, if there are more vertices than
+/// `options` allow; malformed, if there are too many
 /// vertices or crossings, an area has no polygon, a feature of water is neither a polygon nor the centre line
 /// or a bank of a river, or banks bound no area.
 pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lines> {
@@ -103,9 +121,10 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
         return Err(Error::usage("--densify, the longest part of a line, must be a positive number"));
     }
     let mut changes = Changes::new(options.lists_changes);
-    let mut files = Vec::new();
+    let (mut files, mut left) = (Vec::new(), options.vertices_max);
     for (role, path) in sources.files() {
-        let mut file = read_breaklines(path)?;
+        let mut file = read_breaklines(path, left)?;
+        left -= file.lines.iter().map(|line| line.vertices.len()).sum::<usize>().min(left);
         let name = name_of(path);
         changes.notices.extend(file.system.check(&name, &target.crs)?);
         changes.notices.extend(file.layers.clone());
@@ -163,10 +182,12 @@ fn stored(
             starts.push(vertices.len() as u32);
             let position = line.position.clone();
             let fault = |error: Error| error.at(&*position).of_input(name.clone());
-            let line = prepare::prepare(line, number, options.densify, changes).map_err(fault)?;
-            check_line_vertices(vertices.len() + line.len()).map_err(|error| match options.densify {
-                Some(_) => fault(error.noting("divide parts less: --densify")),
-                None => fault(error),
+            let line = prepare::prepare(line, number, options, changes).map_err(fault)?;
+            check_line_vertices(vertices.len() + line.len(), options.vertices_max).map_err(|error| {
+                match options.densify {
+                    Some(_) => fault(error.noting("divide parts less: --densify")),
+                    None => fault(error),
+                }
             })?;
             let first = vertices.len();
             for &(place, z) in &line {
@@ -193,5 +214,10 @@ mod tests {
     fn crossings_are_limited() {
         let target = Target { coordinates: Coordinates::F64, crs: Crs::Unknown, has_elevation: true };
         assert_eq!(noding(&target).crossings_max, LINE_CROSSINGS_MAX);
+    }
+
+    #[test]
+    fn memory_has_room_for_vertices() {
+        assert_eq!(Options::default().within(8 * LINE_VERTEX_BYTES - 1).vertices_max, 7);
     }
 }

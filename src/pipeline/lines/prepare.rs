@@ -1,5 +1,6 @@
 //! Lines before noding: without repeated vertices and gaps of elevations, and with long parts divided.
 
+use super::Options;
 use super::changes::{ChangeKind, Changes};
 use spmesh_base::error::Result;
 use spmesh_base::limits::check_line_vertices;
@@ -10,11 +11,11 @@ use spmesh_stream::model::points::Point2;
 type Vertex = (Point2, Option<f64>);
 
 /// Prepares a line: leaves out vertices that repeat the one before, interpolates elevations between known
-/// ones, and divides parts longer than `densify` evenly.
+/// ones, and divides parts longer than `options` say evenly.
 pub(crate) fn prepare(
     line: Breakline,
     number: u32,
-    densify: Option<f64>,
+    options: &Options,
     changes: &mut Changes,
 ) -> Result<Vec<Vertex>> {
     let mut vertices: Vec<Vertex> = line.vertices.into_iter().zip(line.elevations).collect();
@@ -35,8 +36,8 @@ pub(crate) fn prepare(
     }
     vertices.truncate(kept);
     fill(&mut vertices, number, changes);
-    match densify {
-        Some(longest) => divide(&vertices, longest, number, changes),
+    match options.densify {
+        Some(longest) => divide(&vertices, longest, options.vertices_max, number, changes),
         None => Ok(vertices),
     }
 }
@@ -84,13 +85,19 @@ fn length(a: Point2, b: Point2) -> f64 {
 }
 
 /// Divides parts that are longer than `longest` evenly, with elevations where both ends have one.
-fn divide(vertices: &[Vertex], longest: f64, number: u32, changes: &mut Changes) -> Result<Vec<Vertex>> {
+fn divide(
+    vertices: &[Vertex],
+    longest: f64,
+    most: usize,
+    number: u32,
+    changes: &mut Changes,
+) -> Result<Vec<Vertex>> {
     let mut divided = Vec::with_capacity(vertices.len());
     for (index, &vertex) in vertices.iter().enumerate() {
         if let Some(&before) = index.checked_sub(1).and_then(|before| vertices.get(before)) {
             let count = (length(before.0, vertex.0) / longest).ceil();
             // A count beyond the numbers of `usize` becomes the greatest of them.
-            check_line_vertices((count as usize).saturating_add(divided.len()))
+            check_line_vertices((count as usize).saturating_add(divided.len()), most)
                 .map_err(|error| error.noting(&format!("parts of at most {longest:?}: divide lines less")))?;
             let is_reversed = vertex.0 < before.0;
             let (a, b) = if is_reversed { (vertex, before) } else { (before, vertex) };
@@ -125,7 +132,7 @@ mod tests {
             position: "".into(),
         };
         let mut changes = Changes::new(false);
-        (prepare(line, 0, densify, &mut changes).unwrap(), changes)
+        (prepare(line, 0, &Options { densify, ..Options::default() }, &mut changes).unwrap(), changes)
     }
 
     #[test]
@@ -173,7 +180,7 @@ mod tests {
                     position: "".into()
                 },
                 0,
-                Some(1e-300),
+                &Options { densify: Some(1e-300), ..Options::default() },
                 &mut Changes::new(false)
             )
             .is_err()

@@ -12,7 +12,7 @@ use super::features::{Feature, FeatureKind};
 use super::grid::Grid;
 use super::levels::vertices;
 use super::numbered::Bent;
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted_of};
 use spmesh_delaunay::network::Network;
 use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::model::points::Point2;
@@ -160,9 +160,14 @@ impl Water {
         let count = far.iter().filter(|&&is_far| is_far).count();
         let first = &self.polygons[far.iter().position(|&is_far| is_far)?].position;
         Some(format!(
-            "{count} of {} polygons of water are left out, as no points are in them or near their shores; the \
-             first is {first}. --shore-width looks for points farther away",
-            far.len()
+            "{} left out, as no points are in the water or near its shore; the first is {first}. --shore-width \
+             looks for points farther away",
+            counted_of(
+                count as u64,
+                far.len() as u64,
+                ["polygon of water", "polygons of water"],
+                ["is", "are"]
+            )
         ))
     }
 

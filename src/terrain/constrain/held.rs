@@ -107,6 +107,11 @@ impl Holding {
         self.by_id.get(&id).copied()
     }
 
+    /// Number of triangles that wait.
+    pub(super) fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
     /// Whether nothing waits.
     pub(super) fn is_empty(&self) -> bool {
         self.corners.len() == 0

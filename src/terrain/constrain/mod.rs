@@ -29,7 +29,8 @@ pub use cut::CutOptions;
 use held::{Held, Holding};
 use leaving::Rings;
 use near::Lines;
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, ErrorKind, Result, counted};
+use spmesh_base::limits::LINE_VERTEX_BYTES;
 use spmesh_delaunay::network::Network;
 use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2};
 use spmesh_pipeline::lines::{Areas, is_far};
@@ -46,6 +47,8 @@ pub struct Options {
     pub compress: bool,
     /// How the border is cut.
     pub cut: CutOptions,
+    /// For lines, vertices that are not final, and triangles that wait; unlimited if `None`. Units: bytes.
+    pub memory: Option<u64>,
 }
 
 /// Counts of a run.
@@ -96,7 +99,7 @@ pub struct Stats {
 ///
 /// # Errors
 /// Usage, if the input is no triangle mesh or is constrained already; malformed, if it breaks a rule, if a
-/// triangle is not counterclockwise, or if segments cross; I/O.
+/// triangle is not counterclockwise, or if segments cross; memory, if more is needed than `options` allow; I/O.
 pub fn constrain<R: Read, W: Write>(
     reader: &mut StreamReader<R>,
     network: &Network,
@@ -107,6 +110,8 @@ pub fn constrain<R: Read, W: Write>(
 ) -> Result<(W, Stats)> {
     check(reader.header())?;
     let coordinates = reader.header().coordinates;
+    let of_lines = LINE_VERTEX_BYTES * network.vertices.len() as u64;
+    let memory = options.memory.map_or(u64::MAX, |memory| memory.saturating_sub(of_lines));
     let cut = Cut::new(network, areas, &coordinates, &options.cut);
     let (is_cut, kill) = cut.claim();
     let constrained = Some(Constrained { is_cut, kill });
@@ -116,7 +121,8 @@ pub fn constrain<R: Read, W: Write>(
     let mut filter = Filter {
         lines: Lines::new(network, &rings, &areas.shores),
         holding: Holding::default(),
-        live: LiveVertices::new(),
+        live: LiveVertices::within(memory),
+        waiting_max: memory / WAITING_BYTES,
         writing: Writing::new(StreamWriter::new(output, header)?, network, cut)?,
         coordinates,
         numbers: Vec::new(),
@@ -171,10 +177,15 @@ fn header_of(header: &Header, network: &Network) -> Header {
     Header { bounds, points: None, tree: None, ..header.clone() }
 }
 
+/// A triangle that waits, with its part of corners and of what is open at them.
+const WAITING_BYTES: u64 = 400;
+
 struct Filter<'n, W: Write> {
     lines: Lines<'n>,
     holding: Holding,
     live: LiveVertices<Point>,
+    /// Most triangles that may wait.
+    waiting_max: u64,
     writing: Writing<W>,
     coordinates: Coordinates,
     stats: Stats,
@@ -250,6 +261,9 @@ impl<W: Write> Filter<'_, W> {
                     });
                     self.holding.hold(numbers, meeting);
                     self.stats.held += 1;
+                    if self.holding.len() as u64 > self.waiting_max {
+                        return Err(self.too_many());
+                    }
                     continue;
                 }
                 on = meeting.on;
@@ -265,6 +279,13 @@ impl<W: Write> Filter<'_, W> {
         }
         patch.simplices.truncate(kept);
         Ok(())
+    }
+
+    fn too_many(&self) -> Error {
+        let waiting = counted(self.holding.len() as u64, "triangle waits", "triangles wait");
+        let message =
+            format!("{waiting} for others that lines change, and --memory has room for {}", self.waiting_max);
+        Error::new(ErrorKind::Memory, format!("{message}: raise it, or give spfinalize the same lines"))
     }
 
     /// Triangulates a component anew.

@@ -61,14 +61,14 @@ impl Coverage {
         greatest: Option<f64>,
         memory: u64,
         temp_dir: Option<&Path>,
-    ) -> Coverage {
+    ) -> Result<Coverage> {
         let steps_per_unit = greatest.map_or(VALUE_STEPS, |greatest| {
             let exponent = greatest.max(f64::MIN_POSITIVE).log2().ceil().clamp(-900.0, 900.0) as i32;
             2f64.powi(VALUE_BITS - 1 - exponent)
         });
-        let cells = Accumulators::new(BLANK, memory, temp_dir);
+        let cells = Accumulators::new(BLANK, grid, memory, temp_dir)?;
         let size = [grid.columns, grid.rows];
-        Coverage { sample, size, steps_per_unit, cells, cutter: Cutter::new() }
+        Ok(Coverage { sample, size, steps_per_unit, cells, cutter: Cutter::new() })
     }
 
     /// Adds a triangle with corners in the coordinates of cells.

@@ -175,7 +175,7 @@ impl Run<'_> {
                 low.max(high)
             });
             let (grid, sample) = (*self.grid, options.sample);
-            let coverage = Coverage::new(sample, &grid, greatest, for_drawing, temp_dir);
+            let coverage = Coverage::new(sample, &grid, greatest, for_drawing, temp_dir)?;
             rasterizer.covering = Some(Covering::start(coverage, grid, coordinates)?);
         }
         let neighbours = differences.map(|differences| -> Result<Neighbours> {
@@ -191,7 +191,8 @@ impl Run<'_> {
         let mut stages = Stages::new(neighbours, target);
         let mut complete = |at: TilePlace, values: &[f32]| stages.take(at, values);
         let sink: Option<&mut TileSink> = if is_written_early { Some(&mut complete) } else { None };
-        let width = read(reader, self.column.as_ref(), &mut rasterizer, sink, progress)?;
+        let width =
+            read(reader, self.column.as_ref(), &mut rasterizer, options.vertices_memory, sink, progress)?;
         let mut covered = [0; 2];
         if let Some(covering) = rasterizer.covering.take() {
             covered = covering.finish()?.finish(&rasterizer.cache, &mut stages)?;
@@ -241,11 +242,12 @@ fn read<R: Read>(
     reader: &mut StreamReader<R>,
     column: Option<&Column>,
     rasterizer: &mut Rasterizer,
+    vertices_memory: Option<u64>,
     mut complete: Option<&mut TileSink>,
     mut progress: impl FnMut(u64),
 ) -> Result<u64> {
     let coordinates = reader.header().coordinates;
-    let mut live = LiveVertices::new();
+    let mut live = LiveVertices::within(vertices_memory.unwrap_or(u64::MAX));
     while let Some(event) = reader.next_event()? {
         if let Event::Patch(patch) = event {
             let rows = reader.rows();

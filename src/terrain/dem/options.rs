@@ -90,6 +90,8 @@ pub struct Options {
     pub fill: Option<u32>,
     /// Bytes for tiles, and for triangles that wait for the outline; others wait in temporary files.
     pub memory: u64,
+    /// Bytes for vertices that are not final, beside these; unlimited if `None`.
+    pub vertices_memory: Option<u64>,
     /// How the raster is written.
     pub raster: RasterOptions,
     /// The coordinate reference system, if not that of the mesh.

@@ -156,7 +156,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut reader = open_stream(&flags.ground)?;
     let mut progress = Progress::new(&flags.common, "reading the ground", reader.header().points);
     let temp_dir = flags.raster.temp_dir();
-    let ground = Ground::read(&mut reader, temp_dir, |vertices| progress.set(vertices))?;
+    let ground = Ground::read(&mut reader, temp_dir, flags.memory, |vertices| progress.set(vertices))?;
     flags.check_systems(&ground, &input)?;
     // The system of the ground stands in where points state none.
     let crs = &input.description().crs;
@@ -252,6 +252,7 @@ impl Flags {
             mask: None,
             fill: None,
             memory: self.memory / 2,
+            vertices_memory: None,
             raster: self.raster.options(format)?,
             crs: None,
         })
@@ -263,8 +264,8 @@ impl Flags {
         let least = 2 * Budget::process_min(threads);
         if self.memory < least {
             let [given, least] = [self.memory >> 20, least.div_ceil(1 << 20)];
-            let text =
-                format!("--memory of {given} MiB is too little for {threads} threads: give {least}M or more");
+            let threads = counted(threads as u64, "thread", "threads");
+            let text = format!("--memory of {given} MiB is too little for {threads}: give {least}M or more");
             return Err(Error::new(ErrorKind::Memory, text));
         }
         Ok(Settings {

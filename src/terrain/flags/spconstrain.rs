@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Parser;
 
 use crate::constrain::{CutOptions, Options, Stats, constrain};
-use spmesh_base::error::{Error, Result, counted};
+use spmesh_base::error::{Error, Result, counted, counted_of};
 use spmesh_base::output::Output;
 use spmesh_base::system;
 use spmesh_pipeline::flags::lines::{LineFlags, summary};
@@ -20,6 +20,9 @@ use spmesh_shell::stats::Row;
 use spmesh_shell::{Common, Report, StatsFlag, advise_on_memory, notice, parse_size, peak_memory};
 
 const TOOL: &str = "spconstrain";
+
+/// Memory for triangles that `--kill` may remove, by default. Units: bytes.
+const KILL_MEMORY: u64 = 256 << 20;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -83,9 +86,10 @@ pub struct Flags {
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     kill: Option<f64>,
 
-    /// Memory for triangles that --kill may remove; others wait in a temporary file
-    #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M", requires = "kill")]
-    memory: u64,
+    /// Memory for lines, for vertices that are not final, and for triangles that wait; those that --kill may
+    /// remove wait in a temporary file beyond it [default: 256M for --kill, and what the rest needs]
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    memory: Option<u64>,
 
     /// Folder for temporary files [default: TMPDIR, or /tmp]
     #[arg(long, value_name = "FOLDER")]
@@ -118,11 +122,14 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let target = Target::of(reader.header());
     let sources = Sources { lines: &flags.lines.files, hull: &flags.hull, holes: &flags.holes, water: &[] };
     system::give_back_large_blocks();
-    let Lines { network, areas, changes, .. } = lines::read(&sources, &target, &flags.lines.options())?;
+    let Lines { network, areas, changes, .. } =
+        lines::read(&sources, &target, &flags.lines.options().within(flags.memory.unwrap_or(u64::MAX)))?;
     changes.notices.iter().chain(summary(&changes).as_ref()).for_each(|text| flags.notice(text));
     let kill = length("--kill", flags.kill)?;
-    let cut = CutOptions { kill, memory: flags.memory, temp_dir: flags.temp_dir.clone() };
-    let options = Options { compress: flags.compression.of_stream(), cut };
+    // Half of it is for --kill.
+    let memory = flags.memory.map(|memory| if kill.is_some() { memory / 2 } else { memory });
+    let cut = CutOptions { kill, memory: memory.unwrap_or(KILL_MEMORY), temp_dir: flags.temp_dir.clone() };
+    let options = Options { compress: flags.compression.of_stream(), cut, memory };
     let mut progress = Progress::new(&flags.common, "constraining", reader.header().points);
     let (output, stats) =
         constrain(&mut reader, &network, &areas, output, &options, |vertices| progress.set(vertices))?;
@@ -153,9 +160,10 @@ fn about_open(stats: &Stats) -> String {
     let is_apart = stats.open_segments == stats.segments && stats.ends == 0;
     let all = if is_apart { ", perhaps of another place or system" } else { "" };
     format!(
-        "{} of {} segments leave the mesh and are no edges there{all}; {} new vertices end them at its border. \
-         Lines with elevations extend the mesh if spfinalize --lines has them, too",
-        stats.open_segments, stats.segments, stats.ends
+        "{} the mesh{all}: parts outside are no edges; {} at its border. Lines with elevations extend the mesh if \
+         spfinalize --lines has them, too",
+        counted_of(stats.open_segments, stats.segments, ["segment", "segments"], ["leaves", "leave"]),
+        counted(stats.ends, "new vertex ends them", "new vertices end them")
     )
 }
 

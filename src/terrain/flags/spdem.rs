@@ -158,7 +158,7 @@ pub struct Flags {
     format: Option<Format>,
 
     /// Memory for tiles, and for triangles that wait for the outline of --concave; others wait in temporary
-    /// files (see --temp-dir) [default: 32M]
+    /// files (see --temp-dir). A quarter of it is for vertices that are not final [default: 32M, beside these]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory: Option<u64>,
 
@@ -274,6 +274,8 @@ impl Flags {
             Quantity::ShadedRelief(..) => self.raster.check_bytes()?,
             _ => {}
         }
+        // Few vertices are live, but of a mesh that is not in the order of a stream.
+        let vertices_memory = self.memory.map(|memory| (memory / 4).max((memory / 2).min(1 << 20)));
         Ok(Options {
             quantity,
             sample: self.quantity.sample(),
@@ -282,7 +284,8 @@ impl Flags {
             concave: self.outline.concave()?,
             mask: None,
             fill: self.fill,
-            memory: self.memory.unwrap_or(MEMORY),
+            memory: self.memory.unwrap_or(MEMORY) - vertices_memory.unwrap_or(0),
+            vertices_memory,
             raster: self.raster.options(format)?,
             crs: self.crs.system()?,
         })

@@ -98,7 +98,7 @@ pub struct Flags {
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<FormatFlag>,
 
-    /// Memory for points under way
+    /// Memory for points under way, and before for vertices of the ground that are not final
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "160M")]
     memory: u64,
 
@@ -156,7 +156,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut reader = open_stream(&flags.ground)?;
     outputs.iter().try_for_each(|output| inputs::check_output(output))?;
     let mut progress = Progress::new(&flags.common, "reading the ground", reader.header().points);
-    let ground = Ground::read(&mut reader, flags.temp_dir.as_deref(), |vertices| progress.set(vertices))?;
+    let ground = Ground::read(&mut reader, flags.temp_dir.as_deref(), flags.memory, |vertices| {
+        progress.set(vertices)
+    })?;
     drop(progress);
     let total = files.iter().map(LasFile::points).sum();
     let mut progress = Progress::new(&flags.common, "finding heights", Some(total));

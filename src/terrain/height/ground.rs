@@ -25,20 +25,23 @@ pub struct Ground {
 
 impl Ground {
     /// Reads a triangle mesh with elevations; calls `progress` with the number of vertices read. The temporary
-    /// file is in `temp_dir`, or in the system's folder for temporary files.
+    /// file is in `temp_dir`, or in the system's folder for temporary files. `memory` is for vertices that are not
+    /// final. Units: bytes.
     ///
     /// # Errors
-    /// If the input is no triangle mesh with elevations, is malformed or truncated; if the temporary file fails.
+    /// If the input is no triangle mesh with elevations, is malformed or truncated; if the temporary file fails;
+    /// memory, if more vertices are not final than it has room for.
     pub fn read<R: Read>(
         reader: &mut StreamReader<R>,
         temp_dir: Option<&Path>,
+        memory: u64,
         mut progress: impl FnMut(u64),
     ) -> Result<Ground> {
         let header = reader.header().clone();
         check_surface(&header, true).map_err(|e| e.of_input(reader.name()))?;
         let is_integer = matches!(header.coordinates, Coordinates::I32 { .. });
         let mut blocks = BlockWriter::new(is_integer, temp_dir)?;
-        let (mut live, mut triangles) = (LiveVertices::new(), Vec::new());
+        let (mut live, mut triangles) = (LiveVertices::within(memory), Vec::new());
         let mut predicates = FiniteFloatPredicates::default();
         while let Some(event) = reader.next_event()? {
             let Event::Patch(patch) = event else { continue };

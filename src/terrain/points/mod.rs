@@ -133,7 +133,8 @@ pub fn rasterize<R: Read, W: Write + Seek>(
     let steps = Steps::of(&header, column.as_ref());
     let mut stats = Stats { cells: grid.cells(), ..Stats::default() };
     let (mut stats, [spilled, _]) = output.write(&file, options.memory, |target, memory| {
-        let mut counters = Accumulators::new(Cell::default(), memory, options.raster.temp_dir.as_deref());
+        let mut counters =
+            Accumulators::new(Cell::default(), grid, memory, options.raster.temp_dir.as_deref())?;
         count(reader, column.as_ref(), &steps, grid, &mut counters, &mut stats, progress)?;
         stats.spilled = counters.spilled;
         let mut tiles = Finished { counters, statistic: options.statistic, steps, grid: *grid, known: 0 };

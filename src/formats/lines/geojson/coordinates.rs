@@ -144,7 +144,7 @@ impl<'de> Visitor<'de> for Item<'_> {
             (_, true, _) => return Err(A::Error::custom("coordinates are numbers and lists side by side")),
             _ => return Err(A::Error::custom("a position is not two numbers or more")),
         }
-        check_line_vertices(found.vertices.len()).map_err(A::Error::custom)?;
+        check_line_vertices(found.vertices.len(), usize::MAX).map_err(A::Error::custom)?;
         Ok(Value::List(inner + 1))
     }
 }
