@@ -52,6 +52,8 @@ struct Known {
     segments: Bits,
     /// Fine cells with vertices that were not found yet.
     vertices: Bits,
+    /// Cells that are divided.
+    divided: Bits,
     /// All cells with an item.
     pyramid: Pyramid,
     /// Cells with an item in them or beside them, divided or not.
@@ -121,7 +123,8 @@ impl Cells {
             if is_known && self.known[tree.number].is_far(grid.local(place), grid.size) {
                 return true;
             }
-            match tree.inner_at(place) {
+            let has_inner = !tree.divided().is_empty() && is_crowded(tree, grid.cell(place));
+            match has_inner.then(|| tree.inner_at(place)).flatten() {
                 Some(inner) => tree = inner,
                 None => return false,
             }
@@ -151,6 +154,7 @@ impl Cells {
     }
 
     /// Whether one of the fine cells that meet a box is what `is_any` says of a range of them.
+    // Not recursive itself, so that it is inlined: few networks have divided cells.
     #[inline]
     fn has_any(
         &self,
@@ -163,10 +167,13 @@ impl Cells {
         let fine = cell_tree::range(&CellBox { min, max }, tree.grid.size.map(|count| count * FINE));
         let Some(fine) = fine else { return false };
         is_any(&self.known[tree.number], fine)
-            || (!tree.divided().is_empty() && self.has_any_inside(tree, fine, bounds, is_any))
+            || (!tree.divided().is_empty()
+                && self.known[tree.number].divided.any(fine.map(|ends| ends.map(|at| at / FINE)))
+                && self.has_any_inside(tree, fine, bounds, is_any))
     }
 
     /// [`Cells::has_any`] for the divided cells.
+    #[inline(never)]
     fn has_any_inside(
         &self,
         tree: &CellTree,
@@ -203,7 +210,9 @@ impl Cells {
         let (bounds, meets) = shape(&tree.grid);
         let Some(range) = tree.grid.range(&bounds) else { return };
         let mut visit = |cell: usize| {
-            if let Some(inner) = tree.inner(cell) {
+            if is_crowded(tree, cell)
+                && let Some(inner) = tree.inner(cell)
+            {
                 return inner.trees().for_each(|tree| self.for_each_of(tree, shape, found));
             }
             for &item in tree.list(cell) {
@@ -225,12 +234,22 @@ impl Cells {
     }
 }
 
+/// Whether a cell may be divided; to search for it takes longer.
+#[inline]
+fn is_crowded(tree: &CellTree, cell: usize) -> bool {
+    tree.list(cell).len() > FINENESS.crowd
+}
+
 impl Known {
     fn new(tree: &CellTree) -> Known {
         let size = tree.grid.size;
         let pyramid = Pyramid::new(size, |cell| !tree.list(cell).is_empty());
         let (near, fine) = (pyramid.finest_spread(), size.map(|count| count * FINE));
-        Known { segments: Bits::new(fine), vertices: Bits::new(fine), pyramid, near }
+        let mut divided = Bits::new(size);
+        for cell in tree.divided().iter().map(|&(cell, _)| cell as usize) {
+            divided.set([cell % size[0], cell / size[0]]);
+        }
+        Known { segments: Bits::new(fine), vertices: Bits::new(fine), divided, pyramid, near }
     }
 
     fn fill(&mut self, tree: &CellTree, item: &impl Fn(u32) -> cell_tree::Item, segments: u32) {
