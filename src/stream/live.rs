@@ -21,13 +21,8 @@ pub struct LiveVertices<T> {
 
 impl<T> Default for LiveVertices<T> {
     fn default() -> Self {
-        LiveVertices {
-            live: Ascending::default(),
-            local: Vec::new(),
-            places: Vec::new(),
-            live_max: 0,
-            most: usize::MAX,
-        }
+        let (local, places, most) = (Vec::new(), Vec::new(), usize::MAX);
+        LiveVertices { live: Ascending::default(), local, places, live_max: 0, most }
     }
 }
 

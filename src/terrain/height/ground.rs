@@ -11,6 +11,9 @@ use spmesh_delaunay::predicates::FiniteFloatPredicates;
 use spmesh_formats::crs::{System, differences};
 use spmesh_stream::{Coordinates, Crs, Event, LiveVertices, StreamReader, check_surface};
 
+/// Memory for vertices that are not final, at least. Units: bytes.
+const MEMORY_MIN: u64 = 1 << 20;
+
 /// The triangles of a mesh, in a temporary file.
 ///
 /// Memory: 48 bytes for each two thousand triangles, and 40 MB while it is read. Disk: 13 bytes for each
@@ -41,7 +44,7 @@ impl Ground {
         check_surface(&header, true).map_err(|e| e.of_input(reader.name()))?;
         let is_integer = matches!(header.coordinates, Coordinates::I32 { .. });
         let mut blocks = BlockWriter::new(is_integer, temp_dir)?;
-        let (mut live, mut triangles) = (LiveVertices::within(memory), Vec::new());
+        let (mut live, mut triangles) = (LiveVertices::within(memory.max(MEMORY_MIN)), Vec::new());
         let mut predicates = FiniteFloatPredicates::default();
         while let Some(event) = reader.next_event()? {
             let Event::Patch(patch) = event else { continue };
