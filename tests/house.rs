@@ -121,6 +121,16 @@ fn heavy_packages_stay_in_one_crate() {
     }
 }
 
+/// So `scripts/test` checks one program without GeoPackages, not all.
+#[test]
+fn only_formats_know_of_geopackages() {
+    for path in files("src").into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "rs"))
+    {
+        let knows = fs::read_to_string(root().join(&path)).unwrap().contains("\"geopackage\"");
+        assert!(!knows || path.starts_with("src/formats"), "{} knows of GeoPackages", path.display());
+    }
+}
+
 /// A Rust program uses the engine of a product without its command line.
 #[test]
 fn command_lines_can_be_left_out() {

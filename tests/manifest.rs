@@ -66,6 +66,17 @@ fn further_programs_take_the_same_features_of_dependencies() {
     );
 }
 
+/// Otherwise tests use other code than the programs, and what tests have compiled is of no use for the builds,
+/// checks and planted faults after them.
+#[test]
+fn tests_take_the_same_features_of_dependencies_as_programs() {
+    let of_tests = foreign(&["--workspace", "--edges", "dev"]);
+    let (Some(programs), Some(tests)) = (foreign(&[]), of_tests) else { return };
+    let differing: Vec<&String> = programs.difference(&tests).collect();
+    assert!(!programs.is_empty() && differing.is_empty(), "{differing:?}");
+    assert!(tests.len() > programs.len(), "the dependencies of tests were left out");
+}
+
 #[test]
 fn no_example_in_documentation_goes_untested() {
     for package in packages().iter().filter(|package| package["source"].is_null()) {

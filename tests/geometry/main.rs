@@ -13,4 +13,5 @@ mod noding;
 mod order;
 mod parallel;
 mod queries;
+mod references;
 mod sphere;

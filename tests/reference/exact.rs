@@ -26,7 +26,7 @@ pub fn times_2_1074(value: f64) -> BigInt {
     if value < 0.0 { -integer } else { integer }
 }
 
-pub(super) fn sign(value: &BigInt) -> i32 {
+pub fn sign(value: &BigInt) -> i32 {
     match value.sign() {
         Sign::Minus => -1,
         Sign::NoSign => 0,
