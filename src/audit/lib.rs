@@ -79,6 +79,7 @@ mod partial_triangles;
 mod point_set;
 mod point_tree;
 mod points;
+mod regions;
 mod residual_fit;
 mod tetrahedra;
 mod triangles;
@@ -92,6 +93,7 @@ pub use inventory::{
     PatchSize,
 };
 pub use point_set::PointSet;
+pub use regions::RegionInventory;
 pub use tetrahedra::{Census, Counts, Faults};
 pub use triangles::Standard;
 
@@ -171,7 +173,8 @@ impl Audit {
             | Kind::Configurations
             | Kind::Splines
             | Kind::TriangleResidual
-            | Kind::TetrahedralResidual => {
+            | Kind::TetrahedralResidual
+            | Kind::RegionPoints => {
                 let kind = header.kind.name();
                 let message =
                     format!("streams of kind {kind} have an audit of their own, or nothing to prove");
