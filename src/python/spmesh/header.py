@@ -269,7 +269,7 @@ class Header:
             require(is_cut or kill == 0, "a kill length, but a border that is not cut")
         if self.weighted is not None:
             space = self.kind in ("points", "tetrahedral mesh") and self.dims == 3
-            require(space, f"weights in a {self.kind} of {self.dims} dimensions")
+            require(space, f"weights in a stream of kind {self.kind} of {self.dims} dimensions")
             require(math.isfinite(self.weighted), f"the greatest weight {self.weighted}, expected a finite number")
             plain = [attribute for attribute in self.attributes if attribute.is_weight()]
             require(plain, 'weights need an attribute "weight": one f64 without scale and unknown number')
