@@ -130,15 +130,19 @@ impl RegionRules {
     }
 
     /// Checks the rules of the end: all regions are complete, and each point that is shared was in its last
-    /// region.
-    pub(super) fn check_end(&self) -> Result<()> {
+    /// region. `points` is the number that the header states, if it does.
+    pub(super) fn check_end(&self, points: Option<u64>, totals: &Totals) -> Result<()> {
         self.check_complete()?;
-        match self.live {
-            0 => Ok(()),
-            live => Err(Error::malformed(format!(
-                "END: {live} points that regions share with later ones are in no later one"
-            ))),
+        if self.live > 0 {
+            return Err(Error::malformed(format!(
+                "END: {} points that regions share with later ones are in no later one",
+                self.live
+            )));
         }
+        if points.is_some_and(|points| points != totals.points) {
+            return Err(Error::malformed("END: the header states another number of points"));
+        }
+        Ok(())
     }
 
     fn check_complete(&self) -> Result<()> {

@@ -190,7 +190,7 @@ impl Tally {
             functions::check_end(&counted)?;
         }
         self.configuration_rules.check_end()?;
-        self.regions.as_ref().map_or(Ok(()), RegionRules::check_end)?;
+        self.regions.as_ref().map_or(Ok(()), |regions| regions.check_end(header.points, &counted))?;
         self.rules4.check_end(&counted)?;
         self.chunks.as_ref().map_or(Ok(()), ChunkCheck::end)
     }

@@ -282,7 +282,9 @@ impl<W: Write> StreamWriter<W> {
             check_end(&self.totals)?;
         }
         self.configuration_rules.check_end()?;
-        self.region_rules.as_ref().map_or(Ok(()), RegionRules::check_end)?;
+        if let Some(rules) = &self.region_rules {
+            rules.check_end(self.header.points, &self.totals)?;
+        }
         if self.header.kind.has_vertices() {
             self.totals.points = input_points;
             self.totals.merged = merged;

@@ -158,7 +158,10 @@ pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Re
         ));
     }
     if kind == Kind::RegionPoints {
-        return refuse(format!("this is a stream of kind {}, expected points or a triangle mesh", kind.name()));
+        return refuse(format!(
+            "this is a stream of kind {}, expected points or a triangle mesh",
+            kind.name()
+        ));
     }
     if kind.has_knots() {
         return check_of_knots(options, moments);
