@@ -67,8 +67,8 @@ impl Tally {
     /// counted.
     ///
     /// # Errors
-    /// Malformed, if a chunk holds points of several cells, if a region has other points than it states, if there are more labels than vertices so far, or
-    /// if constraints, four-dimensional data, configurations or functions break a rule.
+    /// Malformed, if a chunk holds points of several cells, if there are more labels than vertices so far, or
+    /// if regions, constraints, four-dimensional data, configurations or functions break a rule.
     pub fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {

@@ -111,7 +111,8 @@ impl<W: Write> StreamWriter<W> {
     /// Appends points to a points stream without attributes.
     ///
     /// # Errors
-    /// If a coordinate does not fit the encoding of the header, the region has fewer points, or writing fails.
+    /// If a coordinate does not fit the encoding of the header, a region gets more points than it states, or
+    /// writing fails.
     pub fn points(&mut self, points: &[Point]) -> Result<()> {
         self.expect_no_attributes();
         self.count_points(points.len())?;
@@ -132,7 +133,7 @@ impl<W: Write> StreamWriter<W> {
     /// Appends points that [`encode_points`] has encoded to a stream without attributes.
     ///
     /// # Errors
-    /// If the region has fewer points, or writing fails.
+    /// If a region gets more points than it states, or writing fails.
     pub fn encoded_points(&mut self, bytes: &[u8]) -> Result<()> {
         self.expect_no_attributes();
         let point_len = self.header.point_len();

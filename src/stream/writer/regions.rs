@@ -11,8 +11,8 @@ impl<W: Write> StreamWriter<W> {
     /// next region and before the end, in the order of its counts. Flushes the points of the region before.
     ///
     /// # Errors
-    /// Malformed, if the box is empty, the region before lacks points, or the region has more points of earlier
-    /// regions than these share; I/O, if writing fails.
+    /// Malformed, if the box is empty, the region before lacks points, or the region has more points of
+    /// earlier regions than these share; I/O, if writing fails.
     pub fn region(&mut self, region: &PointRegion) -> Result<()> {
         self.flush_points()?;
         let rules = self.region_rules.as_mut().expect("the kind of the stream has regions");

@@ -11,7 +11,8 @@ impl<W: Write> StreamWriter<W> {
     /// Appends points to a points stream, with a row for each if the header lists attributes.
     ///
     /// # Errors
-    /// If a coordinate does not fit the encoding of the header, the region has fewer points, or writing fails.
+    /// If a coordinate does not fit the encoding of the header, a region gets more points than it states, or
+    /// writing fails.
     pub fn points_with_rows(&mut self, points: &[Point], rows: &[u8]) -> Result<()> {
         let row_len = self.header.attributes.row_len();
         if row_len == 0 {
@@ -36,7 +37,7 @@ impl<W: Write> StreamWriter<W> {
     /// lists attributes.
     ///
     /// # Errors
-    /// If the region has fewer points, or writing fails.
+    /// If a region gets more points than it states, or writing fails.
     pub fn encoded_records(&mut self, bytes: &[u8]) -> Result<()> {
         if self.header.attributes.is_empty() {
             return self.encoded_points(bytes);
