@@ -155,9 +155,11 @@ fn programs_that_take_no_regions_name_the_kind() {
         &["spdelaunay2d", "--merge", "-"],
         &["spconvert", "--to", "vtu", "-"],
         &["spconvert", "--to", "ply", "-"],
-        &["spheight", "--step", "1", "-"],
+        &["spdem", "--step", "1", "-o", "heights.tif", "-"],
         &["spview", "-o", "picture.png", "-"],
         &["tess3", "-"],
+        &["dd4", "-"],
+        &["configgen", "-"],
         &["spinfo", "--audit", "-"],
         &["spinfo", "--audit", "--points", "-", "-"],
     ] {
