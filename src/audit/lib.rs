@@ -167,14 +167,19 @@ impl Audit {
             Kind::TetrahedralMesh => {
                 (State::Tetrahedra(TetrahedraAudit::new(header, standard)), TETRAHEDRA_CHECKS.to_vec())
             }
+            Kind::RegionPoints => {
+                let kind = header.kind.name();
+                let message =
+                    format!("a stream of {kind} claims nothing that takes a proof: leave --audit away");
+                return Err(Error::usage(message));
+            }
             Kind::Points4
             | Kind::Cells4
             | Kind::Simplices4
             | Kind::Configurations
             | Kind::Splines
             | Kind::TriangleResidual
-            | Kind::TetrahedralResidual
-            | Kind::RegionPoints => {
+            | Kind::TetrahedralResidual => {
                 let kind = header.kind.name();
                 let message =
                     format!("streams of kind {kind} have an audit of their own, or nothing to prove");
