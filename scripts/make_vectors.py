@@ -23,7 +23,7 @@ MAGIC = b"\x89SPM\r\n\x1a\n"
 KINDS = {"points": 1, "triangle mesh": 2, "partial triangle mesh": 3, "tetrahedral mesh": 4,
          "points in 4 dimensions": 5, "cells in 4 dimensions": 6, "simplices in 4 dimensions": 7,
          "configurations": 8, "splines": 9, "partial tetrahedral mesh": 10,
-         "residual of a triangle mesh": 11, "residual of a tetrahedral mesh": 12}
+         "residual of a triangle mesh": 11, "residual of a tetrahedral mesh": 12, "points in regions": 13}
 # Vectors in fail whose faults only a reader with memory of cells or vertices can see.
 NEED_MEMORY = {
     "cell-twice", "cell-after-ancestor", "cell-after-siblings", "point-in-final-cell", "point-in-final-ancestor",
@@ -300,6 +300,13 @@ class Vector:
     def kept(self, *locals):
         """Finalized vertices of the next patch that later parts may use."""
         return self.block(b"kept", [(struct.pack("<I", local), "keeps local vertex %d" % local) for local in locals])
+
+    def regions(self, box, own=0, first=0, again=0, last=0):
+        """A region: its box, and the counts of its points."""
+        counts = dict(own=own, first=first, again=again, last=last)
+        self.lines.append("region " + " ".join(map(number, [*box, *counts.values()])))
+        payload = [(struct.pack("<3d", *map(float, half)), name) for half, name in ((box[:3], "min"), (box[3:], "max"))]
+        return self.block(b"REGN", payload + [(struct.pack("<Q", n), name) for name, n in counts.items()])
 
     def labels(self, *labels):
         self.lines += ["label %d" % label for label in labels]
@@ -759,7 +766,7 @@ def failing_weights():
     yield "weights-limit-infinite", "the greatest weight inf", limit("inf")
     yield "weights-limit-nan", "the greatest weight", limit("nan")
     yield "weights-plane", "of 2 dimensions", instead(WEIGHT, dims=2, elevation=1)
-    yield "weights-partial", "weights in a partial tetrahedral mesh", Vector(
+    yield "weights-partial", "weights in a stream of kind partial tetrahedral mesh", Vector(
         "partial tetrahedral mesh", **WEIGHTED, region=(0, 0, 0, 4, 4, 4)).end()
     yield "weights-without", 'need an attribute "weight"', instead()
     yield "weights-other", 'need an attribute "weight"', instead(CLASS)
@@ -769,6 +776,85 @@ def failing_weights():
     yield "weight-above", "weight 2.5, expected", row("2.5")
     yield "weight-infinite", "weight -inf, expected", row("-inf")
     yield "weight-nan", "weight", row("nan")
+
+
+REGIONS = dict(kind="points in regions", dims=3)
+ALL, LOW, HIGH = (-INF,) * 3 + (INF,) * 3, (-INF,) * 3 + (INF, INF, 2), (-INF, -INF, 2, INF, INF, INF)
+ROW = [([1],), ([2],), ([3],)]
+
+
+def passing_regions():
+    """Points in regions that overlap."""
+    yield "regions-three", "A point in all three regions, one in two of them, and points that one region has", Vector(
+        **REGIONS, grid=EVEN, bounds=(0, 0, 0, 9, 0, 0), points=5).regions((0, 0, 0, 4, 4, 4), 1, 2).points(
+        (0, 0, 0), (4, 0, 0)).points((5, 0, 0)).regions((4, 0, 0, "4.5", 4, 4), 0, 0, 1, 1).points(
+        (5, 0, 0), (4, 0, 0)).regions((4, -1, 0, INF, 0, 4), 2, 0, 0, 1).points((8, 0, 0), (9, 0, 0), (5, 0, 0)).end(5)
+    yield "regions-f64", "Coordinates of binary64; boxes may overlap, and points may lie outside of them", Vector(
+        **REGIONS).regions(ALL, 1, 1).points(("0.1", "0", "-0.0"), ("1e22", "5", "5")).regions(
+        ("-0.5", 0, 0, "5e-324", 1, 1), last=1).points(("1e22", "5", "5")).end(2)
+    yield "regions-empty", "Regions without points, the first with an empty block", Vector(**REGIONS, points=0).regions(
+        LOW).points().regions(HIGH).end()
+    yield "regions-none", "No region, so no points", Vector(**REGIONS).end()
+    yield "regions-attributes", "A point has a row in each region", Vector(**REGIONS, attributes=[CLASS]).regions(
+        LOW, 1, 1).points(("0",) * 3, ("1",) * 3, rows=ROW[:2]).rows(*ROW[:2]).regions(HIGH, last=1).points(
+        ("1",) * 3, rows=ROW[1:2]).rows(*ROW[1:2]).end(2)
+    yield "regions-skipped", "Skipped blocks before the first region, within a region and at its end", Vector(
+        **REGIONS).skip().regions(LOW, 2).points(("0",) * 3).skip().points(("1",) * 3).skip().regions(HIGH).skip().end(2)
+    copies = packed_records(80, 0, 80, struct.pack("<6d4Q", *ALL, 1, 0, 0, 0))
+    yield "regions-compressed", "A compressed region", Vector(**REGIONS, compressed=True).instead(*copies).regions(
+        ALL, 1).points(("0",) * 3).end(1)
+
+
+def failing_regions():
+    """Points in regions that break a rule."""
+    of = lambda **more: Vector(**{**REGIONS, **more}).end()
+    yield "regions-plane", "points in regions in 2 dimensions", of(dims=2)
+    yield "regions-tree", "a stream of kind points in regions has no finalization tree", of(tree=OCTREE)
+    yield "regions-chunked", "can be chunked", of(chunked=True)
+    yield "regions-weights", "weights in a stream of kind points in regions", of(**WEIGHTED)
+    yield "regions-region", "a region goes with a partial mesh or a residual", of(region=ALL)
+    yield "regions-scales", "expected one scale", of(grid=CM)
+    yield "regions-part", "is no part of a mesh", of(part=(PLAN, 0))
+    one = lambda: Vector(**REGIONS)
+    point = ("0",) * 3
+    yield "regions-short", "region of 72 bytes, expected 80", one().block(b"REGN", [(bytes(72), "region")]).end()
+    yield "regions-long", "region of 88 bytes, expected 80", one().block(b"REGN", [(bytes(88), "region")]).end()
+    yield "regions-without", "region of 0 bytes, expected 80", one().block(b"REGN", []).end()
+    for name, box in (("flat", (0, 0, 1, 1, 1, 1)), ("turned", (2, 0, 0, 1, 1, 1)), ("infinite", (0, INF, 0, 1, INF, 1)),
+                      ("nan", (0, 0, "nan", 1, 1, 1)), ("nan-above", (0, 0, 0, 1, "nan", 1))):
+        yield "regions-box-" + name, "region 1: the box is empty, or a side is NaN", one().regions(box).end()
+    huge = 2**64 - 1
+    yield "regions-own-huge", "region 1: its points are beyond counting", one().regions(ALL, huge).end()
+    yield "regions-sum-huge", "region 1: its points are beyond counting", one().regions(ALL, 0, 2**63, 2**63).end()
+    yield "regions-total-huge", "region 2 has 1 points of earlier regions", one().regions(LOW).regions(HIGH, huge - 2, 0, 0, 1).end()
+    yield "regions-before-any", "points before the first region", one().points(point).end(1)
+    yield "regions-before-any-empty", "points before the first region", one().points().regions(ALL).end()
+    yield "regions-cells", "may stand here", one().regions(ALL).block(b"CELL", []).end()
+    yield "regions-in-points", "may stand here", Vector(dims=3).regions(ALL, 1).points(point).end(1)
+    yield "regions-few", "region 1 states 2 points, 1 follow", one().regions(LOW, 2).points(point).regions(HIGH).end(2)
+    yield "regions-few-at-end", "region 1 states 2 points, 1 follow", one().regions(LOW, 2).points(point).end(2)
+    yield "regions-none-at-end", "region 1 states 1 points, 0 follow", one().regions(LOW, 1).end(1)
+    yield "regions-many", "region 1 states 1 points, at least 2 follow", one().regions(LOW, 1).points(point, point).end(1)
+    yield "regions-many-later", "region 2 states 0 points, at least 1 follow", one().regions(LOW, 1).points(point).regions(
+        HIGH).points(point).end(1)
+    yield "regions-last-of-none", "region 1 has 1 points of earlier regions, but these share 0", one().regions(
+        LOW, 0, 1, 0, 1).points(point, point).end(1)
+    yield "regions-again-of-none", "region 1 has 2 points of earlier regions, but these share 0", one().regions(
+        LOW, 0, 0, 2).points(point, point).end()
+    shared = lambda: one().regions(LOW, 0, 1).points(point)
+    yield "regions-last-of-final", "region 3 has 1 points of earlier regions, but these share 0", shared().regions(
+        HIGH, last=1).points(point).regions(ALL, last=1).points(point).end(1)
+    yield "regions-again-and-last", "region 2 has 2 points of earlier regions, but these share 1", shared().regions(
+        HIGH, again=1, last=1).points(point, point).end(1)
+    yield "regions-shared-at-end", "END: 1 points that regions share with later ones are in no later one", shared().regions(
+        HIGH, again=1).points(point).end(1)
+    yield "regions-outside-box", "outside of the header's bounding box", Vector(
+        **REGIONS, bounds=(1, 1, 1, 2, 2, 2)).regions(ALL, 1).points(point).end(1)
+    yield "regions-not-finite", "is not finite", one().regions(ALL, 1).points(("nan", "0", "0")).end(1)
+    both = lambda **more: Vector(**REGIONS, **more).regions(LOW, 0, 1).points(point).regions(HIGH, last=1).points(point)
+    yield "regions-end-copies", "END states 2 points, but the stream holds 1", both().end(2)
+    yield "regions-end-header", "another number of points", both(points=2).end(1)
+    yield "regions-no-end", "truncated", both()
 
 
 PLAN = 0x0123456789ABCDEF
@@ -942,7 +1028,7 @@ def failing_parts():
     yield "rest-scales", "expected one scale", rest(grid=UNEVEN).end()
     yield "rest-space-scales", "expected one scale", space(grid=HALF).end()
     yield "rest-constrained", "is not constrained", rest(constrained=(False, 0)).end()
-    yield "rest-weighted", "weights in a residual of a tetrahedral mesh", Vector(
+    yield "rest-weighted", "weights in a stream of kind residual of a tetrahedral mesh", Vector(
         "residual of a tetrahedral mesh", **WEIGHTED, region=(0,) * 3 + (8,) * 3, part=(PLAN, 2)).end()
     yield "rest-patch", 'may stand here', rest().patch().end()
     yield "rest-space-patch", 'may stand here', space().patch().end()
@@ -1065,6 +1151,7 @@ def passing():
     yield from passing_attributes()
     yield from passing_constrained()
     yield from passing_weights()
+    yield from passing_regions()
     yield from passing_parts()
     yield "points-geokeys", "A CRS in GeoTIFF records, one of them empty", Vector(
         grid=HALF, elevation=1,
@@ -1921,7 +2008,7 @@ def failing_configurations(raw):
 SECTIONS = {b"PNTS": "4.2", b"CELL": "4.3", b"PTCH": "4.4", b"LABL": "4.5", b"RPNT": "4.6", b"WALL": "4.7",
             b"PNT4": "4.8", b"CEL4": "4.9", b"SIM4": "4.10", b"CONF": "4.11", b"FUNC": "4.12", b"COEF": "4.13",
             b"attp": "4.14", b"END ": "4.15", b"segm": "4.17", b"side": "4.17", b"open": "4.17",
-            b"from": "4.18", b"kept": "4.18"}
+            b"from": "4.18", b"kept": "4.18", b"REGN": "4.19"}
 
 
 def place_of(name, data):
@@ -1950,7 +2037,7 @@ def files():
         yield "pass/%s.spm" % name, vector.bytes()
         entry = dict(name=name, file="pass/%s.spm" % name, twin="pass/%s.txt" % name, what=title)
         manifest.append(dict(entry, **{"class": "well-formed", "exit_code": 0}))
-    for source in (failing_headers(), failing_streams(), failing_attributes(), failing_constrained(), failing_weights(), failing_parts()):
+    for source in (failing_headers(), failing_streams(), failing_attributes(), failing_constrained(), failing_weights(), failing_parts(), failing_regions()):
         for name, words, vector in source:
             who = " by a reader with memory of cells and vertices" if name in NEED_MEMORY else ""
             too_new = name in TOO_NEW

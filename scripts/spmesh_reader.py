@@ -117,6 +117,7 @@ KINDS = {
     10: ("partial tetrahedral mesh", (3,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
     11: ("residual of a triangle mesh", (2,), ((b"RPNT",), (b"WALL",))),
     12: ("residual of a tetrahedral mesh", (3,), ((b"RPNT",), (b"WALL",))),
+    13: ("points in regions", (3,), ((b"REGN", b"PNTS"),)),
 }
 
 # Bits of a global id: those of the part, and of the number of the vertex.
@@ -159,7 +160,8 @@ class Header:
         self.record = struct.Struct("<%d%s" % (self.axes, "i" if self.is_integer else "d"))
         self.has_knots = self.kind in ("configurations", "splines")
         self.is_residual = self.kind.startswith("residual of ")
-        self.is_mesh = self.kind not in ("points", "points in 4 dimensions") and not self.has_knots
+        self.has_regions = self.kind == "points in regions"
+        self.is_mesh = self.kind not in ("points", "points in 4 dimensions", "points in regions") and not self.has_knots
         self.scale = self.offset = self.tree = self.bounds = self.region = self.wkt = self.geokeys = None
         self.producer, self.attributes, self.constrained, self.weighted, self.part = "", [], None, None, None
         for tag, payload in records.items():
@@ -221,7 +223,7 @@ class Header:
 
     def read_tree(self, payload):
         require(
-            not (self.is_4d or self.has_knots or self.is_residual or self.kind == "partial tetrahedral mesh"),
+            not (self.is_4d or self.has_knots or self.is_residual or self.has_regions or self.kind == "partial tetrahedral mesh"),
             "a stream of kind %s has no finalization tree" % self.kind,
         )
         *origin, side, depth = self.fields("TREE", "%ddI" % (self.dims + 1), payload)
@@ -245,7 +247,7 @@ class Header:
 
     def read_attributes(self, payload):
         self.attributes = attributes_of(Fields(payload))
-        with_attributes = ("points", "triangle mesh", "tetrahedral mesh")
+        with_attributes = ("points", "points in regions", "triangle mesh", "tetrahedral mesh")
         require(
             self.kind in with_attributes or self.kind.startswith("partial ") or self.is_residual,
             "a stream of kind %s has no attributes" % self.kind,
@@ -263,7 +265,7 @@ class Header:
         (greatest,) = self.fields("wght", "d", payload)
         require(
             self.kind in ("points", "tetrahedral mesh") and self.dims == 3,
-            "weights in a %s of %d dimensions" % (self.kind, self.dims),
+            "weights in a stream of kind %s of %d dimensions" % (self.kind, self.dims),
         )
         require(math.isfinite(greatest), "the greatest weight %r, expected a finite number" % greatest)
         self.weighted = greatest
@@ -963,6 +965,8 @@ class Stream:
         self.has_pairs = False
         self.finalized = self.named = self.labels = self.phase = 0
         self.segments, self.open = 0, -1
+        # The number of the region, its points, those of them so far, and points that later regions must have, too.
+        self.region, self.stated, self.found, self.shared = 0, 0, 0, 0
         # What blocks before the next patch say about it, by their tags.
         self.more = {}
 
@@ -1020,6 +1024,7 @@ class Stream:
         readers = {
             b"PNTS": self.points,
             b"CELL": self.tags,
+            b"REGN": self.start_region,
             b"PTCH": self.patch,
             b"segm": self.segment,
             b"side": self.side,
@@ -1106,7 +1111,15 @@ class Stream:
                 self.cells.check(point)
         if self.chunks:
             self.chunks.points(points)
-        self.total["points"] += len(points)
+        if self.header.has_regions:
+            require(self.region, "points before the first region")
+            self.found += len(points)
+            require(
+                self.found <= self.stated,
+                "region %d states %d points, at least %d follow" % (self.region, self.stated, self.found),
+            )
+        else:
+            self.total["points"] += len(points)
         self.text.vertices(points)
 
     def tags(self, payload):
@@ -1224,6 +1237,37 @@ class Stream:
                 before < local and local in final,
                 "vertex %d of the patch is kept for other parts, but not finalized here, or not in order" % local,
             )
+
+    # --- 4.19 REGN
+
+    def start_region(self, payload):
+        require(len(payload) == 80, "region of %d bytes, expected 80" % len(payload))
+        self.end_region()
+        *box, own, first, again, last = struct.unpack("<6d4Q", payload)
+        self.region += 1
+        require(
+            all(low < high for low, high in zip(box[:3], box[3:])),
+            "region %d: the box is empty, or a side is NaN" % self.region,
+        )
+        self.stated, self.found = own + first + again + last, 0
+        self.total["points"] += own + first
+        require(
+            max(self.stated, self.total["points"]) < UNKNOWN,
+            "region %d: its points are beyond counting, at most 2^64 - 2" % self.region,
+        )
+        require(
+            again + last <= self.shared,
+            "region %d has %d points of earlier regions, but these share %d with later ones"
+            % (self.region, again + last, self.shared),
+        )
+        self.shared += first - last
+        self.text.line("region %s %d %d %d %d" % (decimals(box), own, first, again, last))
+
+    def end_region(self):
+        require(
+            self.found == self.stated,
+            "region %d states %d points, %d follow" % (self.region, self.stated, self.found),
+        )
 
     def label(self, payload):
         require(len(payload) % 8 == 0, "%d bytes are not a whole number of records of 8" % len(payload))
@@ -1489,6 +1533,11 @@ class Stream:
         for name, total in stated.items():
             require(total == counted[name], "END states %d %s, but the stream holds %d" % (total, name, counted[name]))
         require(self.header.points in (UNKNOWN, stated["points"]), "END: the header states another number of points")
+        self.end_region()
+        require(
+            not self.shared,
+            "END: %d points that regions share with later ones are in no later one" % self.shared,
+        )
         cells = counted["simplices"]
         require(self.neighbour < cells, "END: a cell has the neighbour %d of %d cells" % (self.neighbour, cells))
         if self.chunks:

@@ -7,7 +7,7 @@ mod spool;
 mod thin;
 
 use spmesh_base::error::{Error, ErrorKind, Result};
-use spmesh_pipeline::finalize::{Budget, Leaves, Options, Order, Spooling, Stats, run};
+use spmesh_pipeline::finalize::{Budget, InRegions, Leaves, Options, Order, Spooling, Stats, run};
 use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, StreamReader};
 
@@ -26,6 +26,7 @@ fn options(leaves: Leaves, order: Order) -> Options {
         budget,
         temp_dir: None,
         spooling: Spooling::Auto,
+        regions: InRegions::NEVER,
         weighted: None,
     }
 }

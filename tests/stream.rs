@@ -7,6 +7,7 @@ mod configurations;
 mod four;
 mod newer;
 mod random;
+mod regions;
 mod skipped;
 mod tools4;
 
@@ -54,6 +55,7 @@ fn write_rows(header: &Header, events: &[Event], rows: &[Vec<u8>]) -> Result<Vec
         match event {
             Event::Points(points) => writer.points_with_rows(points, rows)?,
             Event::Cells(cells) => writer.cells(cells)?,
+            Event::Region(region) => writer.region(region)?,
             Event::Patch(patch) => writer.patch_with_rows(patch, rows)?,
             Event::Labels(labels) => writer.labels(labels)?,
             Event::ResidualPoints(points) => writer.residual_points_with_rows(points, rows)?,

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use super::configurations::{Claim, FARAWAY};
+use super::regions::RegionInventory;
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::model::cells4::Point4;
@@ -27,6 +28,7 @@ pub struct Inventory {
     four: Inventory4,
     configurations: ConfigurationInventory,
     constraints: ConstraintInventory,
+    regions: RegionInventory,
 }
 
 /// Size of a patch.
@@ -68,6 +70,7 @@ impl Inventory {
             four: Inventory4::default(),
             configurations: ConfigurationInventory::default(),
             constraints: ConstraintInventory::default(),
+            regions: RegionInventory::default(),
         }
     }
 
@@ -80,12 +83,18 @@ impl Inventory {
         match event {
             Event::Points(points) => {
                 self.extend(points.iter().copied());
-                self.totals.points += points.len() as u64;
+                if self.regions.regions == 0 {
+                    self.totals.points += points.len() as u64;
+                }
                 self.run += points.len() as u64;
             }
             Event::Cells(cells) => {
                 self.totals.cells += cells.len() as u64;
                 self.end_run();
+            }
+            Event::Region(region) => {
+                self.regions.region(region);
+                self.totals.points = self.totals.points.saturating_add(region.new_points());
             }
             Event::Patch(patch) => {
                 self.patch(patch);
@@ -120,6 +129,11 @@ impl Inventory {
     /// The configurations.
     pub fn configurations(&self) -> &ConfigurationInventory {
         &self.configurations
+    }
+
+    /// The regions of points.
+    pub fn regions(&self) -> RegionInventory {
+        self.regions
     }
 
     /// What constrains a triangle mesh.

@@ -79,6 +79,7 @@ mod partial_triangles;
 mod point_set;
 mod point_tree;
 mod points;
+mod regions;
 mod residual_fit;
 mod tetrahedra;
 mod triangles;
@@ -92,6 +93,7 @@ pub use inventory::{
     PatchSize,
 };
 pub use point_set::PointSet;
+pub use regions::RegionInventory;
 pub use tetrahedra::{Census, Counts, Faults};
 pub use triangles::Standard;
 
@@ -164,6 +166,12 @@ impl Audit {
             }
             Kind::TetrahedralMesh => {
                 (State::Tetrahedra(TetrahedraAudit::new(header, standard)), TETRAHEDRA_CHECKS.to_vec())
+            }
+            Kind::RegionPoints => {
+                let kind = header.kind.name();
+                let message =
+                    format!("a stream of {kind} claims nothing that takes a proof: leave --audit away");
+                return Err(Error::usage(message));
             }
             Kind::Points4
             | Kind::Cells4

@@ -20,3 +20,5 @@ pub mod plan;
 #[cfg(feature = "files")]
 pub mod polygons;
 pub mod reduce;
+#[cfg(feature = "files")]
+mod regions;

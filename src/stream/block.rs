@@ -16,6 +16,7 @@ const COMPRESSED: u32 = 1 << 31;
 pub(super) enum Tag {
     Points,
     Cells,
+    Region,
     Patch,
     Labels,
     ResidualPoints,
@@ -35,9 +36,10 @@ pub(super) enum Tag {
     End,
 }
 
-const NAMES: [(Tag, TagBytes); 19] = [
+const NAMES: [(Tag, TagBytes); 20] = [
     (Tag::Points, *b"PNTS"),
     (Tag::Cells, *b"CELL"),
+    (Tag::Region, *b"REGN"),
     (Tag::Patch, *b"PTCH"),
     (Tag::Labels, *b"LABL"),
     (Tag::ResidualPoints, *b"RPNT"),

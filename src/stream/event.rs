@@ -4,6 +4,7 @@ use super::configurations::ConfigurationBlock;
 use super::constraints::Segment;
 use super::part::Origin;
 use super::points4::Points4;
+use super::regions::PointRegion;
 use crate::model::bounds::Point;
 use crate::model::cells::CellCode;
 use crate::model::cells4::Cells4;
@@ -17,6 +18,8 @@ pub enum Event {
     Points(Vec<Point>),
     /// Cells that no later point of the stream lies in.
     Cells(Vec<CellCode>),
+    /// A region. Its points follow: those up to the next region, or up to the end.
+    Region(PointRegion),
     /// A piece of the mesh.
     Patch(Patch),
     /// Labels of the next vertices without a label, in the order of their ids. Their meaning is up to the
@@ -135,8 +138,8 @@ fn is_increasing<T: PartialOrd>(values: &[T]) -> bool {
 /// The totals of the whole stream, as END states them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
-    /// Points. For a points stream, those in it. For a mesh, those of the input: its vertices, its merged
-    /// points, and its residual points that are no vertices.
+    /// Points. For a points stream, those in it; for one of regions, each point once. For a mesh, those of the
+    /// input: its vertices, its merged points, and its residual points that are no vertices.
     pub points: u64,
     /// Cell tags.
     pub cells: u64,

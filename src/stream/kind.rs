@@ -31,6 +31,9 @@ pub enum Kind {
     TriangleResidual,
     /// The residual of a part of a tetrahedral mesh, whose final tetrahedra are in a stream of their own.
     TetrahedralResidual,
+    /// Points of space in regions that overlap, one region after the other. A point of several regions is in
+    /// the stream once for each of them.
+    RegionPoints,
 }
 
 struct Row {
@@ -43,7 +46,7 @@ struct Row {
     blocks: &'static [&'static [Tag]],
 }
 
-const ROWS: [Row; 12] = [
+const ROWS: [Row; 13] = [
     Row {
         kind: Kind::Points,
         code: 1,
@@ -140,6 +143,14 @@ const ROWS: [Row; 12] = [
         vertices_per_simplex: 4,
         blocks: &[&[Tag::ResidualPoints], &[Tag::Walls]],
     },
+    Row {
+        kind: Kind::RegionPoints,
+        code: 13,
+        name: "points in regions",
+        dims: &[3],
+        vertices_per_simplex: 0,
+        blocks: &[&[Tag::Region, Tag::Points]],
+    },
 ];
 
 impl Kind {
@@ -179,7 +190,7 @@ impl Kind {
 
     /// Whether END counts vertices and merged points besides points. Knots of configurations count as points.
     pub fn has_vertices(self) -> bool {
-        !matches!(self, Kind::Points | Kind::Points4) && !self.has_knots()
+        !matches!(self, Kind::Points | Kind::RegionPoints | Kind::Points4) && !self.has_knots()
     }
 
     /// Whether the points are knots, followed by their configurations.
@@ -197,14 +208,15 @@ impl Kind {
         matches!(self, Kind::TriangleResidual | Kind::TetrahedralResidual)
     }
 
-    /// Whether the header states a region.
+    /// Whether the header states a region, which all points of the stream lie in.
     pub fn has_region(self) -> bool {
         self.is_partial() || self.is_residual()
     }
 
     /// Whether the header may have a finalization tree.
     pub fn may_have_tree(self) -> bool {
-        !self.is_4d() && !self.has_knots() && !self.is_residual() && self != Kind::PartialTetrahedralMesh
+        let is_without = matches!(self, Kind::PartialTetrahedralMesh | Kind::RegionPoints);
+        !self.is_4d() && !self.has_knots() && !self.is_residual() && !is_without
     }
 
     /// Vertices of a simplex of a patch; 0 where the kind holds no patches.
@@ -219,7 +231,7 @@ impl Kind {
 
     /// Whether points of such a stream may carry attributes.
     pub fn may_have_attributes(self) -> bool {
-        self == Kind::Points || self.vertices_per_simplex() > 0
+        matches!(self, Kind::Points | Kind::RegionPoints) || self.vertices_per_simplex() > 0
     }
 
     /// Whether a block of tag `tag` may follow one of tag `last` (`None` at the start) in such a stream.

@@ -15,6 +15,7 @@
 //!   reader alone cannot check.
 //! - A triangle mesh may be [`Constrained`]: [`Segment`]s are then chains of its edges, which the sides of
 //!   [`Patch`]es name.
+//! - Points of space may come in overlapping [`PointRegion`]s, each of which a consumer can take alone.
 //! - Points of space may be [`Weighted`]: a mesh of them is a regular tetrahedralization.
 //! - [`ConfigurationSet`] and [`read_diagram4`] hold whole streams in memory, for consumers that need all at
 //!   once.
@@ -85,6 +86,7 @@ mod patch_blocks;
 mod payload;
 mod points4;
 mod reader;
+mod regions;
 mod rules4;
 mod surface;
 mod tag_rules;
@@ -121,6 +123,7 @@ pub use payload::{check_place, decode_points};
 pub use points4::Points4;
 pub use points4::check_value;
 pub use reader::StreamReader;
+pub use regions::PointRegion;
 pub use rules4::{check_neighbour_count, check_vertex_count};
 pub use surface::check_surface;
 pub use tail::ends_with_end;

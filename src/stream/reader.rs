@@ -15,6 +15,7 @@ use super::header::Header;
 use super::part;
 use super::payload;
 use super::points4::{self, Points4};
+use super::regions::PointRegion;
 use super::tally::Tally;
 use super::weights::Weights;
 use crate::model::bounds::{Bounds, Point};
@@ -361,6 +362,7 @@ impl<R: Read> StreamReader<R> {
                 return Ok(Event::Points(points));
             }
             Tag::Cells => Event::Cells(payload::cells(header, payload)?),
+            Tag::Region => Event::Region(PointRegion::decode(payload)?),
             Tag::Patch => {
                 let Patch { sides, origins, kept, .. } = more;
                 let patch = payload::patch(header, totals.vertices, payload)?;

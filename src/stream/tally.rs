@@ -8,6 +8,7 @@ use super::functions::{self, FunctionRules};
 use super::header::Header;
 use super::kind::Kind;
 use super::part::{PartName, check_shared};
+use super::regions::RegionRules;
 use super::rules4::Rules4;
 use crate::model::bounds::Bounds;
 use spmesh_base::error::{Error, Result};
@@ -29,6 +30,8 @@ pub struct Tally {
     function_rules: FunctionRules,
     constraint_rules: ConstraintRules,
     chunks: Option<ChunkCheck>,
+    /// In a stream of regions.
+    regions: Option<RegionRules>,
 }
 
 impl Tally {
@@ -51,6 +54,7 @@ impl Tally {
             function_rules: FunctionRules::default(),
             constraint_rules: ConstraintRules::default(),
             chunks,
+            regions: RegionRules::of(header),
         }
     }
 
@@ -64,7 +68,7 @@ impl Tally {
     ///
     /// # Errors
     /// Malformed, if a chunk holds points of several cells, if there are more labels than vertices so far, or
-    /// if constraints, four-dimensional data, configurations or functions break a rule.
+    /// if regions, constraints, four-dimensional data, configurations or functions break a rule.
     pub fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
@@ -76,6 +80,10 @@ impl Tally {
                 if let Some(chunks) = &mut self.chunks {
                     chunks.cells(cells);
                 }
+            }
+            Event::Region(region) => {
+                let regions = self.regions.as_mut().expect("the kind has regions");
+                regions.region(region, &mut self.totals)?;
             }
             Event::Patch(patch) => {
                 self.constraint_rules.sides(patch)?;
@@ -118,7 +126,10 @@ impl Tally {
 
     /// Counts points with the given bounding box.
     pub(crate) fn count_points(&mut self, count: usize, bounds: Option<Bounds>) -> Result<()> {
-        self.totals.points += count as u64;
+        match &mut self.regions {
+            Some(regions) => regions.points(count as u64)?,
+            None => self.totals.points += count as u64,
+        }
         match (&mut self.chunks, bounds) {
             (Some(chunks), Some(bounds)) => chunks.points(bounds),
             _ => Ok(()),
@@ -179,6 +190,7 @@ impl Tally {
             functions::check_end(&counted)?;
         }
         self.configuration_rules.check_end()?;
+        self.regions.as_ref().map_or(Ok(()), |regions| regions.check_end(header.points, &counted))?;
         self.rules4.check_end(&counted)?;
         self.chunks.as_ref().map_or(Ok(()), ChunkCheck::end)
     }

@@ -35,7 +35,11 @@ impl Weighted {
     /// Checks that a stream with this header can have weights.
     pub(super) fn check(self, header: &Header) -> std::result::Result<(), String> {
         if !(matches!(header.kind, Kind::Points | Kind::TetrahedralMesh) && header.dims == 3) {
-            return Err(format!("weights in a {} of {} dimensions", header.kind.name(), header.dims));
+            return Err(format!(
+                "weights in a stream of kind {} of {} dimensions",
+                header.kind.name(),
+                header.dims
+            ));
         }
         if !self.greatest.is_finite() {
             return Err(format!("the greatest weight {}, expected a finite number", self.greatest));

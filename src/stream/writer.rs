@@ -6,6 +6,7 @@ mod encode;
 mod four;
 mod functions;
 mod parts;
+mod regions;
 mod residual;
 mod rows;
 
@@ -20,6 +21,7 @@ use super::functions::{FunctionRules, check_end};
 use super::header::Header;
 use super::kind::Kind;
 use super::patch_blocks::PatchBlocks;
+use super::regions::RegionRules;
 use super::rules4::Rules4;
 use crate::model::bounds::Point;
 use crate::model::cells::CellCode;
@@ -55,6 +57,8 @@ pub struct StreamWriter<W: Write> {
     configuration_rules: ConfigurationRules,
     function_rules: FunctionRules,
     constraint_rules: ConstraintRules,
+    /// In a stream of regions.
+    region_rules: Option<RegionRules>,
     waiting: Option<configurations::Waiting>,
 }
 
@@ -67,6 +71,7 @@ impl<W: Write> StreamWriter<W> {
         output.write_all(&header.encode()?).map_err(write_error)?;
         let rules4 = Rules4::new(header.kind);
         let configuration_rules = ConfigurationRules::new(header.kind);
+        let region_rules = RegionRules::of(&header);
         Ok(StreamWriter {
             output,
             compressor: header.compressed.then(Compressor::default),
@@ -83,6 +88,7 @@ impl<W: Write> StreamWriter<W> {
             configuration_rules,
             function_rules: FunctionRules::default(),
             constraint_rules: ConstraintRules::default(),
+            region_rules,
             waiting: None,
         })
     }
@@ -105,9 +111,11 @@ impl<W: Write> StreamWriter<W> {
     /// Appends points to a points stream without attributes.
     ///
     /// # Errors
-    /// If a coordinate does not fit the encoding of the header, or writing fails.
+    /// If a coordinate does not fit the encoding of the header, a region gets more points than it states, or
+    /// writing fails.
     pub fn points(&mut self, points: &[Point]) -> Result<()> {
         self.expect_no_attributes();
+        self.count_points(points.len())?;
         let point_len = self.header.point_len();
         let mut rest = points;
         while !rest.is_empty() {
@@ -119,18 +127,18 @@ impl<W: Write> StreamWriter<W> {
                 self.flush_points()?;
             }
         }
-        self.totals.points += points.len() as u64;
         Ok(())
     }
 
     /// Appends points that [`encode_points`] has encoded to a stream without attributes.
     ///
     /// # Errors
-    /// If writing fails.
+    /// If a region gets more points than it states, or writing fails.
     pub fn encoded_points(&mut self, bytes: &[u8]) -> Result<()> {
         self.expect_no_attributes();
         let point_len = self.header.point_len();
         debug_assert!(bytes.len().is_multiple_of(point_len));
+        self.count_points(bytes.len() / point_len)?;
         let mut rest = bytes;
         while !rest.is_empty() {
             let capacity = (POINTS_PAYLOAD - self.points.len()) / point_len * point_len;
@@ -141,7 +149,6 @@ impl<W: Write> StreamWriter<W> {
                 self.flush_points()?;
             }
         }
-        self.totals.points += (bytes.len() / point_len) as u64;
         Ok(())
     }
 
@@ -266,7 +273,7 @@ impl<W: Write> StreamWriter<W> {
     ///
     /// # Errors
     /// Malformed, if a 4D cell names a neighbour that does not exist, a spline lacks coefficients or
-    /// configurations, or a total is beyond counting; I/O, if writing or flushing fails.
+    /// configurations, regions lack points, or a total is beyond counting; I/O, if writing or flushing fails.
     pub fn end(mut self, input_points: u64, merged: u64) -> Result<W> {
         assert!(self.labels == 0 || self.labels == self.totals.vertices, "all vertices have labels, or none");
         self.flush_points()?;
@@ -276,6 +283,9 @@ impl<W: Write> StreamWriter<W> {
             check_end(&self.totals)?;
         }
         self.configuration_rules.check_end()?;
+        if let Some(rules) = &self.region_rules {
+            rules.check_end(self.header.points, &self.totals)?;
+        }
         if self.header.kind.has_vertices() {
             self.totals.points = input_points;
             self.totals.merged = merged;

@@ -13,7 +13,7 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::temporary::TemporaryFile;
 use spmesh_formats::raster::Grid;
 use spmesh_formats::source::{Description, PointReader};
-use spmesh_pipeline::finalize::{Budget, CELL_POINTS, Leaves, Order, Passes, Spooling};
+use spmesh_pipeline::finalize::{Budget, CELL_POINTS, InRegions, Leaves, Order, Passes, Spooling};
 use spmesh_pipeline::reduce::Duplicates;
 use spmesh_stream::StreamReader;
 
@@ -99,6 +99,7 @@ impl Settings {
             budget: Budget::of_process(*memory, *threads)?,
             temp_dir: temp_dir.clone(),
             spooling: Spooling::Never,
+            regions: InRegions::NEVER,
             weighted: None,
         };
         let points =

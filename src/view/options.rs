@@ -157,6 +157,12 @@ pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Re
              in space"
         ));
     }
+    if kind == Kind::RegionPoints {
+        return refuse(format!(
+            "this is a stream of kind {}, expected points or a triangle mesh",
+            kind.name()
+        ));
+    }
     if kind.has_knots() {
         return check_of_knots(options, moments);
     }

@@ -2,7 +2,7 @@
 
 use num_bigint::BigInt;
 use num_traits::Signed;
-use spmesh_delaunay::predicates::sphere::SphereBounds;
+use spmesh_delaunay::predicates::sphere::{SphereBounds, centre_is_inside};
 use spmesh_stream::model::bounds::Region;
 
 use spmesh_reference::sets::Random;
@@ -204,4 +204,63 @@ fn extreme_tetrahedra_are_never_claimed() {
         finite.sides()
     ));
     assert!(SphereBounds::FLOAT.power_ball_inside(corner(1.0), [1.0, 2.0, 3.0, -7.0], 3.0, finite.sides()));
+}
+
+/// Whether the coordinate of the centre is at least `side`, a multiple of 2^-20, by definition.
+fn is_from(side: f64, axis: usize, corners: [Corner; 4], ball: &Ball) -> bool {
+    let steps = BigInt::from((side * f64::from(1 << 20)) as i128);
+    &ball.m[axis] * (1 << 20) >= &ball.volume * 2 * (steps - BigInt::from(corners[0][axis]) * (1 << 20))
+}
+
+#[test]
+fn centres_are_placed_exactly() {
+    let mut random = Random::new(77);
+    let mut ties = 0;
+    for round in 0..6_000 {
+        let reach = [3, 12, 4_000, 1 << 30][round % 4];
+        let mut coordinate = || (random.bits() % (2 * reach + 1)) as i64 - reach as i64;
+        let mut corners = [0; 4].map(|_| [0; 3].map(|_| coordinate()));
+        let Some(ball) = ball(Weighted::equal(corners)) else { continue };
+        let floats = |corners: [Corner; 4]| corners.map(|p| p.map(|c| c as f64));
+        if orient3d(corners) < 0 {
+            corners.swap(2, 3);
+        }
+        for bounds in [SphereBounds::FLOAT, SphereBounds::INTEGER] {
+            let about = bounds.centre(floats(corners));
+            for axis in 0..3 {
+                let middle = about.map_or(0.0, |centre| (centre.at[axis] * 4.0).round() / 4.0);
+                for side in [-1.0, -0.25, 0.0, 0.25, 1.0].map(|off| middle + off) {
+                    let mut region = [[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]];
+                    region[0][axis] = side;
+                    let is_above = centre_is_inside(bounds, floats(corners), region);
+                    region[1][axis] = side;
+                    region[0][axis] = f64::NEG_INFINITY;
+                    let is_below = centre_is_inside(bounds, floats(corners), region);
+                    assert_eq!(is_above, is_from(side, axis, corners, &ball), "{corners:?} {axis} {side}");
+                    assert_ne!(is_above, is_below, "a side belongs to the box above it");
+                    ties += usize::from(is_above && !is_from(side + 0.5f64.powi(20), axis, corners, &ball));
+                }
+                if let Some(centre) = about.filter(|_| reach <= 4_000) {
+                    let steps = |place: f64| (place * f64::from(1 << 20)) / f64::from(1 << 20);
+                    let off = centre.error[axis] + 0.5f64.powi(18);
+                    assert!(
+                        is_from(steps(centre.at[axis] - off), axis, corners, &ball),
+                        "{corners:?} {axis}"
+                    );
+                    assert!(
+                        !is_from(steps(centre.at[axis] + off), axis, corners, &ball),
+                        "{corners:?} {axis}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(ties > 1_000, "{ties} centres on sides");
+}
+
+fn orient3d(corners: [Corner; 4]) -> i128 {
+    let [a, b, c, d] = corners;
+    let [b, c, d] = [b, c, d].map(|p| [0, 1, 2].map(|axis| i128::from(p[axis] - a[axis])));
+    let minor = |i: usize, j: usize| c[i] * d[j] - c[j] * d[i];
+    (b[0] * minor(1, 2) + b[1] * minor(2, 0) + b[2] * minor(0, 1)).signum()
 }

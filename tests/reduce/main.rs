@@ -7,6 +7,7 @@ mod equality;
 mod failures;
 mod parts;
 mod policies;
+mod regions;
 mod shapes;
 mod solids;
 mod space;

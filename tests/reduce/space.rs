@@ -24,7 +24,7 @@ const TAGGINGS: [Tagging; 9] = [
 ];
 
 /// Runs the exact audit, which uses neither the predicates nor the kernels.
-fn assert_proven(mesh: &[u8], points: &[Point], coordinates: Coordinates) {
+pub fn assert_proven(mesh: &[u8], points: &[Point], coordinates: Coordinates) {
     let mut given = PointSet::new(coordinates, 3);
     given.extend(points);
     let given = given.finish(&coordinates).unwrap();

@@ -2,14 +2,14 @@
 
 use spmesh_stream::model::bounds::{Bounds, Point, Region};
 use spmesh_stream::model::cells::{CellCode, CellTree};
-use spmesh_stream::{Coordinates, Crs, Event, Header, Kind, Patch};
+use spmesh_stream::{Coordinates, Crs, Event, Header, Kind, Patch, PointRegion};
 
 use super::{Random, attributes, write_rows};
 
 /// A header with random fields, and coordinates that suit all of them.
 fn random_header(random: &mut Random, kind: Kind) -> (Header, CellTree) {
     let dims = match kind {
-        Kind::TetrahedralMesh | Kind::PartialTetrahedralMesh => 3,
+        Kind::TetrahedralMesh | Kind::PartialTetrahedralMesh | Kind::RegionPoints => 3,
         Kind::Points if random.coin() => 3,
         _ => 2,
     };
@@ -60,6 +60,41 @@ fn random_points(random: &mut Random, header: &Header, tree: &CellTree) -> Vec<E
         cells.dedup();
         events.extend([Event::Points(points), Event::Cells(cells)]);
         points = rest;
+    }
+    events
+}
+
+/// Points that each lie in one or several of a few regions, region by region.
+fn random_regions(random: &mut Random, header: &Header) -> Vec<Event> {
+    let count = random.below(6);
+    let points: Vec<(Point, Vec<usize>)> = (0..if count == 0 { 0 } else { random.below(200) })
+        .map(|_| {
+            let mut regions: Vec<usize> = (0..count).filter(|_| random.below(4) == 0).collect();
+            if regions.is_empty() {
+                regions.push(random.below(count));
+            }
+            (random_point(random, header), regions)
+        })
+        .collect();
+    let mut events = Vec::new();
+    for region in 0..count {
+        // Own points, then those that come first, again, and last.
+        let mut groups: [Vec<Point>; 4] = Default::default();
+        for (point, regions) in points.iter().filter(|(_, regions)| regions.contains(&region)) {
+            let group = match (regions[0] == region, regions[regions.len() - 1] == region) {
+                (true, true) => 0,
+                (true, false) => 1,
+                (false, false) => 2,
+                (false, true) => 3,
+            };
+            groups[group].push(*point);
+        }
+        let [own, first, again, last] = groups.each_ref().map(|group| group.len() as u64);
+        let low = random_point(random, header);
+        let bounds =
+            Region { min: [f64::NEG_INFINITY, low[1], low[2]], max: [low[0], low[1] + 1.5, f64::INFINITY] };
+        events.push(Event::Region(PointRegion { bounds, own, first, again, last }));
+        events.push(Event::Points(groups.concat()));
     }
     events
 }
@@ -123,11 +158,13 @@ pub(super) fn random_stream(seed: u64) -> (Header, Vec<Event>, Vec<u8>) {
         Kind::PartialTriangleMesh,
         Kind::TetrahedralMesh,
         Kind::PartialTetrahedralMesh,
+        Kind::RegionPoints,
     ];
     let kind = kinds[random.below(kinds.len())];
     let (mut header, tree) = random_header(&mut random, kind);
     let events = match kind {
         Kind::Points => random_points(&mut random, &header, &tree),
+        Kind::RegionPoints => random_regions(&mut random, &header),
         _ => random_mesh(&mut random, &header),
     };
     let mut points = Vec::new();
@@ -141,8 +178,18 @@ pub(super) fn random_stream(seed: u64) -> (Header, Vec<Event>, Vec<u8>) {
             _ => {}
         }
     }
-    let merged = if kind == Kind::Points { 0 } else { random.below(9) as u64 };
-    let input_points = points.len() as u64 + merged;
+    let counted = events.iter().map(|event| match event {
+        Event::Region(region) => region.new_points(),
+        _ => 0,
+    });
+    let (input_points, merged) = match kind {
+        Kind::Points => (points.len() as u64, 0),
+        Kind::RegionPoints => (counted.sum(), 0),
+        _ => {
+            let merged = random.below(9) as u64;
+            (points.len() as u64 + merged, merged)
+        }
+    };
     header.points = random.coin().then_some(input_points);
     header.bounds = if random.coin() { Bounds::of_points(&points) } else { None };
     let end = spmesh_stream::Totals { points: input_points, merged, ..Default::default() };

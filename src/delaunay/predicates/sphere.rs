@@ -38,10 +38,13 @@
 //!   `u` of itself, and the sum of both is rounded: `6 u n_p`, for exact differences of coordinates `4 u
 //!   n_p`. So the constants of the numerators are greater by one. The radius is the root of `|o|^2 + W -
 //!   w_a`, which grows no faster than `|o|`; four more roundings below the root are less than `8 u` of it.
+//! * *Place of the centre*: `a + o` is rounded once, below `u` times the sum of the magnitudes; `2 u` times
+//!   that sum covers it.
 //! * *Sides*: `a + o + r` is summed in floating point with three roundings, each below `u` times the sum of
 //!   the magnitudes; `4 u` times that sum covers them.
 
-use super::Point3;
+use super::{Point3, exact_integers, forms};
+use num_bigint::BigInt;
 
 const U: f64 = f64::EPSILON / 2.0;
 const SLACK: f64 = 1.0 + 1e-6;
@@ -111,25 +114,38 @@ impl SphereBounds {
         bounds.is_inside(a, vectors, lifts, greatest - weights[0], region)
     }
 
-    /// The test for a tetrahedron of `a` and three vectors, with the lift of each and the sum of the
-    /// magnitudes that it is made of. `excess` is added to the squared radius.
+    /// The centre of the sphere through four points, and how far off it may be; `None` if it cannot be told.
+    #[inline]
+    pub fn centre(self, [a, b, c, d]: [Point3; 4]) -> Option<Centre> {
+        let vectors = [b, c, d].map(|point| difference(point, a));
+        let lifts = vectors.map(|vector| {
+            let lift = square(vector);
+            (lift, lift)
+        });
+        let (o, e) = self.offset(vectors, lifts)?;
+        let error = std::array::from_fn(|axis| e[axis] + 2.0 * U * (a[axis].abs() + o[axis].abs()) * SLACK);
+        let margin = (e[0] + e[1] + e[2]) * SLACK;
+        let radius = square(o).sqrt();
+        let radii = [radius * (1.0 - 8.0 * U) - margin, radius * (1.0 + 8.0 * U) + margin];
+        Some(Centre { at: std::array::from_fn(|axis| a[axis] + o[axis]), error, radii })
+    }
+
+    /// The centre relative to `a` of a tetrahedron of `a` and three vectors, with the lift of each and the sum
+    /// of the magnitudes that it is made of, and the errors along the axes. `None` if the bounds do not hold.
     #[inline(always)]
-    fn is_inside(
+    fn offset(
         self,
-        a: Point3,
         [b, c, d]: [Point3; 3],
         [(p, n_p), (q, n_q), (r, n_r)]: [(f64, f64); 3],
-        excess: f64,
-        region: [[f64; 3]; 2],
-    ) -> bool {
+    ) -> Option<(Point3, Point3)> {
         let ((x, n_x), (y, n_y), (z, n_z)) = (cross(c, d), cross(d, b), cross(b, c));
         let volume = b[0] * x[0] + b[1] * x[1] + b[2] * x[2];
         let n_volume = b[0].abs() * n_x[0] + b[1].abs() * n_x[1] + b[2].abs() * n_x[2];
         let e_volume = self.volume * n_volume + UNDERFLOW;
-        let is_sound = [n_p, n_q, n_r].iter().all(|square| SQUARES.contains(square)) && excess < SQUARES.end;
-        // Written so that a NaN anywhere answers false.
+        let is_sound = [n_p, n_q, n_r].iter().all(|square| SQUARES.contains(square));
+        // Written so that a NaN anywhere gives nothing.
         if !(is_sound && volume.abs() > 2.0 * e_volume) {
-            return false;
+            return None;
         }
         let per_volume = 1.0 / (2.0 * volume);
         let per_margin = 1.0 / (2.0 * (volume.abs() - e_volume));
@@ -142,6 +158,21 @@ impl SphereBounds {
             let quotient = (e_m + 2.0 * o[axis].abs() * e_volume) * per_margin;
             e[axis] = (quotient + 2.0 * U * o[axis].abs()) * SLACK;
         }
+        Some((o, e))
+    }
+
+    /// The test for a tetrahedron of `a` and three vectors, with the lift of each and the sum of the
+    /// magnitudes that it is made of. `excess` is added to the squared radius.
+    #[inline(always)]
+    fn is_inside(
+        self,
+        a: Point3,
+        vectors: [Point3; 3],
+        lifts: [(f64, f64); 3],
+        excess: f64,
+        region: [[f64; 3]; 2],
+    ) -> bool {
+        let Some((o, e)) = self.offset(vectors, lifts).filter(|_| excess < SQUARES.end) else { return false };
         let radius = (square(o) + excess).sqrt() * (1.0 + 8.0 * U) + (e[0] + e[1] + e[2]) * SLACK;
         (0..3).all(|axis| {
             let reach = radius + e[axis];
@@ -150,6 +181,53 @@ impl SphereBounds {
             centre - reach - rounding > region[0][axis] && centre + reach + rounding < region[1][axis]
         })
     }
+}
+
+/// The centre of the sphere through four points, as floating point tells it.
+#[derive(Debug, Clone, Copy)]
+pub struct Centre {
+    /// About where it is.
+    pub at: Point3,
+    /// How far off it may be, along each axis.
+    pub error: Point3,
+    /// The least and the greatest that the radius may be.
+    pub radii: [f64; 2],
+}
+
+/// Whether the centre of the sphere through the corners of a tetrahedron that is positively oriented lies in a
+/// half-open `region`: on its lower sides, or inside. Exact for all finite coordinates.
+///
+/// A region's sides are not NaN.
+pub fn centre_is_inside(bounds: SphereBounds, corners: [Point3; 4], region: [[f64; 3]; 2]) -> bool {
+    let about = bounds.centre(corners);
+    (0..3).all(|axis| {
+        let is_from = |side: f64| match about {
+            _ if side == f64::NEG_INFINITY => true,
+            _ if side == f64::INFINITY => false,
+            Some(Centre { at, error, .. }) if at[axis] - error[axis] > side => true,
+            Some(Centre { at, error, .. }) if at[axis] + error[axis] < side => false,
+            _ => centre_is_from(side, axis, corners),
+        };
+        is_from(region[0][axis]) && !is_from(region[1][axis])
+    })
+}
+
+/// Whether the coordinate of the centre is `side` or more, by big integers: with the vectors from a and their
+/// squares p, q, r as in the module's text, whether m is at least 2 v (side - a).
+#[cold]
+fn centre_is_from(side: f64, axis: usize, [a, b, c, d]: [Point3; 4]) -> bool {
+    let mut place = a;
+    place[axis] = side;
+    let [a, b, c, d, place] = exact_integers::integers([a, b, c, d, place]);
+    let from_a = |point: [BigInt; 3]| -> [BigInt; 3] {
+        let mut axes = point.into_iter().zip(&a).map(|(coordinate, origin)| coordinate - origin);
+        std::array::from_fn(|_| axes.next().expect("three axes"))
+    };
+    let [b, c, d, place] = [b, c, d, place].map(from_a);
+    let (x, y, z) = (forms::cross(&c, &d), forms::cross(&d, &b), forms::cross(&b, &c));
+    let volume = forms::dot(&b, &x);
+    let numerator = forms::lift(&b) * &x[axis] + forms::lift(&c) * &y[axis] + forms::lift(&d) * &z[axis];
+    numerator >= volume * 2 * &place[axis]
 }
 
 #[inline(always)]

@@ -27,6 +27,7 @@ impl<W: Write> EventSink for SpmSink<W> {
         match event {
             Event::Points(points) => writer.points_with_rows(points, rows),
             Event::Cells(cells) => writer.cells(cells),
+            Event::Region(region) => writer.region(region),
             Event::Patch(patch) => writer.patch_with_rows(patch, rows),
             Event::Labels(labels) => writer.labels(labels),
             Event::ResidualPoints(points) => writer.residual_points_with_rows(points, rows),

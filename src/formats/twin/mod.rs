@@ -5,6 +5,7 @@ pub(crate) mod read;
 pub(crate) mod read4;
 pub(crate) mod read_configurations;
 pub(crate) mod read_functions;
+pub(crate) mod regions;
 pub(crate) mod rows;
 pub(crate) mod statements;
 pub(crate) mod tokens;

@@ -15,7 +15,7 @@ use spmesh_base::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::model::cells::CellCode;
 use spmesh_stream::{
-    ConfigurationBlock, Event, GlobalId, Header, Kind, Origin, Patch, Segment, Tally, Totals,
+    ConfigurationBlock, Event, GlobalId, Header, Kind, Origin, Patch, PointRegion, Segment, Tally, Totals,
     check_residual_id,
 };
 
@@ -49,6 +49,8 @@ enum Group {
     Empty,
     Points(Vec<Point>),
     Cells(Vec<CellCode>),
+    /// Its one line.
+    Region(Option<PointRegion>),
     Patch(PatchLines),
     Labels(Vec<u64>),
     Segments(Vec<Segment>),
@@ -184,7 +186,7 @@ impl<R: Read> TwinSource<R> {
         }
         self.check_rows()?;
         let is_mesh = self.header.kind.vertices_per_simplex() > 0 && !self.header.kind.is_residual();
-        let is_points = self.header.kind == Kind::Points
+        let is_points = matches!(self.header.kind, Kind::Points | Kind::RegionPoints)
             || self.header.kind.has_knots() && !self.open.is_begun() && !self.has_functions();
         let is_partial = self.header.kind.has_region();
         let is_tetrahedral = self.header.kind == Kind::TetrahedralMesh;
@@ -194,6 +196,7 @@ impl<R: Read> TwinSource<R> {
         match (&mut self.group, statement) {
             (Group::Points(points), Statement::Vertex(point)) => points.push(point),
             (Group::Cells(cells), Statement::Cell(cell)) => cells.push(cell),
+            (Group::Region(line), Statement::Region(region)) => *line = Some(region),
             (Group::Patch(patch), Statement::Vertex(point)) => patch.new.push(point),
             (Group::Patch(patch), Statement::Simplex(ids)) => {
                 patch.simplices.extend_from_slice(&ids[..self.header.kind.vertices_per_simplex()]);
@@ -217,6 +220,7 @@ impl<R: Read> TwinSource<R> {
                 self.group = match statement {
                     Statement::Vertex(_) if is_points => Group::Points(Vec::new()),
                     Statement::Cell(_) if is_points => Group::Cells(Vec::new()),
+                    Statement::Region(_) => Group::Region(None),
                     Statement::Patch if is_mesh && residual_points == 0 && !self.has_open_segments => {
                         Group::Patch(PatchLines::default())
                     }
@@ -264,6 +268,7 @@ impl<R: Read> TwinSource<R> {
             Group::Empty => unreachable!("the empty group takes every statement"),
             Group::Points(points) => Event::Points(points),
             Group::Cells(cells) => Event::Cells(cells),
+            Group::Region(region) => Event::Region(region.expect("its line started the group")),
             Group::Patch(lines) => Event::Patch(self.patch_of(vertices, lines)?),
             Group::Labels(labels) => Event::Labels(labels),
             Group::Segments(segments) => Event::Segments(segments),

@@ -3,17 +3,19 @@
 use crate::twin::read_configurations::{self, ConfigurationLine};
 use crate::twin::read_functions::{self, FunctionLine};
 use crate::twin::read4::{self, Statement4};
+use crate::twin::regions::parse_point_region;
 use crate::twin::rows::parse_row;
 use crate::twin::tokens::{expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::model::cells::CellCode;
-use spmesh_stream::{Coordinates, Header, Kind, Segment, Totals, check_place};
+use spmesh_stream::{Coordinates, Header, Kind, PointRegion, Segment, Totals, check_place};
 
 /// One line, parsed. Vertices and residual points are counted from 0 here.
 pub(crate) enum Statement {
     Vertex(Point),
     Cell(CellCode),
+    Region(PointRegion),
     Patch,
     /// A triangle uses the first three.
     Simplex([u64; 4]),
@@ -99,6 +101,7 @@ pub(crate) fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Sta
             let vertex = (vertex != b"-").then(|| parse_number(vertex)).transpose()?;
             Statement::Residual(vertex, parse_point(fields, header)?)
         }
+        b"region" if header.kind == Kind::RegionPoints => Statement::Region(parse_point_region(fields)?),
         b"from" if header.part.is_some() => {
             Statement::Origin(parse_number(next_field(fields)?)?, parse_number(next_field(fields)?)?)
         }
@@ -134,6 +137,7 @@ fn statements_of(kind: Kind) -> &'static str {
         Kind::TriangleResidual | Kind::TetrahedralResidual => "r, w or a comment",
         Kind::Configurations => "v, degree, in, on, line, function, term or a comment",
         Kind::Splines => "v, degree, in, on, line, function, term, coefficient or a comment",
+        Kind::RegionPoints => "region, v or a comment",
         Kind::Points4 | Kind::Cells4 | Kind::Simplices4 => "an end or a comment",
     }
 }

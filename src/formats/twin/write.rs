@@ -5,6 +5,7 @@ use std::io::Write;
 use crate::sink::rows::Rows;
 use crate::sink::world::{world_of, write_numbers};
 use crate::sink::{EventSink, write_error};
+use crate::twin::regions::region_fields;
 use crate::twin::write_configurations::OpenGroup;
 use crate::twin::{write_constraints, write_functions, write4};
 use spmesh_base::error::Result;
@@ -106,6 +107,7 @@ impl<W: Write> EventSink for TwinSink<W> {
             Event::Cells(cells) => {
                 cells.iter().try_for_each(|cell| self.line(format_args!("x cell {}", cell.0)))
             }
+            Event::Region(region) => self.line(format_args!("region {}", region_fields(region))),
             Event::Patch(patch) => self.patch(patch, rows),
             Event::Labels(labels) => {
                 labels.iter().try_for_each(|label| self.line(format_args!("label {label}")))
@@ -207,7 +209,7 @@ fn write_row(output: &mut impl Write, attributes: &Attributes, row: &[u8]) -> Re
     output.write_all(b"\n").map_err(write_error)
 }
 
-fn numbers(numbers: &[f64]) -> String {
+pub(crate) fn numbers(numbers: &[f64]) -> String {
     let texts: Vec<String> = numbers.iter().map(|&number| Decimal(number).to_string()).collect();
     texts.join(" ")
 }

@@ -140,13 +140,13 @@ impl CellBuffers {
         Ok(())
     }
 
-    /// Adds the figures of the buffers to `stats`.
-    pub(super) fn report(&self, stats: &mut Stats) {
-        stats.buffered_points_max = self.waiting_max;
-        stats.buffered_bytes_max = self.pages.bytes_max();
-        stats.spilled_points = self.spilled;
-        stats.cold_points = self.cold;
-        stats.spilled_bytes = self.spill.as_ref().map_or(0, Spill::len);
+    /// Adds the figures of the buffers to `stats`, beside those of others.
+    pub(super) fn add_to(&self, stats: &mut Stats) {
+        stats.buffered_points_max += self.waiting_max;
+        stats.buffered_bytes_max += self.pages.bytes_max();
+        stats.spilled_points += self.spilled;
+        stats.cold_points += self.cold;
+        stats.spilled_bytes += self.spill.as_ref().map_or(0, Spill::len);
     }
 
     /// Appends a page to a cell, after a spill if no page is free.

@@ -177,7 +177,11 @@ impl Work<'_> {
             found.prepare(&tree, &batch.points);
             Ok(())
         };
+        let mut sample = self.sample.take();
         self.read_all(Pass::Count, prepare, |batch, found| {
+            if let Some(sample) = &mut sample {
+                sample.add(&batch.points);
+            }
             points += batch.points.len() as u64;
             bounds = union(bounds, found.bounds);
             outside += found.outside;
@@ -187,6 +191,7 @@ impl Work<'_> {
             }
             counters.add(&found.cells)
         })?;
+        self.sample = sample;
         Ok(Count { bounds, points, outside, sums: counters.into_sums(), fill_values })
     }
 

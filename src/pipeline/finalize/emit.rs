@@ -12,6 +12,7 @@ use super::plan::Plan;
 use super::work::Work;
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::{Bounds, Point};
+use spmesh_stream::model::cells::CellCode;
 use spmesh_stream::{Header, StreamWriter};
 
 /// Complete leaves are written after every so many points of the input. Batches play no role, so that the
@@ -48,10 +49,6 @@ impl Located {
 
 impl Work<'_> {
     /// Holds the points of a leaf until its counter is zero, then writes them and its tag.
-    ///
-    /// Leaves that are complete within the same [`WINDOW`] of points are written in the order of the tree. If
-    /// the points are in random order, nearly all leaves are complete at the very end, and neighbours should
-    /// follow each other.
     pub(super) fn write_chunked<W: Write>(
         &mut self,
         mut plan: Plan,
@@ -59,30 +56,48 @@ impl Work<'_> {
         mut writer: StreamWriter<W>,
     ) -> Result<()> {
         writer.cells(&plan.take_empty())?;
-        let header = writer.header().clone();
+        let (header, bytes) = (writer.header().clone(), options.budget.bytes());
+        self.hold_leaves(plan, options, &header, bytes, |leaf, cell, buffers| {
+            buffers.drain(leaf, |bytes| writer.encoded_records(bytes))?;
+            writer.cells(&[cell])
+        })?;
+        writer.end(0, 0).map(drop)
+    }
+
+    /// Holds the points of a leaf until its counter is zero, then gives them to `complete`: the number of the
+    /// leaf, its cell, and the buffers that have its records. Waiting points take up to `bytes`.
+    ///
+    /// Leaves that are complete within the same [`WINDOW`] of points come in the order of the tree. If the
+    /// points are in random order, nearly all leaves are complete at the very end, and neighbours should follow
+    /// each other.
+    pub(super) fn hold_leaves(
+        &mut self,
+        plan: Plan,
+        options: &Options,
+        header: &Header,
+        bytes: u64,
+        mut take: impl FnMut(usize, CellCode, &mut CellBuffers) -> Result<()>,
+    ) -> Result<()> {
         let record_len = header.record_len();
-        let bytes = options.budget.bytes() - plan.bytes();
+        let bytes = bytes - plan.bytes();
         let records = header.points.unwrap_or(u64::MAX);
         // A temporary file has taken all points already, so it has room for some of them once more.
         let (folder, spills_cold) = (options.temp_dir.clone(), self.is_spooled());
         let mut buffers = CellBuffers::new(plan.leaves(), record_len, records, bytes, folder, spills_cold)?;
         let (locator, mut countdown) = plan.split();
-        let mut write_leaves = |complete: &mut Vec<usize>, buffers: &mut CellBuffers| {
+        let mut take_leaves = |complete: &mut Vec<usize>, buffers: &mut CellBuffers| {
             complete.sort_unstable();
-            complete.drain(..).try_for_each(|leaf| {
-                buffers.drain(leaf, |bytes| writer.encoded_records(bytes))?;
-                writer.cells(&[locator.leaves()[leaf]])
-            })
+            complete.drain(..).try_for_each(|leaf| take(leaf, locator.leaves()[leaf], buffers))
         };
         let (mut complete, mut points, mut window_end) = (Vec::new(), 0, WINDOW);
-        let prepare = |batch: &PointBatch, located: &mut Located| located.prepare(&locator, &header, batch);
+        let prepare = |batch: &PointBatch, located: &mut Located| located.prepare(&locator, header, batch);
         self.read_all(Pass::Write, prepare, |_, located| {
             for (leaf, records) in located.runs(record_len) {
                 let is_complete = countdown.take(leaf, records.len() / record_len)?;
                 buffers.push(leaf, records)?;
                 points += (records.len() / record_len) as u64;
                 if points > window_end {
-                    write_leaves(&mut complete, &mut buffers)?;
+                    take_leaves(&mut complete, &mut buffers)?;
                     window_end = points.next_multiple_of(WINDOW);
                 }
                 if is_complete {
@@ -92,9 +107,9 @@ impl Work<'_> {
             Ok(())
         })?;
         countdown.expect_end()?;
-        write_leaves(&mut complete, &mut buffers)?;
-        buffers.report(&mut self.stats);
-        writer.end(0, 0).map(drop)
+        take_leaves(&mut complete, &mut buffers)?;
+        buffers.add_to(&mut self.stats);
+        Ok(())
     }
 
     /// Writes every point as it comes, and the tag of a leaf after its last point.

@@ -27,6 +27,7 @@ mod cold;
 mod count_pass;
 mod counters;
 mod emit;
+mod in_regions;
 mod locate;
 mod options;
 mod pages;
@@ -44,7 +45,7 @@ mod weigh;
 mod work;
 
 pub use budget::Budget;
-pub use options::{CELL_POINTS, Leaves, Options, Order};
+pub use options::{CELL_POINTS, InRegions, Leaves, Options, Order, REGION_POINTS, WhenRegions};
 pub use passes::{Observer, Pass, Passes};
 pub use recipe::{Drops, Flatten, LineStats, Outcome, Recipe};
 pub use run::{Stats, run};

@@ -1,5 +1,6 @@
 //! Options of a run.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use super::budget::Budget;
@@ -11,6 +12,9 @@ use spmesh_stream::Weighted;
 
 /// Approximate number of points in a leaf, unless the user chooses another.
 pub const CELL_POINTS: u64 = 20_000;
+
+/// Approximate number of points in a region, unless the user chooses another.
+pub const REGION_POINTS: u64 = 1_000_000;
 
 /// Which cells are leaves of the finalization tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,6 +29,35 @@ pub enum Leaves {
     },
     /// All occupied cells of one level: the grid of 2^k x 2^k cells of the thesis.
     Level(u8),
+}
+
+/// When points of space come in overlapping regions instead of cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WhenRegions {
+    /// If a sample of them lies on a surface, and they are too many for one region.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    #[default]
+    Never,
+}
+
+/// Regions, and the work on them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InRegions {
+    /// When points come in regions.
+    pub when: WhenRegions,
+    /// About how many points a region has, those of other regions included.
+    pub points: u64,
+    /// Threads that find the regions of points.
+    pub threads: NonZeroUsize,
+}
+
+impl InRegions {
+    /// Cells only.
+    pub const NEVER: InRegions =
+        InRegions { when: WhenRegions::Never, points: REGION_POINTS, threads: NonZeroUsize::MIN };
 }
 
 /// The order of the points in the result.
@@ -54,6 +87,8 @@ pub struct Options {
     pub temp_dir: Option<PathBuf>,
     /// When decoded points are kept for later passes.
     pub spooling: Spooling,
+    /// Whether points of space come in regions: only in [`Order::Chunked`] and without weights.
+    pub regions: InRegions,
     /// What the header says of the weights of points.
     pub weighted: Option<Weighted>,
 }
@@ -71,8 +106,26 @@ impl Options {
             Leaves::Collapsed { cell_points: 0, .. } => {
                 Err(Error::usage("a leaf must be allowed to hold at least one point"))
             }
+            _ if self.regions.when == WhenRegions::Always => self.check_regions(dims),
             _ => Ok(()),
         }
+    }
+}
+
+impl Options {
+    /// Whether points may come in regions.
+    pub(super) fn may_have_regions(&self, dims: u8) -> bool {
+        self.regions.when != WhenRegions::Never && self.check_regions(dims).is_ok()
+    }
+
+    fn check_regions(&self, dims: u8) -> Result<()> {
+        let why = match (dims, self.order, self.weighted) {
+            (2, ..) => "points in regions are points of space: give --octree",
+            (_, Order::Preserved, _) => "points in regions cannot keep their order",
+            (_, _, Some(_)) => "points in regions have no weights",
+            _ => return Ok(()),
+        };
+        Err(Error::usage(why))
     }
 }
 

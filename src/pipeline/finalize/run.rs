@@ -47,6 +47,14 @@ pub struct Stats {
     pub spooled_points: u64,
     /// Bytes of the temporary file for kept points.
     pub spooled_bytes: u64,
+    /// Regions; 0 if points come in cells.
+    pub regions: u64,
+    /// Points of all regions, which have some of the points in common.
+    pub region_points: u64,
+    /// Points of the largest region.
+    pub region_points_max: u64,
+    /// Most regions that a point is in.
+    pub regions_of_point_max: u64,
 }
 
 impl Stats {
@@ -146,7 +154,11 @@ impl Work<'_> {
         let Some(cells) = counts.cells else {
             return self.write_untagged(StreamWriter::new(output, header)?);
         };
+        let regions = self.regions(counts.points, options)?;
         let plan = Plan::new(cells, options.leaves, &options.budget)?;
+        if let Some(regions) = regions {
+            return self.write_in_regions(&regions, plan, header, options, output);
+        }
         self.note_plan(&plan);
         let writer = StreamWriter::new(output, Header { tree: Some(plan.tree()), ..header })?;
         match options.order {

@@ -3,10 +3,12 @@
 use std::time::Instant;
 
 use super::batch::{PointBatch, read_ahead};
+use super::in_regions;
 use super::options::Options;
 use super::passes::{Observer, Pass, Passes};
 use super::run::Stats;
 use super::spool::{Spool, SpoolPlan, Tee};
+use crate::regions::Sample;
 use spmesh_base::error::Result;
 use spmesh_formats::source::PointReader;
 
@@ -15,6 +17,8 @@ pub(super) struct Work<'a> {
     pub(super) input: &'a dyn Passes,
     pub(super) observer: &'a mut dyn Observer,
     pub(super) stats: Stats,
+    /// A sample of the points of the counting pass, if they may come in regions.
+    pub(super) sample: Option<Sample>,
     kept: Kept,
 }
 
@@ -31,7 +35,14 @@ impl<'a> Work<'a> {
     pub(super) fn new(input: &'a dyn Passes, options: &Options, observer: &'a mut dyn Observer) -> Self {
         let folder = options.temp_dir.as_deref();
         let spooling = SpoolPlan::new(options.spooling, input.is_costly(), folder, input.description());
-        Work { input, observer, stats: Stats::default(), kept: spooling.map_or(Kept::Not, Kept::Next) }
+        let sample = in_regions::sample(options, input.description());
+        Work {
+            input,
+            observer,
+            stats: Stats::default(),
+            sample,
+            kept: spooling.map_or(Kept::Not, Kept::Next),
+        }
     }
 
     /// Makes one pass over the input: every batch goes through `prepare`, ahead on another thread, then

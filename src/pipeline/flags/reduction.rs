@@ -188,10 +188,12 @@ impl<const D: usize> Tool<D> {
         }
         if stats.root_points >= MANY && 2 * stats.root_points > stats.points {
             let (waited, points) = (stats.root_points, stats.points);
-            let places = if D == 2 { "a line or a curve" } else { "a surface or a curve" };
-            say(format!(
-                "{waited} of {points} points waited in memory for the end, as points on {places} do"
-            ));
+            let places = if D == 2 {
+                "a line or a curve do"
+            } else {
+                "a surface or a curve do (of points on a surface, spfinalize --octree --regions always holds fewer)"
+            };
+            say(format!("{waited} of {points} points waited in memory for the end, as points on {places}"));
         }
         if stats.by_order > 0 {
             let points = counted(stats.by_order, "point coincides", "points coincide");

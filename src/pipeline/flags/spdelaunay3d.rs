@@ -20,8 +20,9 @@ Examples:
     spfinalize --octree a.las b.las | spdelaunay3d --partial --region 0,0,-inf,50,50,inf -o tile7.spm
     spdelaunay3d --merge tile*.spm -o whole.spm
 
-Points that fill space need little memory; of points on surfaces most wait until the end, because
-the balls around their tetrahedra reach far.
+Points that fill space need little memory. Points on surfaces do, too, if spfinalize writes them in
+regions, as it does of more than a million; otherwise most wait until the end, because the balls
+around their tetrahedra reach far.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
 5 not enough memory, 6 input of another version of spmesh, 141 output closed by its reader.";

@@ -12,7 +12,8 @@ use clap::Parser;
 use super::lines::{LineFlags, summary};
 use super::point_filters::PointFilters;
 use crate::finalize::{
-    Budget, CELL_POINTS, Leaves, Observer, Options, Order, Outcome, Pass, Recipe, Spooling,
+    Budget, CELL_POINTS, InRegions, Leaves, Observer, Options, Order, Outcome, Pass, REGION_POINTS, Recipe,
+    Spooling, WhenRegions,
 };
 use crate::lines::write_report;
 use groups::{AreaFlags, WaterFlags, WeightFlags};
@@ -127,6 +128,12 @@ pub struct Flags {
     #[arg(long)]
     preserve: bool,
 
+    /// With --octree: write points in overlapping regions, each of which spdelaunay3d tetrahedralizes alone. Most
+    /// points on surfaces wait until the end otherwise, in memory; auto looks at a sample. About N points a
+    /// region with --cell-points N
+    #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = named(REGIONS))]
+    regions: WhenRegions,
+
     /// Divide space with an octree: z is geometry, not elevation
     #[arg(long)]
     octree: bool,
@@ -192,6 +199,10 @@ pub struct Flags {
     #[command(flatten)]
     weights: WeightFlags,
 }
+
+/// When points of space come in regions.
+const REGIONS: Names<WhenRegions> =
+    &[("auto", WhenRegions::Auto), ("always", WhenRegions::Always), ("never", WhenRegions::Never)];
 
 /// When decoded points are kept for later passes.
 const SPOOLING: Names<Spooling> =
@@ -281,6 +292,11 @@ impl Flags {
             compress: self.compression.of_stream(),
             temp_dir: self.temp_dir.clone(),
             spooling: self.spool,
+            regions: InRegions {
+                when: self.regions,
+                points: self.cell_points.unwrap_or(REGION_POINTS),
+                threads: self.threads(),
+            },
             weighted: None,
         })
     }

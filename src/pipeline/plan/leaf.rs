@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use super::{FileCount, Node, Plan, PlannedFile, Work};
-use crate::finalize::{Budget, Observer, Passes, Recipe};
+use crate::finalize::{Budget, InRegions, Observer, Passes, Recipe};
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::source::{AttributeChoice, Description, PointReader, SourceOptions};
 use spmesh_stream::model::bounds::{Bounds, Point, Region};
@@ -56,6 +56,8 @@ pub(super) fn write_leaf(
     };
     recipe.options.budget = Budget::of_process(work.memory, work.threads.get())?;
     recipe.options.temp_dir.clone_from(&work.temp_dir);
+    // A part of a mesh has a residual, which regions do not.
+    recipe.options.regions = InRegions::NEVER;
     let input = recipe.open()?;
     let windowed = Windowed::new(&input, &files, &window, header.has_elevation);
     let mut watch = Watch::default();

@@ -1,5 +1,6 @@
 //! One node of the reduction: triangulate, drop what lies in holes, split final from not final.
 
+mod region;
 mod written;
 
 use super::bulk::{Bulk, Facet, WallSide};

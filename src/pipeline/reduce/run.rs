@@ -13,6 +13,7 @@ use super::partial::Part;
 use super::plan::Plan;
 use super::plane::Plane;
 use super::reader::CellReader;
+use super::regions;
 use super::residual::Residual;
 use super::rules::Rules;
 use super::run_state::Run;
@@ -170,6 +171,9 @@ fn reduce_space(
     options: &Options<3>,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Stats> {
+    if reader.header().kind == Kind::RegionPoints {
+        return regions::reduce(reader, outputs, options, progress);
+    }
     Ok(reduce::<Space, Input, Sink, 3>(reader, outputs, options, progress)?.1)
 }
 
@@ -269,7 +273,7 @@ pub(super) fn begin<B: Bulk<D>, W: Write, const D: usize>(
     Ok(Sequencer::new(StreamWriter::new(outputs.mesh, mesh)?, residual))
 }
 
-fn mesh_header<B: Bulk<D>, const D: usize>(
+pub(super) fn mesh_header<B: Bulk<D>, const D: usize>(
     points: &Header,
     part: Option<Region<D>>,
     name: Option<PartName>,

@@ -19,7 +19,7 @@ pub(super) fn fill_their_box<const D: usize>(points: &[[f64; D]]) -> bool {
 }
 
 /// Whether points in space lie on a surface, seen at the size of cells with few points.
-pub(super) fn are_on_surface<const D: usize>(points: &[[f64; D]]) -> bool {
+pub(crate) fn are_on_surface<const D: usize>(points: &[[f64; D]]) -> bool {
     let fine = CellCounts::of(points, 2 * per_axis::<D>(points.len()));
     let coarse = fine.halved();
     coarse.filled() <= FILLED_BY_VOLUMES && coarse.pairs() < FEWER_PAIRS * fine.pairs()

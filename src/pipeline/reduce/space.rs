@@ -15,7 +15,7 @@ use spmesh_delaunay::delaunay3::{Corner, Corners, Kernel, Tetrahedralization, Te
 use spmesh_delaunay::order::sizes_to_starts;
 use spmesh_delaunay::parallel;
 use spmesh_delaunay::predicates::PredicateCounts;
-use spmesh_delaunay::predicates::sphere::SphereBounds;
+use spmesh_delaunay::predicates::sphere::{SphereBounds, centre_is_inside};
 use spmesh_delaunay::simplex::TETRAHEDRON_FACETS_FROM_INSIDE;
 use spmesh_stream::model::bounds::Region;
 use spmesh_stream::{Coordinates, Kind, Weights};
@@ -88,6 +88,33 @@ impl Space {
 }
 
 impl Space {
+    /// The corners of the tetrahedra that a region owns, whose circumcentres are in its box, in an order that
+    /// does not depend on the threads.
+    ///
+    /// Points before `own` are in no other region. So all their tetrahedra are this region's.
+    pub(super) fn take_owned(
+        &mut self,
+        own: u64,
+        region: &Region<3>,
+        bounds: SphereBounds,
+    ) -> Result<Corners> {
+        let vertices = self.mesh.vertices();
+        let owns = |tetrahedron: &Tetrahedron| {
+            let corners = tetrahedron.vertices.map(|vertex| &vertices[vertex as usize]);
+            corners.iter().any(|corner| u64::from(corner.index) < own)
+                || centre_is_inside(bounds, corners.map(|corner| corner.at), region.sides())
+        };
+        let pieces = self.mesh.tetrahedra().chunks(PIECE);
+        let owned = |piece: &[Tetrahedron]| Ok::<Vec<bool>, Infallible>(piece.iter().map(owns).collect());
+        let Ok(owned) = parallel::map(self.kernel.threads, pieces, owned);
+        let mut mesh = std::mem::take(&mut self.mesh);
+        self.mesh.duplicates = std::mem::take(&mut mesh.duplicates);
+        let keep = |tetrahedron: usize| owned[tetrahedron / PIECE][tetrahedron % PIECE];
+        mesh.into_corners(keep, self.kernel.threads).map_err(Error::of_computation)
+    }
+}
+
+impl Space {
     /// The number of the first wall that is no facet; there must be one. `index` has all walls.
     #[cold]
     fn missing(&self, walls: &[[u32; 3]], index: &WallIndex) -> usize {
@@ -119,6 +146,14 @@ fn find_walls(index: &WallIndex, first: usize, tetrahedra: &[Tetrahedron]) -> Ve
         }
     }
     sides
+}
+
+/// The bounds of errors for stored coordinates.
+pub(super) fn sphere_bounds(coordinates: &Coordinates) -> SphereBounds {
+    match coordinates {
+        Coordinates::F64 => SphereBounds::FLOAT,
+        Coordinates::I32 { .. } => SphereBounds::INTEGER,
+    }
 }
 
 impl Bulk<3> for Space {
@@ -283,10 +318,7 @@ impl Bulk<3> for Space {
     }
 
     fn balls(coordinates: &Coordinates, region: Region<3>, weights: Option<Weights>) -> Balls {
-        let bounds = match coordinates {
-            Coordinates::F64 => SphereBounds::FLOAT,
-            Coordinates::I32 { .. } => SphereBounds::INTEGER,
-        };
+        let bounds = sphere_bounds(coordinates);
         Balls { bounds, region, greatest: weights.map(|weights| weights.greatest()) }
     }
 

@@ -25,6 +25,7 @@ from .blocks import (
     Patch,
     Points,
     Points4,
+    Region,
     ResidualPoints,
     Segments,
     Simplices4,
@@ -42,6 +43,6 @@ __version__ = "0.1.0"
 __all__ = [
     "Attribute", "attributes_of", "Cells", "Cells4", "Coefficients", "Configurations", "End", "FARAWAY",
     "Function", "Functions", "Header", "Labels", "MalformedError", "NOT_A_VERTEX", "open", "OpenSegments",
-    "Patch", "Points", "Points4", "read", "Reader", "ResidualPoints", "Segments", "Simplices4", "SpmeshError",
+    "Patch", "Points", "Points4", "read", "Reader", "Region", "ResidualPoints", "Segments", "Simplices4", "SpmeshError",
     "Stream", "TooNewError", "Tree", "UpstreamError", "Walls", "write_points", "write_triangles", "Writer",
 ]

@@ -28,6 +28,24 @@ class Cells:
 
 
 @dataclass
+class Region:
+    """A region, whose points follow: first those that no other region has (`own`), then those that later regions have,
+    too, and no earlier one (`first`), then those that earlier and later ones have (`again`), then those of earlier ones
+    only (`last`). `bounds` are the three lower and the three upper sides of its half-open box."""
+
+    bounds: tuple[float, ...]
+    own: int = 0
+    first: int = 0
+    again: int = 0
+    last: int = 0
+
+    @property
+    def points(self) -> int:
+        """Points of the region, those of other regions included."""
+        return self.own + self.first + self.again + self.last
+
+
+@dataclass
 class Patch:
     """A piece of a mesh. Local indices count `new` vertices first, then `imported` ones."""
 

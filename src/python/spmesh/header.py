@@ -28,6 +28,7 @@ KINDS = {
     10: ("partial tetrahedral mesh", (3,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
     11: ("residual of a triangle mesh", (2,), ((b"RPNT",), (b"WALL",))),
     12: ("residual of a tetrahedral mesh", (3,), ((b"RPNT",), (b"WALL",))),
+    13: ("points in regions", (3,), ((b"REGN", b"PNTS"),)),
 }
 CODES = {name: code for code, (name, _, _) in KINDS.items()}
 PART_BITS, NUMBER_BITS = 22, 40
@@ -249,7 +250,7 @@ class Header:
             free = self.kind == "points" and not self.tree
             require(free or len(set(self.scale[: self.dims])) == 1, "the axes of the geometry have several scales")
         if self.tree:
-            without = self.kind in ("configurations", "splines", "partial tetrahedral mesh")
+            without = self.kind in ("configurations", "splines", "partial tetrahedral mesh", "points in regions")
             without = without or self.is_residual
             require(not without, f"a stream of kind {self.kind} has no finalization tree")
             self.tree.check()
@@ -269,7 +270,7 @@ class Header:
             require(is_cut or kill == 0, "a kill length, but a border that is not cut")
         if self.weighted is not None:
             space = self.kind in ("points", "tetrahedral mesh") and self.dims == 3
-            require(space, f"weights in a {self.kind} of {self.dims} dimensions")
+            require(space, f"weights in a stream of kind {self.kind} of {self.dims} dimensions")
             require(math.isfinite(self.weighted), f"the greatest weight {self.weighted}, expected a finite number")
             plain = [attribute for attribute in self.attributes if attribute.is_weight()]
             require(plain, 'weights need an attribute "weight": one f64 without scale and unknown number')
@@ -310,7 +311,8 @@ class Header:
     def _check_attributes(self) -> None:
         if not self.attributes:
             return
-        meshes = self.kind in ("points", "triangle mesh", "tetrahedral mesh") or self.kind.startswith("partial ")
+        kinds = ("points", "points in regions", "triangle mesh", "tetrahedral mesh")
+        meshes = self.kind in kinds or self.kind.startswith("partial ")
         require(meshes or self.is_residual, f"a stream of kind {self.kind} has no attributes")
         for attribute in self.attributes:
             attribute.check()

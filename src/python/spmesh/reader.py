@@ -15,6 +15,7 @@ from .constraints import Constraints, sides_of
 from .errors import SpmeshError, needs, require, upstream_error
 from .header import CODES, KINDS, NUMBER_BITS, UNKNOWN, Header, check_tag
 from .parts import check_shared, shared_of
+from .regions import Regions, region_of
 from .rules import Chunks, FinalCells, LiveVertices
 
 KNOTS_OF = (("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4))
@@ -52,6 +53,7 @@ class Reader:
         self._point_size = header.axes * header.dtype.itemsize
         # What blocks before the next patch say about it, by their tags.
         self._constraints, self._more = Constraints(header), {}
+        self._regions = Regions() if header.kind == "points in regions" else None
         self._row = header.row_dtype if header.attributes else None
 
     def close(self) -> None:
@@ -187,8 +189,17 @@ class Reader:
             self._cells.check(xyz, *(self._box or ((), ())))
         if self._chunks and self._box:
             self._chunks.points(*self._box)
-        self.totals["points"] += len(xyz)
+        if self._regions:
+            self._regions.points(len(xyz))
+        else:
+            self.totals["points"] += len(xyz)
         return b.Points(xyz)
+
+    def _region(self, payload):
+        region = region_of(payload)
+        self._regions.region(region)
+        self.totals["points"] = self._regions.total
+        return region
 
     def _tags(self, payload):
         require(self.header.tree, "cell tag in a stream without a finalization tree")
@@ -437,6 +448,8 @@ class Reader:
             require(stated[name] == counted[name], f"END states {stated[name]} {name}, but the stream holds {counted[name]}")
         require(header.points in (None, stated["points"]), "END: the header states another number of points")
         require(self._neighbour < max(counted["simplices"], 0) or self._neighbour < 0, "END: a neighbour that does not exist")
+        if self._regions:
+            self._regions.end()
         if self._chunks:
             self._chunks.end()
         require(not self._file.read(1), "the input goes on after END")
@@ -457,6 +470,7 @@ def _records(payload: bytes, dtype) -> np.ndarray:
 _DECODERS = {
     b"PNTS": Reader._points,
     b"CELL": Reader._tags,
+    b"REGN": Reader._region,
     b"PTCH": Reader._patch,
     b"segm": lambda reader, payload: reader._constraints.segment(payload),
     b"open": lambda reader, payload: reader._constraints.open(payload),

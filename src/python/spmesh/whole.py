@@ -21,6 +21,7 @@ class Stream:
     corners): triangles or tetrahedra as indices of vertices. `rows` (n,): structured array of attributes.
     Of a constrained mesh: `segment_lines` (k,) and `segment_ends` (k, 2, 2), stored; `sides` (m, corners) int64: for each
     triangle the segments opposite to its corners, or -1; `open_segments`, numbers of segments that leave the mesh.
+    Of points in regions: `regions`; points come region by region, those of several regions several times.
     """
 
     header: Header
@@ -34,6 +35,7 @@ class Stream:
     cells4: b.Cells4 | None = None
     configurations: list[b.Configurations] = field(default_factory=list)
     functions: list[b.Function] = field(default_factory=list)
+    regions: list[b.Region] = field(default_factory=list)
     coefficients: np.ndarray | None = None
     segment_lines: np.ndarray | None = None
     segment_ends: np.ndarray | None = None
@@ -65,12 +67,14 @@ def read(file, memory: bool = True) -> Stream:
         return Stream(whole.header, whole.stored, whole.simplices.astype(np.int64), whole.rows, totals=whole.totals)
     with Reader(file, memory) as reader:
         header, parts = reader.header, {}
-        configurations, functions, totals = [], [], {}
+        configurations, functions, regions, totals = [], [], [], {}
         put = lambda name, part: parts.setdefault(name, []).append(part)
         for block in reader:
             if isinstance(block, b.Points):
                 put("stored", block.xyz)
                 put("rows", block.rows)
+            elif isinstance(block, b.Region):
+                regions.append(block)
             elif isinstance(block, b.Patch):
                 put("stored", block.new)
                 put("rows", block.rows)
@@ -109,6 +113,7 @@ def read(file, memory: bool = True) -> Stream:
     residual, cells4 = parts.get("residual"), parts.get("cells4")
     return Stream(
         header, stored, **arrays, totals=totals, configurations=configurations, functions=functions,
+        regions=regions,
         residual=residual and b.ResidualPoints(*(_joined([getattr(p, n) for p in residual]) for n in ("ids", "xyz", "rows"))),
         cells4=cells4 and b.Cells4(
             np.concatenate([c.infinite for c in cells4]),

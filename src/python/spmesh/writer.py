@@ -9,12 +9,13 @@ from typing import BinaryIO
 import numpy as np
 from crc32c import crc32c
 
-from .blocks import NOT_A_VERTEX, TOTALS, OpenSegments, Patch, Segments
+from .blocks import NOT_A_VERTEX, TOTALS, OpenSegments, Patch, Region, Segments
 from .constraints import Constraints, segment_dtype
 from .header import KINDS, CODES, Header
 from .output import OutputFile
 from .parts import check_shared, origins_of
 from .reader import KNOTS_OF
+from .regions import Regions, payload_of
 
 PAYLOAD_MAX = 2**20
 POINTS_PAYLOAD = 2**16
@@ -39,6 +40,7 @@ class Writer:
         self.totals = dict.fromkeys(TOTALS, 0)
         self._finalized = 0
         self._constraints = Constraints(header)
+        self._regions = Regions() if header.kind == "points in regions" else None
         self._file.write(self._data)
 
     def __enter__(self) -> "Writer":
@@ -99,6 +101,10 @@ class Writer:
         """Points (n, axes), of the world unless `stored`; `attributes` as columns by name or a structured array (n,)."""
         xyz = np.asarray(xyz)
         rows = self._rows(attributes, len(xyz))
+        if self._regions:
+            self._regions.points(len(xyz))
+        else:
+            self.totals["points"] += len(xyz)
         size = self.header.dtype.itemsize * self.header.axes
         row = len(rows) // len(xyz) if len(xyz) else 0
         step = min(POINTS_PAYLOAD // size, PAYLOAD_MAX // row if row else POINTS_PAYLOAD)
@@ -108,7 +114,12 @@ class Writer:
             self._block(b"PNTS", chunk.tobytes())
             if row:
                 self._block(b"attp", rows[at * row : (at + len(chunk)) * row])
-        self.totals["points"] += len(xyz)
+
+    def region(self, region: Region) -> None:
+        """Starts a region: as many points as it states must follow, in the order of its counts."""
+        self._regions.region(region)
+        self._block(b"REGN", payload_of(region))
+        self.totals["points"] = self._regions.total
 
     def cells(self, codes) -> None:
         """Location codes (n,) of cells that are final."""
@@ -256,6 +267,8 @@ class Writer:
         """Writes END. `merged` points of the input of a mesh coincide with others. `points`: of a residual, those of
         its region."""
         totals, kind = dict(self.totals), self.header.kind
+        if self._regions:
+            self._regions.end()
         if self.header.is_residual:
             totals["merged"], totals["points"] = merged, points
         elif self.header.has_patches or kind in ("cells in 4 dimensions", "simplices in 4 dimensions"):

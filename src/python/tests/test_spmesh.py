@@ -50,6 +50,8 @@ def copied(data):
             writer.points(block.xyz, rows, stored=True)
         elif isinstance(block, spmesh.Cells):
             writer.cells(block.codes)
+        elif isinstance(block, spmesh.Region):
+            writer.region(block)
         elif isinstance(block, spmesh.Patch):
             parts = block.new, block.imported, block.simplices, block.finalized
             shared = dict(origins=block.origins, kept=block.kept)

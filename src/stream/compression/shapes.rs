@@ -67,7 +67,7 @@ fn shape_of(header: &Header, tag: Tag) -> Shape {
     let (record_len, words) = match tag {
         Tag::Points | Tag::Points4 => (point_len, of_points),
         Tag::ResidualPoints => (8 + point_len, of_points),
-        Tag::Cells | Tag::Labels | Tag::Coefficients | Tag::End => (8, Words::U64),
+        Tag::Cells | Tag::Labels | Tag::Coefficients | Tag::Region | Tag::End => (8, Words::U64),
         Tag::Patch => (4 * header.kind.vertices_per_simplex(), Words::U32),
         Tag::Walls => (4 * header.kind.vertices_per_wall(), Words::U32),
         Tag::Simplices4 => (20, Words::U32),

@@ -11,13 +11,15 @@ impl<W: Write> StreamWriter<W> {
     /// Appends points to a points stream, with a row for each if the header lists attributes.
     ///
     /// # Errors
-    /// If a coordinate does not fit the encoding of the header, or writing fails.
+    /// If a coordinate does not fit the encoding of the header, a region gets more points than it states, or
+    /// writing fails.
     pub fn points_with_rows(&mut self, points: &[Point], rows: &[u8]) -> Result<()> {
         let row_len = self.header.attributes.row_len();
         if row_len == 0 {
             return self.points(points);
         }
         assert_eq!(rows.len(), points.len() * row_len, "a row for each point");
+        self.count_points(points.len())?;
         let (mut points, mut rows) = (points, rows);
         while !points.is_empty() {
             let count = self.points_left().min(points.len());
@@ -26,7 +28,6 @@ impl<W: Write> StreamWriter<W> {
             encode_points(&self.header, now, &mut self.points)?;
             self.rows.extend_from_slice(rows_now);
             (points, rows) = (later, rows_later);
-            self.totals.points += count as u64;
             self.flush_if_no_points_left()?;
         }
         Ok(())
@@ -36,18 +37,18 @@ impl<W: Write> StreamWriter<W> {
     /// lists attributes.
     ///
     /// # Errors
-    /// If writing fails.
+    /// If a region gets more points than it states, or writing fails.
     pub fn encoded_records(&mut self, bytes: &[u8]) -> Result<()> {
         if self.header.attributes.is_empty() {
             return self.encoded_points(bytes);
         }
         let (point_len, record_len) = (self.header.point_len(), self.header.record_len());
         debug_assert!(bytes.len().is_multiple_of(record_len));
+        self.count_points(bytes.len() / record_len)?;
         for record in bytes.chunks_exact(record_len) {
             let (point, row) = record.split_at(point_len);
             self.points.extend_from_slice(point);
             self.rows.extend_from_slice(row);
-            self.totals.points += 1;
             self.flush_if_no_points_left()?;
         }
         Ok(())

@@ -82,6 +82,10 @@ pub(super) fn report(stats: &Stats, dropped: &Drops, lines: &LineStats) -> Repor
         ("bytes spilled", "spilled.bytes", stats.spilled_bytes),
         ("points spooled", "spooled.points", stats.spooled_points),
         ("bytes spooled", "spooled.bytes", stats.spooled_bytes),
+        ("regions", "regions.count", stats.regions),
+        ("points in all regions", "regions.points", stats.region_points),
+        ("points of the largest region", "regions.points_max", stats.region_points_max),
+        ("most regions of a point", "regions.of_point_max", stats.regions_of_point_max),
     ];
     lines.add_to(rest.into_iter().fold(report, count))
 }

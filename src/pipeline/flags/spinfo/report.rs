@@ -127,6 +127,10 @@ impl Summary<'_> {
         } else if self.header.kind.has_knots() {
             let degrees = self.inventory.configurations().degrees();
             configurations::counts(degrees).for_each(|(name, value)| line(&name, value));
+        } else if self.header.kind == Kind::RegionPoints {
+            let regions = self.inventory.regions();
+            line("regions", format!("{}, largest: {} points", regions.regions, regions.points_max));
+            line("copies", format!("{} points, in regions after their first", regions.copies));
         } else {
             let cells = self.inventory.cell_points();
             line("chunked", if self.header.chunked { "yes" } else { "no" }.into());
@@ -171,6 +175,17 @@ impl Summary<'_> {
             "cell_vertices_max": four.vertices_max,
             "cell_neighbours_max": four.neighbours_max,
         })
+    }
+
+    /// Counts of regions; null for other kinds.
+    fn regions_json(&self) -> Value {
+        let regions = self.inventory.regions();
+        match self.header.kind {
+            Kind::RegionPoints => json!({
+                "count": regions.regions, "copies": regions.copies, "points_max": regions.points_max,
+            }),
+            _ => Value::Null,
+        }
     }
 
     /// The counts of each degree; null for other kinds.
@@ -240,6 +255,7 @@ impl Summary<'_> {
             },
             "four_dimensions": self.json4(),
             "configurations": self.configurations_json(),
+            "regions": self.regions_json(),
             "points_per_tag": {"runs": cells.runs, "mean": mean(cells.points, cells.runs), "max": cells.max},
             "bytes": self.bytes,
             "compressed": header.compressed,

@@ -1,0 +1,78 @@
+//! A region of points in regions: its tetrahedra, without those that other regions own.
+
+use super::super::bulk::Bulk;
+use super::super::duplicates::Merged;
+use super::super::misfit::overlap;
+use super::super::patches::{Flush, OWN};
+use super::super::residual::Residual;
+use super::super::space::{Space, sphere_bounds};
+use super::{PointState, Solver};
+use spmesh_base::error::Result;
+use spmesh_delaunay::delaunay3::CornerParts;
+use spmesh_stream::{PatchBlocks, PointRegion};
+
+impl Solver<Space, 3> {
+    /// Triangulates the points of a region, in the order of its counts, and writes the tetrahedra that it owns.
+    /// Points that earlier regions have, too, have the ids of their vertices as keys. Each point becomes a
+    /// vertex in its first region, and is finalized in its last.
+    ///
+    /// # Errors
+    /// Those of the kernel and of `flush`; malformed, if coinciding points are forbidden, or if earlier regions
+    /// have one of them and not the other.
+    pub(in crate::reduce) fn solve_region(
+        &mut self,
+        region: &PointRegion,
+        points: &mut Residual<3>,
+        blocks: &mut PatchBlocks,
+        flush: &mut Flush,
+    ) -> Result<Merged> {
+        self.bulk.triangulate(points, None)?;
+        let merged = self.merge_in_region(points)?;
+        let coordinates = self.rules.coordinates;
+        let mut owned = self.bulk.take_owned(region.own, &region.bounds, sphere_bounds(&coordinates))?;
+        let (builder, code) = (&mut self.builder, self.rules.code);
+        builder.start(points.len(), code, 0, true);
+        let CornerParts { vertices, tetrahedra, .. } = owned.parts();
+        for tetrahedron in &mut *tetrahedra {
+            // Points take the place of vertices, for the second pass, too.
+            *tetrahedron = tetrahedron.map(|vertex| vertices[vertex as usize].index);
+            builder.plan(tetrahedron);
+        }
+        let is_vertex = |v: &u32| self.point_states[*v as usize] != PointState::Merged;
+        let unused: Vec<u32> =
+            (0..points.len() as u32).filter(is_vertex).filter(|&v| builder.is_unused(v)).collect();
+        // Later regions use them.
+        let kept = region.own as u32..(region.own + region.first + region.again) as u32;
+        kept.filter(is_vertex).for_each(|v| builder.keep(v));
+        for tetrahedron in tetrahedra {
+            if builder.add(tetrahedron) {
+                builder.close(points, code, blocks)?;
+                flush(blocks)?;
+            }
+        }
+        builder.isolated(unused.into_iter(), points, code, blocks, Some(flush))?;
+        Ok(merged)
+    }
+
+    /// Merges points that coincide: here if they are new, and as the region did that had them first if not.
+    fn merge_in_region(&mut self, points: &mut Residual<3>) -> Result<Merged> {
+        self.point_states.clear();
+        self.point_states.resize(points.len(), PointState::Interior);
+        let (raw, coordinates) = (points.raw as u32, self.rules.coordinates);
+        let duplicates = self.bulk.duplicates();
+        for &[point, vertex] in &*duplicates {
+            if (point < raw) != (vertex < raw) {
+                return Err(overlap(points, point, vertex));
+            }
+            self.point_states[point as usize] = PointState::Merged;
+        }
+        duplicates.retain(|&[point, _]| point < raw);
+        self.rules.duplicates.settle(points, duplicates, &coordinates, None)
+    }
+
+    /// The number of a point among the vertices that the last region has written, if it is one.
+    pub(in crate::reduce) fn number_in_region(&self, v: u32, points: &Residual<3>) -> Option<u64> {
+        let reference = self.builder.reference(v, points);
+        (reference != u64::MAX && reference & OWN != 0).then_some(reference & !OWN)
+    }
+}

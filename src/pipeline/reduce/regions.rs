@@ -1,0 +1,235 @@
+//! Tetrahedralizes points in overlapping regions: one region after the other, each on all threads.
+//!
+//! A region owns the tetrahedra whose circumcentres are in its box. `docs/theory/regions.md` proves that these
+//! are the tetrahedra of all points, each once.
+
+use std::collections::HashMap;
+use std::io::{Read, Write};
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+
+use super::beside::write_beside;
+use super::budget::{Budget, Held, Load};
+use super::node::Solver;
+use super::patches::Flush;
+use super::residual::Residual;
+use super::rules::Rules;
+use super::run::{Options, begin};
+use super::sequencer::{Outputs, Sequencer};
+use super::space::Space;
+use super::stats::Stats;
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::parallel;
+use spmesh_delaunay::delaunay3::MAX_POINTS;
+use spmesh_stream::model::bounds::{Point, Region};
+use spmesh_stream::{Event, Header, PatchBlocks, PointRegion, StreamReader};
+
+/// Bytes of a vertex that later regions have, too, with room to grow.
+const LIVE_BYTES: usize = 80;
+
+/// A region with its points, of which those of earlier regions lack their keys.
+struct Whole {
+    number: u64,
+    region: PointRegion,
+    points: Residual<3>,
+}
+
+/// Reads regions.
+struct Regions<R: Read> {
+    reader: StreamReader<R>,
+    read: u64,
+}
+
+impl<R: Read> Regions<R> {
+    /// The next region; `None` at the end.
+    fn next(&mut self) -> Result<Option<Whole>> {
+        let mut next: Option<Whole> = None;
+        loop {
+            if let Some(whole) = next.take_if(|whole| whole.points.len() as u64 == whole.region.points()) {
+                self.read += 1;
+                return Ok(Some(whole));
+            }
+            match self.reader.next_event()? {
+                Some(Event::Region(region)) => {
+                    let kernel = region.points() <= MAX_POINTS as u64;
+                    if !kernel {
+                        let message = format!("a region of {} points", region.points());
+                        return Err(Error::new(
+                            ErrorKind::Memory,
+                            format!(
+                                "{message}, the kernel takes at most {MAX_POINTS}: finalize with smaller regions"
+                            ),
+                        ));
+                    }
+                    let points = Residual::with_capacity(0, 0);
+                    next = Some(Whole { number: self.read, region, points });
+                }
+                Some(Event::Points(points)) => {
+                    let whole = next.as_mut().expect("the reader refuses points before the first region");
+                    whole.take(&points, self.reader.rows());
+                    self.reader.give_back(points);
+                }
+                Some(Event::End(_)) | None => return Ok(None),
+                Some(_) => unreachable!("the reader refuses these blocks in a stream of points in regions"),
+            }
+        }
+    }
+}
+
+impl Whole {
+    fn take(&mut self, points: &[Point], rows: &[u8]) {
+        self.points.extend_raw(points, rows);
+    }
+
+    /// Gives the points of earlier regions the ids of their vertices.
+    fn enter(&mut self, live: &Live) -> Result<()> {
+        let new = self.region.new_points() as usize;
+        self.points.raw = new;
+        for &at in &self.points.at[new..] {
+            let Some(&id) = live.ids.get(&key(at)) else {
+                let number = self.number;
+                return Err(Error::malformed(format!("point {at:?} of region {number} is in none before")));
+            };
+            self.points.keys.push(id);
+        }
+        Ok(())
+    }
+}
+
+/// The vertices that later regions have, too, by their places.
+#[derive(Default)]
+struct Live {
+    ids: HashMap<[u64; 3], u64>,
+}
+
+fn key(at: Point) -> [u64; 3] {
+    at.map(f64::to_bits)
+}
+
+/// The input of a run.
+type Input = Box<dyn Read + Send>;
+
+/// Tetrahedralizes points in regions.
+pub(super) fn reduce<W: Write + Send>(
+    reader: StreamReader<Input>,
+    outputs: Outputs<W>,
+    options: &Options<3>,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Stats> {
+    let header = reader.header();
+    check(options)?;
+    let mesh =
+        Header { compressed: options.compress, ..super::run::mesh_header::<Space, 3>(header, None, None) };
+    let row_len = header.attributes.row_len();
+    let mut sequencer = begin::<Space, W, 3>(outputs, mesh, Region::EVERYTHING)?;
+    let rules = Rules::new(sequencer.header(), options.duplicates, false);
+    let mut run = Run {
+        solver: Solver::new(rules),
+        budget: Budget::new::<Space, 3>(options.memory, options.threads, row_len),
+        live: Live::default(),
+        stats: Stats::default(),
+    };
+    let threads = NonZeroUsize::new(options.threads).unwrap_or(NonZeroUsize::MIN);
+    run.solver.share(threads);
+    let name = reader.name().to_string();
+    let mut regions = Regions { reader, read: 0 };
+    let mut take = |whole: Whole| {
+        let number = whole.number;
+        let locate = |error: Error| match error.kind() {
+            ErrorKind::Malformed => error.at(format!("region {number}")).of_input(&name),
+            ErrorKind::Memory => error.of_input(&name),
+            _ => error,
+        };
+        run.stats.points += whole.region.new_points();
+        run.solve(whole, &mut sequencer, threads).map_err(locate)?;
+        progress(run.stats.points);
+        Ok(())
+    };
+    if threads.get() > 1 {
+        let next = move || match regions.next() {
+            Ok(None) => ControlFlow::Break(Ok(None)),
+            Ok(whole) => ControlFlow::Continue(Ok(whole)),
+            Err(error) => ControlFlow::Break(Err(error)),
+        };
+        let batches = parallel::produce("reader", 0, next)?;
+        loop {
+            let next = batches.recv().unwrap_or_else(|_| Err(super::coordinator::thread_gone()))?;
+            let Some(whole) = next else { break };
+            take(whole)?;
+        }
+    } else {
+        while let Some(whole) = regions.next()? {
+            take(whole)?;
+        }
+    }
+    let Run { mut stats, solver, .. } = run;
+    sequencer.add_to(&mut stats);
+    stats.predicates = solver.counts();
+    sequencer.end(stats.points, stats.merged, stats.merged)?;
+    Ok(stats)
+}
+
+/// What goes on from one region to the next.
+struct Run {
+    solver: Solver<Space, 3>,
+    budget: Budget,
+    live: Live,
+    stats: Stats,
+}
+
+impl Run {
+    fn solve<W: Write + Send>(
+        &mut self,
+        mut whole: Whole,
+        sequencer: &mut Sequencer<W>,
+        threads: NonZeroUsize,
+    ) -> Result<()> {
+        let Run { solver, budget, live, stats } = self;
+        let count = whole.points.len();
+        // The next region is being read.
+        let held = Held { points: count, buckets: LIVE_BYTES * live.ids.len(), ..Held::default() };
+        solver.allow(budget.check(Load { held, raw: count, ..Load::default() }, count)?);
+        whole.enter(live)?;
+        let Whole { region, mut points, number } = whole;
+        sequencer.leave(number, points.keys.clone(), 0);
+        sequencer.open(&[number]);
+        let first = sequencer.vertices();
+        let mut blocks = PatchBlocks::default();
+        let mut solve = |flush: &mut Flush| solver.solve_region(&region, &mut points, &mut blocks, flush);
+        let merged = if threads.get() > 1 {
+            write_beside(sequencer, solve)
+        } else {
+            solve(&mut |blocks| sequencer.patches(blocks))
+        }?;
+        sequencer.patches(&mut blocks)?;
+        stats.count(merged);
+        let new = region.own as u32..region.new_points() as u32;
+        for v in new {
+            if let Some(own) = solver.number_in_region(v, &points) {
+                live.ids.insert(key(points.at[v as usize]), first + own);
+            }
+        }
+        for &at in &points.at[count - region.last as usize..] {
+            live.ids.remove(&key(at));
+        }
+        stats.leaves += 1;
+        stats.leaf_max = stats.leaf_max.max(count as u64);
+        stats.held_max = stats.held_max.max(live.ids.len() as u64);
+        Ok(())
+    }
+}
+
+/// Checks the options that regions do not go with.
+fn check(options: &Options<3>) -> Result<()> {
+    if options.part.is_some() {
+        return Err(Error::usage(
+            "--partial does not go with points in regions: finalize with --regions never",
+        ));
+    }
+    if options.weighted {
+        return Err(Error::usage(
+            "the points have no weights: finalize them with spfinalize --octree --radii or --weights",
+        ));
+    }
+    Ok(())
+}
