@@ -271,7 +271,7 @@ mod tests {
             r#"{"type":"MultiPoint","coordinates":[[1,1],[2,2]]}"#,
             r#"{"type":"LineString","coordinates":[]}"#,
         ]);
-        let lines = read(text.as_bytes()).unwrap().lines;
+        let lines = read(text.as_bytes(), usize::MAX).unwrap().lines;
         assert_eq!(lines[0].vertices, [[0.0, 0.0], [1.0, 2.0], [2.0, 2.0]]);
         assert_eq!(lines[0].elevations, [Some(7.0), None, None]);
         assert_eq!((&lines[2].position[..], lines[2].vertices[1]), ("feature 2", [6.0, 6.0]));
@@ -279,7 +279,8 @@ mod tests {
         assert_eq!(polygons, [None, None, None, Some(0), Some(1), None, Some(2), Some(2), None, None]);
         assert_eq!(lines[5].elevations, [Some(1.0)]);
         let alone =
-            read("\u{feff} {\"type\":\"LineString\",\"coordinates\":[[0,1],[2,3]]} ".as_bytes()).unwrap();
+            read("\u{feff} {\"type\":\"LineString\",\"coordinates\":[[0,1],[2,3]]} ".as_bytes(), usize::MAX)
+                .unwrap();
         assert_eq!((alone.lines.len(), alone.system.crs), (1, Crs::Unknown));
     }
 
@@ -288,7 +289,10 @@ mod tests {
         let of = |name: &str| {
             let line = r#"{"type":"LineString","coordinates":[[0,1],[2,3]]}"#;
             let crs = format!(r#""crs":{{"type":"name","properties":{{"name":"{name}"}}}}"#);
-            read(format!(r#"{{"type":"FeatureCollection",{crs},"features":[{}]}}"#, feature(line)).as_bytes())
+            read(
+                format!(r#"{{"type":"FeatureCollection",{crs},"features":[{}]}}"#, feature(line)).as_bytes(),
+                usize::MAX,
+            )
         };
         let name = |name: &str| crate::crs::name(&of(name).unwrap().system.crs).unwrap();
         assert_eq!(name("urn:ogc:def:crs:EPSG::25832"), "EPSG:25832");
@@ -318,7 +322,7 @@ mod tests {
             (&format!("{}{}", r#"{"type":"Polygon","coordinates":"#, "[".repeat(1000)), "lists in lists"),
             (r#"{"type":"LineString","coordinates":[[1,2],[1,3]]} x"#, "not JSON"),
         ] {
-            let message = read(text.as_bytes()).unwrap_err().to_string();
+            let message = read(text.as_bytes(), usize::MAX).unwrap_err().to_string();
             assert!(message.contains(part), "{text}: {message}");
         }
     }

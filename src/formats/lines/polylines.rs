@@ -138,7 +138,8 @@ mod tests {
 
     fn read(bytes: &str) -> Result<Vec<(PolylineKind, Vec<Point2>)>> {
         let is_json = geojson::is_json(bytes.as_bytes());
-        let file = if is_json { geojson::read(bytes.as_bytes()) } else { text(bytes.as_bytes()) }?;
+        let file =
+            if is_json { geojson::read(bytes.as_bytes(), usize::MAX) } else { text(bytes.as_bytes()) }?;
         Ok(polylines(&file.lines)?.into_iter().map(|polyline| (polyline.kind, polyline.vertices)).collect())
     }
 

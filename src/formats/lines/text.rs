@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn words_start_lines() {
         let text = "# roads\nline 0 0 1, 1 0 nan\n 2 0 3\n\nsoft\n5 5\n6 5 # end\n";
-        let lines = read(text.as_bytes()).unwrap().lines;
+        let lines = read(text.as_bytes(), usize::MAX).unwrap().lines;
         assert_eq!(lines[0].vertices, [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]);
         assert_eq!(lines[0].elevations, [Some(1.0), None, Some(3.0)]);
         assert_eq!(
@@ -98,7 +98,7 @@ mod tests {
             ("line 1 1 inf\n", "line 1: found \"inf\", expected an elevation"),
             ("line\nsoft 1 1\n", "line 1: found no vertices"),
         ] {
-            let message = read(text.as_bytes()).unwrap_err().to_string();
+            let message = read(text.as_bytes(), usize::MAX).unwrap_err().to_string();
             assert!(message.contains(part), "{text}: {message}");
         }
     }

@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn polygons_have_rings() {
         let rings = |text: &str| {
-            let lines = read(text.as_bytes()).unwrap().lines;
+            let lines = read(text.as_bytes(), usize::MAX).unwrap().lines;
             let ring = |line: crate::lines::Breakline| {
                 (line.polygon, line.vertices.len(), line.position.to_string())
             };
@@ -189,7 +189,7 @@ mod tests {
             ("POLYGON((0 0,1 0,1 1,0 0))\nPOINT(1 2)", "line 2: found \"POINT\", expected POLYGON or"),
             ("POLYGON((0 0,1 0,1 1,0 2))", "line 1: ring 0: it starts at 0, 0 and ends at 0, 2"),
         ] {
-            let message = read(text.as_bytes()).unwrap_err().to_string();
+            let message = read(text.as_bytes(), usize::MAX).unwrap_err().to_string();
             assert!(message.contains(part), "{text}: {message}");
         }
     }

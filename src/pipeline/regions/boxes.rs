@@ -79,11 +79,10 @@ impl Boxes {
         match self.nodes[node] {
             Node::Box(number) => found(number, &self.boxes[number as usize]),
             Node::Cut { axis, at, above } => {
-                // Not the other way round, so that a NaN meets everything.
-                if !(extent[0][axis] > at) {
+                if extent[0][axis] <= at {
                     self.visit_from(node + 1, extent, found);
                 }
-                if !(extent[1][axis] < at) {
+                if extent[1][axis] >= at {
                     self.visit_from(above as usize, extent, found);
                 }
             }

@@ -182,9 +182,9 @@ impl Diagram {
             self.flood(start, search, |cell, _| match self.balls.get(cell as usize) {
                 Some(ball) => {
                     let reach = ball.outer.sqrt() + radius;
-                    // Not the other way round, so that a NaN is met.
-                    are_finite
-                        && !(square_of_distance(centre, ball.centre) > reach * reach * (1.0 + ROUNDING))
+                    // False for a NaN, which is met.
+                    let is_far = square_of_distance(centre, ball.centre) > reach * reach * (1.0 + ROUNDING);
+                    are_finite && !is_far
                 }
                 None => {
                     are_finite &= self.is_inside_hull(cell, centre, radius);
@@ -238,12 +238,13 @@ impl Diagram {
     fn is_inside_hull(&self, cell: u32, centre: Point3, radius: f64) -> bool {
         let outward = Outward::of(self, cell);
         let (mut depth, mut error, mut length) = (0.0, 0.0, 0.0);
-        for axis in 0..3 {
-            let (normal, way) = (outward.normal[axis], outward.from[axis] - centre[axis]);
-            depth += normal * way;
-            let size = outward.from[axis].abs() + centre[axis].abs();
-            error += outward.error[axis] * way.abs() + ROUNDING * normal.abs() * size;
-            length += (normal.abs() + outward.error[axis]) * radius;
+        for (axis, at) in centre.into_iter().enumerate() {
+            let Outward { normal, error: off, from } = outward;
+            let way = from[axis] - at;
+            depth += normal[axis] * way;
+            let size = from[axis].abs() + at.abs();
+            error += off[axis] * way.abs() + ROUNDING * normal[axis].abs() * size;
+            length += (normal[axis].abs() + off[axis]) * radius;
         }
         depth > (error + length) * (1.0 + ROUNDING) + f64::MIN_POSITIVE
     }
