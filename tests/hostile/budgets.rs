@@ -102,7 +102,7 @@ const RUNS: [Run; 24] = [
     refused(
         "a canopy",
         "spcanopy --ground ground.spm --step 0.1 --memory 64M --threads 1 tile.laz -o c.tif",
-        START_MAX,
+        BESIDE,
         "is too little",
     ),
     kept(

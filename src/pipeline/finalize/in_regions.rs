@@ -29,6 +29,9 @@ const SAMPLED_MIN: u64 = 8;
 const SAMPLED_MAX: u64 = 1 << 17;
 const SAMPLED_BYTES: u64 = 1_200;
 
+/// Fewer points do not tell on what they lie.
+const TELLING: usize = 1 << 12;
+
 /// Points whose regions are found together.
 const CLUSTER: usize = 32;
 
@@ -84,7 +87,8 @@ impl Work<'_> {
         let count = points.saturating_mul(2).div_ceil(region_points.max(1));
         let sampled = (SAMPLED_PER_REGION.saturating_mul(count)).min(points / SAMPLED_PART).max(SAMPLED_MIN);
         let mut sample = sample.take(usize::MAX);
-        if when == WhenRegions::Auto && (points <= region_points || !are_on_surface(&sample)) {
+        let tells = sample.len() >= TELLING;
+        if when == WhenRegions::Auto && (points <= region_points || !tells || !are_on_surface(&sample)) {
             return Ok(None);
         }
         sample.truncate(sampled as usize);
