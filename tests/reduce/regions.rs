@@ -5,8 +5,8 @@ use spmesh_formats::source::{Description, PointReader};
 use spmesh_pipeline::finalize::{self, Budget, InRegions, Leaves, Order, Passes, Spooling, WhenRegions};
 use spmesh_pipeline::reduce::Options;
 use spmesh_stream::model::attributes::Attributes;
-use spmesh_stream::model::bounds::Point;
-use spmesh_stream::{Coordinates, Crs, Event, Kind, StreamReader};
+use spmesh_stream::model::bounds::{Point, Region};
+use spmesh_stream::{Coordinates, Crs, Event, Header, Kind, PointRegion, StreamReader, StreamWriter};
 
 use super::solids::{bits, expected, fits_a_grid, read_mesh, tetrahedralize};
 use super::space::assert_proven;
@@ -170,12 +170,94 @@ fn few_points_and_flat_ones_are_one_region() {
 }
 
 #[test]
+fn points_on_a_sphere_are_in_one_region() {
+    let mut random = Random::new(11);
+    let mut points: Vec<Point> = Vec::new();
+    while points.len() < 10_000 {
+        let at: Point = [0; 3].map(|_| 2.0 * random.unit() - 1.0);
+        let length = at.iter().map(|x| x * x).sum::<f64>().sqrt();
+        points.push(at.map(|x| 7.0 * x / length));
+    }
+    points.push([1e9, 0.0, 0.0]);
+    let (_, stats) = in_regions(&points, 1_000, 2);
+    assert!(stats.regions < 4 && stats.region_points < 2 * stats.points, "{stats:?}");
+}
+
+#[test]
+fn points_on_curves_come_in_cells() {
+    for point in
+        [|t: f64| [t, t * t, t * t * t], |t: f64| if t < 0.5 { [t, 0.0, 0.0] } else { [0.0, t, 1.0] }]
+    {
+        let points: Vec<Point> = (0..40_000).map(|i| point(f64::from(i) / 40_000.0)).collect();
+        let (stream, stats) = in_regions(&points, 1_000, 2);
+        let reader = StreamReader::new(&stream[..], "points").unwrap();
+        assert_eq!((reader.header().kind, stats.regions), (Kind::Points, 0));
+    }
+}
+
+/// A stream of regions, each with its counts and points.
+fn regions(regions: &[([u64; 4], &[Point])]) -> Vec<u8> {
+    let header = Header::new(Kind::RegionPoints, Coordinates::F64, 3, false);
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    for (number, &([own, first, again, last], points)) in (0..).zip(regions) {
+        let (mut min, mut max) = ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
+        (min[0], max[0]) = (f64::from(number), f64::from(number + 1));
+        writer.region(&PointRegion { bounds: Region { min, max }, own, first, again, last }).unwrap();
+        writer.points(points).unwrap();
+    }
+    writer.end(0, 0).unwrap()
+}
+
+#[test]
+fn regions_that_disagree_on_points_are_refused() {
+    let (a, b) = ([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]);
+    for (stream, part) in [
+        (regions(&[([0, 2, 0, 0], &[a, b]), ([0, 0, 0, 2], &[a, a])]), "in none"),
+        (regions(&[([0, 2, 0, 0], &[a, b]), ([0, 0, 1, 1], &[a, a]), ([0, 0, 0, 1], &[b])]), "coincide"),
+        (regions(&[([0, 1, 0, 0], &[a]), ([0, 1, 0, 0], &[a]), ([0, 0, 0, 2], &[a, a])]), "earlier region"),
+        (regions(&[([0, 1, 0, 0], &[a]), ([0, 0, 0, 1], &[b])]), "in no earlier region"),
+    ] {
+        for threads in [1, 3] {
+            let options = Options { threads, ..Options::default() };
+            let error = tetrahedralize(&stream, &options).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Malformed);
+            assert!(error.to_string().contains(part), "{error}");
+        }
+    }
+    let nothing =
+        regions(&[([0; 4], &[]), ([4, 0, 0, 0], &[a, b, [0.0; 3], [1.0, 0.0, 9.0]]), ([0; 4], &[])]);
+    assert_eq!(tetrahedralize(&nothing, &Options::default()).unwrap().1.vertices, 4);
+}
+
+#[test]
+fn a_region_that_memory_has_no_room_for_is_refused_before_it_is_read() {
+    let points = gyroid(20_000, &mut Random::new(8));
+    let (stream, _) = in_regions(&points, 1_000_000, 1);
+    let cut = &stream[..stream.len() / 4];
+    let options = Options { threads: 1, memory: Some(24 << 20), ..Options::default() };
+    let error = tetrahedralize(cut, &options).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Memory, "{error}");
+}
+
+#[test]
+fn tiny_clusters_beside_a_surface_are_where_they_belong() {
+    for tiny in [1e-100, 1e-162, 3e-164, 5e-324] {
+        let mut points = gyroid(1_500, &mut Random::new(9));
+        let mut random = Random::new(10);
+        points.extend((0..64).map(|_| [0; 3].map(|_| tiny * ((random.bits() % 19) as f64 - 9.0))));
+        assert_same_set(&points, 200, &format!("a cluster of {tiny:e}"));
+        points.extend([[1e154, 0.0, 3.0], [-1e154, 1e154, 0.0], [0.0, 1.0, 1e300]]);
+        assert_same_set(&points, 200, &format!("a cluster of {tiny:e} and points far away"));
+    }
+}
+
+#[test]
 fn a_point_that_an_earlier_region_should_have_is_missed() {
     let points = gyroid(2_000, &mut Random::new(6));
     let (stream, _) = in_regions(&points, 500, 1);
     let mut reader = StreamReader::new(&stream[..], "points").unwrap();
     assert_eq!(reader.header().kind, Kind::RegionPoints);
-    let mut writer = spmesh_stream::StreamWriter::new(Vec::new(), reader.header().clone()).unwrap();
+    let mut writer = StreamWriter::new(Vec::new(), reader.header().clone()).unwrap();
     let mut number = 0;
     while let Some(event) = reader.next_event().unwrap() {
         match event {
@@ -195,5 +277,8 @@ fn a_point_that_an_earlier_region_should_have_is_missed() {
     let damaged = writer.end(0, 0).unwrap();
     let error = tetrahedralize(&damaged, &Options::default()).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Malformed);
-    assert!(error.to_string().contains("region 2 is in none before"), "{error}");
+    assert!(
+        error.to_string().contains("region 3") && error.to_string().contains("no earlier region"),
+        "{error}"
+    );
 }

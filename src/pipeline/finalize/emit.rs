@@ -15,6 +15,9 @@ use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::model::cells::CellCode;
 use spmesh_stream::{Header, StreamWriter};
 
+/// Bytes for waiting points, at least.
+const WAITING_MIN: u64 = 32 << 10;
+
 /// Complete leaves are written after every so many points of the input. Batches play no role, so that the
 /// output depends on the input alone.
 const WINDOW: u64 = 1 << 16;
@@ -79,7 +82,7 @@ impl Work<'_> {
         mut take: impl FnMut(usize, CellCode, &mut CellBuffers) -> Result<()>,
     ) -> Result<()> {
         let record_len = header.record_len();
-        let bytes = bytes - plan.bytes();
+        let bytes = bytes.saturating_sub(plan.bytes()).max(WAITING_MIN);
         let records = header.points.unwrap_or(u64::MAX);
         // A temporary file has taken all points already, so it has room for some of them once more.
         let (folder, spills_cold) = (options.temp_dir.clone(), self.is_spooled());

@@ -29,6 +29,9 @@ const SAMPLED_MIN: u64 = 8;
 const SAMPLED_MAX: u64 = 1 << 17;
 const SAMPLED_BYTES: u64 = 1_200;
 
+/// Regions do not pay if points are in as many on average: most of them near one sphere.
+const COPIES_MAX: f64 = 4.0;
+
 /// Fewer points do not tell on what they lie.
 const TELLING: usize = 1 << 12;
 
@@ -38,8 +41,13 @@ const CLUSTER: usize = 32;
 /// Points that a thread takes at least.
 const PIECE: usize = 64 * CLUSTER;
 
-/// Bytes of records whose regions are found together, at most: leaves that cannot be divided may be large.
-const TOGETHER_MAX: usize = 16 << 20;
+/// Bytes of records whose regions are found together, at most and at least: leaves that cannot be divided may
+/// be large.
+const TOGETHER_MAX: u64 = 16 << 20;
+const TOGETHER_MIN: u64 = 64 << 10;
+
+/// Bytes of the memory budget for each region, at least.
+const BYTES_PER_REGION: u64 = 2 << 10;
 
 /// Bytes for waiting points that are taken at least.
 const MEMORY_MIN: u64 = 1 << 20;
@@ -70,6 +78,11 @@ struct Scatter<'r> {
     counts: Vec<u64>,
     /// Most regions of a point.
     regions_max: usize,
+    /// Bytes of records whose regions are found together, at most.
+    together_max: usize,
+    /// Whether a leaf has more than that. Points that coincide may then be apart, so that each is searched alone:
+    /// they must have the same regions.
+    is_split: bool,
     order: SpatialOrder,
     /// Records of a leaf, their points, and for each the range of its groups.
     records: Vec<u8>,
@@ -84,7 +97,8 @@ impl Work<'_> {
         let Some(sample) = self.sample.take() else { return Ok(None) };
         let InRegions { when, points: region_points, .. } = options.regions;
         // About as many points are copies.
-        let count = points.saturating_mul(2).div_ceil(region_points.max(1));
+        let most = options.budget.bytes() / BYTES_PER_REGION;
+        let count = points.saturating_mul(2).div_ceil(region_points.max(1)).min(most.max(1));
         let sampled = (SAMPLED_PER_REGION.saturating_mul(count)).min(points / SAMPLED_PART).max(SAMPLED_MIN);
         let mut sample = sample.take(usize::MAX);
         let tells = sample.len() >= TELLING;
@@ -94,7 +108,8 @@ impl Work<'_> {
         sample.truncate(sampled as usize);
         let Some(mut diagram) = Diagram::of(&sample)? else { return Ok(None) };
         let boxes = Boxes::lay(&mut diagram, count as usize);
-        Ok((when == WhenRegions::Always || boxes.len() > 1).then_some(Regions { diagram, boxes }))
+        let pays = boxes.len() > 1 && boxes.copies(&diagram) < COPIES_MAX;
+        Ok((when == WhenRegions::Always || pays).then_some(Regions { diagram, boxes }))
     }
 
     /// Holds the points of all regions, and writes one region after the other.
@@ -148,6 +163,8 @@ impl<'r> Scatter<'r> {
             buffers: CellBuffers::new(groups, header.record_len(), records, bytes, folder, false)?,
             counts: vec![0; groups],
             regions_max: 0,
+            together_max: (bytes / 16).clamp(TOGETHER_MIN, TOGETHER_MAX) as usize,
+            is_split: false,
             order: SpatialOrder::default(),
             records: Vec::new(),
             points: Vec::new(),
@@ -159,11 +176,22 @@ impl<'r> Scatter<'r> {
     /// Adds whole records of a leaf.
     fn add(&mut self, records: &[u8]) -> Result<()> {
         self.records.extend_from_slice(records);
-        if self.records.len() >= TOGETHER_MAX { self.end_leaf() } else { Ok(()) }
+        if self.records.len() < self.together_max {
+            return Ok(());
+        }
+        self.is_split = true;
+        self.copy()
+    }
+
+    /// The leaf has no more records.
+    fn end_leaf(&mut self) -> Result<()> {
+        self.copy()?;
+        self.is_split = false;
+        Ok(())
     }
 
     /// Copies the records so far into the groups of their points.
-    fn end_leaf(&mut self) -> Result<()> {
+    fn copy(&mut self) -> Result<()> {
         let record_len = self.header.record_len();
         self.points.clear();
         for record in self.records.chunks_exact(record_len) {
@@ -185,7 +213,8 @@ impl<'r> Scatter<'r> {
 
     /// Finds the groups of the points, along a curve, so that near ones are together.
     fn find_groups(&mut self) {
-        let Scatter { points, finders, regions, order, ranges, groups, .. } = self;
+        let Scatter { points, finders, regions, order, ranges, groups, is_split, .. } = self;
+        let cluster = if *is_split { 1 } else { CLUSTER };
         ranges.clear();
         groups.clear();
         if points.is_empty() {
@@ -196,7 +225,7 @@ impl<'r> Scatter<'r> {
         let threads = NonZeroUsize::new(finders.len()).unwrap_or(NonZeroUsize::MIN);
         let pieces: Vec<_> = places.clone().chunks(share).zip(finders).collect();
         let work = |(places, finder): (Places, &mut Members)| {
-            Ok::<_, Infallible>(groups_of(points, places, regions, finder))
+            Ok::<_, Infallible>(groups_of(points, places, cluster, regions, finder))
         };
         let Ok(found) = parallel::map(threads, pieces, work);
         ranges.resize(points.len(), [0; 2]);
@@ -223,14 +252,22 @@ impl<'r> Scatter<'r> {
 /// Points with the ranges of their groups, and the groups of all of them.
 type Found = (Vec<(u32, [u32; 2])>, Vec<u32>);
 
-fn groups_of(points: &[Point], places: Places, regions: &Regions, finder: &mut Members) -> Found {
+fn groups_of(
+    points: &[Point],
+    places: Places,
+    cluster: usize,
+    regions: &Regions,
+    finder: &mut Members,
+) -> Found {
     let Regions { diagram, boxes } = regions;
     let (mut ranges, mut groups) = (Vec::with_capacity(places.len()), Vec::with_capacity(2 * places.len()));
-    let mut near = Vec::with_capacity(CLUSTER);
-    for places in places.chunks(CLUSTER) {
+    let mut near = Vec::with_capacity(cluster);
+    for places in places.chunks(cluster) {
         near.clear();
         near.extend(places.clone().map(|place| points[place as usize]));
-        if let Some(only) = finder.of_all(&near, diagram, boxes) {
+        if cluster > 1
+            && let Some(only) = finder.of_all(&near, diagram, boxes)
+        {
             let range = enter(&[only], &mut groups);
             ranges.extend(places.map(|place| (place, range)));
             continue;

@@ -156,10 +156,10 @@ impl Work<'_> {
         };
         let regions = self.regions(counts.points, options)?;
         let plan = Plan::new(cells, options.leaves, &options.budget)?;
+        self.note_plan(&plan);
         if let Some(regions) = regions {
             return self.write_in_regions(&regions, plan, header, options, output);
         }
-        self.note_plan(&plan);
         let writer = StreamWriter::new(output, Header { tree: Some(plan.tree()), ..header })?;
         match options.order {
             Order::Chunked => self.write_chunked(plan, options, writer),

@@ -243,7 +243,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     let lacking = stats.spilled_points - stats.cold_points;
     if lacking > 0 {
-        let lacking = counted(lacking, "point", "points");
+        let lacking = match stats.regions {
+            0 => counted(lacking, "point", "points"),
+            _ => counted(lacking, "copy of a point", "copies of points"),
+        };
         let message = format!("{lacking} waited in a temporary file, for lack of --memory");
         notice(TOOL, &flags.common, &message);
     }

@@ -10,6 +10,7 @@ use std::ops::ControlFlow;
 
 use super::beside::write_beside;
 use super::budget::{Budget, Held, Load};
+use super::coordinator::thread_gone;
 use super::node::Solver;
 use super::patches::Flush;
 use super::residual::Residual;
@@ -25,7 +26,7 @@ use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Event, Header, PatchBlocks, PointRegion, StreamReader};
 
 /// Bytes of a vertex that later regions have, too, with room to grow.
-const LIVE_BYTES: usize = 80;
+const LIVE_BYTES: usize = 120;
 
 /// A region with its points, of which those of earlier regions lack their keys.
 struct Whole {
@@ -34,42 +35,54 @@ struct Whole {
     points: Residual<3>,
 }
 
+/// What comes next.
+enum Next {
+    Region(Whole),
+    /// The length of the input.
+    End(u64),
+}
+
 /// Reads regions.
 struct Regions<R: Read> {
     reader: StreamReader<R>,
+    budget: Budget,
+    /// Regions read so far.
     read: u64,
 }
 
 impl<R: Read> Regions<R> {
-    /// The next region; `None` at the end.
-    fn next(&mut self) -> Result<Option<Whole>> {
+    /// Checks that a region fits, before its points are read.
+    fn check_size(&mut self, region: &PointRegion) -> Result<()> {
+        let points = region.points().min(u64::from(u32::MAX)) as usize;
+        let load = Load { raw: points, ..Load::default() };
+        self.budget.check(load, points).map_err(|error| error.of_input(self.reader.name()))?;
+        if points > MAX_POINTS {
+            let message = format!("a region of {points} points, the kernel takes at most {MAX_POINTS}");
+            return Err(Error::new(ErrorKind::Memory, format!("{message}: finalize with smaller regions")));
+        }
+        Ok(())
+    }
+
+    /// The next region, or the end.
+    fn next(&mut self) -> Result<Next> {
         let mut next: Option<Whole> = None;
         loop {
             if let Some(whole) = next.take_if(|whole| whole.points.len() as u64 == whole.region.points()) {
-                self.read += 1;
-                return Ok(Some(whole));
+                return Ok(Next::Region(whole));
             }
             match self.reader.next_event()? {
                 Some(Event::Region(region)) => {
-                    let kernel = region.points() <= MAX_POINTS as u64;
-                    if !kernel {
-                        let message = format!("a region of {} points", region.points());
-                        return Err(Error::new(
-                            ErrorKind::Memory,
-                            format!(
-                                "{message}, the kernel takes at most {MAX_POINTS}: finalize with smaller regions"
-                            ),
-                        ));
-                    }
-                    let points = Residual::with_capacity(0, 0);
-                    next = Some(Whole { number: self.read, region, points });
+                    self.check_size(&region)?;
+                    self.read += 1;
+                    next = Some(Whole { number: self.read, region, points: Residual::default() });
                 }
+                Some(Event::Points(points)) if points.is_empty() => self.reader.give_back(points),
                 Some(Event::Points(points)) => {
                     let whole = next.as_mut().expect("the reader refuses points before the first region");
                     whole.take(&points, self.reader.rows());
                     self.reader.give_back(points);
                 }
-                Some(Event::End(_)) | None => return Ok(None),
+                Some(Event::End(_)) | None => return Ok(Next::End(self.reader.bytes_read())),
                 Some(_) => unreachable!("the reader refuses these blocks in a stream of points in regions"),
             }
         }
@@ -87,8 +100,7 @@ impl Whole {
         self.points.raw = new;
         for &at in &self.points.at[new..] {
             let Some(&id) = live.ids.get(&key(at)) else {
-                let number = self.number;
-                return Err(Error::malformed(format!("point {at:?} of region {number} is in none before")));
+                return Err(Error::malformed(format!("point {at:?} is in no earlier region")));
             };
             self.points.keys.push(id);
         }
@@ -132,7 +144,7 @@ pub(super) fn reduce<W: Write + Send>(
     let threads = NonZeroUsize::new(options.threads).unwrap_or(NonZeroUsize::MIN);
     run.solver.share(threads);
     let name = reader.name().to_string();
-    let mut regions = Regions { reader, read: 0 };
+    let mut regions = Regions { reader, budget: run.budget, read: 0 };
     let mut take = |whole: Whole| {
         let number = whole.number;
         let locate = |error: Error| match error.kind() {
@@ -145,25 +157,34 @@ pub(super) fn reduce<W: Write + Send>(
         progress(run.stats.points);
         Ok(())
     };
-    if threads.get() > 1 {
+    let input_bytes = if threads.get() > 1 {
         let next = move || match regions.next() {
-            Ok(None) => ControlFlow::Break(Ok(None)),
-            Ok(whole) => ControlFlow::Continue(Ok(whole)),
-            Err(error) => ControlFlow::Break(Err(error)),
+            Ok(Next::Region(whole)) => ControlFlow::Continue(Ok(Next::Region(whole))),
+            last => ControlFlow::Break(last),
         };
         let batches = parallel::produce("reader", 0, next)?;
         loop {
-            let next = batches.recv().unwrap_or_else(|_| Err(super::coordinator::thread_gone()))?;
-            let Some(whole) = next else { break };
-            take(whole)?;
+            match batches.recv().unwrap_or_else(|_| Err(thread_gone()))? {
+                Next::Region(whole) => take(whole)?,
+                Next::End(bytes) => break bytes,
+            }
         }
     } else {
-        while let Some(whole) = regions.next()? {
-            take(whole)?;
+        loop {
+            match regions.next()? {
+                Next::Region(whole) => take(whole)?,
+                Next::End(bytes) => break bytes,
+            }
         }
+    };
+    let Run { mut stats, solver, live, .. } = run;
+    if let Some(at) = live.ids.keys().min() {
+        let at = at.map(f64::from_bits);
+        let message = format!("point {at:?} is shared with a later region, and in none");
+        return Err(Error::malformed(message).of_input(name));
     }
-    let Run { mut stats, solver, .. } = run;
     sequencer.add_to(&mut stats);
+    stats.input_bytes = input_bytes;
     stats.predicates = solver.counts();
     sequencer.end(stats.points, stats.merged, stats.merged)?;
     Ok(stats)
@@ -205,8 +226,11 @@ impl Run {
         stats.count(merged);
         let new = region.own as u32..region.new_points() as u32;
         for v in new {
-            if let Some(own) = solver.number_in_region(v, &points) {
-                live.ids.insert(key(points.at[v as usize]), first + own);
+            let at = points.at[v as usize];
+            if let Some(own) = solver.number_in_region(v, &points)
+                && live.ids.insert(key(at), first + own).is_some()
+            {
+                return Err(Error::malformed(format!("point {at:?} is new, but in an earlier region, too")));
             }
         }
         for &at in &points.at[count - region.last as usize..] {

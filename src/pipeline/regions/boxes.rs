@@ -27,6 +27,8 @@ enum Node {
 pub(crate) struct Boxes {
     nodes: Vec<Node>,
     boxes: Vec<Region<3>>,
+    /// The Voronoi cells of the sample that reach into boxes, over all of these.
+    reaching: usize,
 }
 
 /// A closed box.
@@ -46,7 +48,7 @@ impl Boxes {
         let extents = extents_of_cells(diagram);
         let known = diagram.balls.iter().filter(|ball| ball.error.is_finite());
         let centres = known.map(|ball| ball.centre).collect();
-        let tree = Boxes { nodes: Vec::new(), boxes: Vec::new() };
+        let tree = Boxes { nodes: Vec::new(), boxes: Vec::new(), reaching: 0 };
         let mut making = Making { centres, extents: &extents, tree };
         let (mut of_box, all) = (std::mem::take(&mut making.centres), (0..extents.len() as u32).collect());
         making.divide(&mut of_box, all, Region::EVERYTHING, count);
@@ -63,6 +65,11 @@ impl Boxes {
     /// Number of boxes.
     pub(crate) fn len(&self) -> usize {
         self.boxes.len()
+    }
+
+    /// About how many boxes a point is in, on average.
+    pub(crate) fn copies(&self, diagram: &Diagram) -> f64 {
+        self.reaching as f64 / diagram.points.len() as f64
     }
 
     /// The box of this number.
@@ -98,6 +105,7 @@ impl Making<'_> {
         let Some((axis, at)) = cut else {
             self.tree.nodes.push(Node::Box(self.tree.boxes.len() as u32));
             self.tree.boxes.push(region);
+            self.tree.reaching += cells.len();
             return;
         };
         let node = self.tree.nodes.len();
@@ -180,8 +188,9 @@ fn extents_of_cells(diagram: &Diagram) -> Vec<Extent> {
         for vertex in cell.vertices {
             let [low, high] = &mut extents[vertex as usize];
             for axis in 0..3 {
-                low[axis] = low[axis].min(ball.centre[axis]);
-                high[axis] = high[axis].max(ball.centre[axis]);
+                // With their errors: else a cut could be found in the noise of centres that are all in one place.
+                low[axis] = low[axis].min(ball.centre[axis] - ball.error);
+                high[axis] = high[axis].max(ball.centre[axis] + ball.error);
             }
         }
     }

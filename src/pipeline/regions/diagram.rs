@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use super::outward::Outward;
 use spmesh_base::error::{Error, Result};
+use spmesh_delaunay as delaunay;
 use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization, Tetrahedron};
 use spmesh_delaunay::predicates::sphere::SphereBounds;
 use spmesh_delaunay::predicates::{FiniteFloatPredicates3, Point3, Predicates3, Sign};
@@ -15,6 +16,11 @@ pub(super) const INFINITE: u32 = u32::MAX;
 
 /// Stands for no neighbour yet, and for the box of a centre that is not known or near a side of boxes.
 const NONE: u32 = u32::MAX;
+
+/// Most tetrahedra for each point, those that insertions have deleted among them, beside a number that any few
+/// points may have. Points on surfaces have about ten.
+const PER_POINT_MAX: usize = 16;
+const TETRAHEDRA_MIN: usize = 1 << 12;
 
 /// A tetrahedron of the sample. One at infinity has its facet of the hull first, counterclockwise as seen from
 /// outside.
@@ -59,6 +65,10 @@ impl Ball {
         let [least, greatest] = centre.radii;
         let inner = (least - 2.0 * error).max(0.0);
         let outer = greatest + 2.0 * error;
+        // Nothing is known where a square overflows, or the radius may be zero.
+        if !(outer * outer).is_finite() || least <= 0.0 {
+            return UNKNOWN;
+        }
         Ball {
             centre: centre.at,
             error,
@@ -97,14 +107,20 @@ pub(super) struct Search {
 }
 
 impl Diagram {
-    /// The diagram of points that are all different; `None` if they lie in a plane.
+    /// The diagram of points that are all different; `None` if they lie in a plane, or have so many tetrahedra as
+    /// only points on curves have.
     ///
     /// # Errors
     /// Those of the kernel.
     pub(crate) fn of(points: &[Point3]) -> Result<Option<Diagram>> {
         let mut mesh = Tetrahedralization::default();
-        let done = Kernel::new().triangulate(Cow::Borrowed(points), &mut mesh);
-        done.map_err(Error::of_computation)?;
+        let mut kernel = Kernel::new();
+        kernel.tetrahedra_max = PER_POINT_MAX * points.len() + TETRAHEDRA_MIN;
+        match kernel.triangulate(Cow::Borrowed(points), &mut mesh) {
+            Err(delaunay::Error::TooManyTetrahedra(_)) => return Ok(None),
+            done => done.map_err(Error::of_computation)?,
+        }
+        drop(kernel);
         if mesh.tetrahedra().is_empty() {
             return Ok(None);
         }

@@ -24,7 +24,9 @@ impl Members {
         points.iter().for_each(|&point| around.add(point, 0.0));
         let Growing([low, high]) = around;
         let point: Point3 = std::array::from_fn(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
-        let near = square_of_distance(low, high).sqrt() * (0.5 + ROUNDING) + f64::MIN_POSITIVE;
+        // Squares of what is less may underflow.
+        let least = 4.0 * f64::MIN_POSITIVE.sqrt();
+        let near = square_of_distance(low, high).sqrt() * (0.5 + ROUNDING) + least;
         let is_bounded = near.is_finite() && diagram.search_near(point, near, &mut self.search);
         if is_bounded {
             only_box(Set { point, near, is_sample: false }, diagram, boxes, &self.search)
@@ -56,6 +58,7 @@ impl Members {
                 !nearer.any(|other| is_nearer(other, point, &within))
             });
         }
+        debug_assert!(!regions.is_empty(), "a Voronoi cell meets a box");
         regions
     }
 }
@@ -132,14 +135,13 @@ impl Growing {
     fn add_direction(&mut self, outward: &Outward) {
         let Growing([low, high]) = self;
         for axis in 0..3 {
-            if outward.normal[axis] >= -outward.error[axis]
-                && outward.error[axis] + outward.normal[axis] != 0.0
-            {
+            let (normal, error) = (outward.normal[axis], outward.error[axis]);
+            // A normal that overflowed may go both ways.
+            let is_known = normal.is_finite() && error.is_finite();
+            if !is_known || normal + error > 0.0 {
                 high[axis] = f64::INFINITY;
             }
-            if outward.normal[axis] <= outward.error[axis]
-                && outward.error[axis] - outward.normal[axis] != 0.0
-            {
+            if !is_known || normal - error < 0.0 {
                 low[axis] = f64::NEG_INFINITY;
             }
         }
@@ -202,8 +204,8 @@ fn power(Set { point, near, .. }: Set, ball: &Ball) -> (f64, f64) {
 /// that power, which is not negative, at which it is zero.
 fn crossing((taken, taken_error): (f64, f64), (left, left_error): (f64, f64)) -> [f64; 2] {
     let part = |from: f64, to: f64| {
-        let part = from / (from + to);
-        if part.is_finite() { Some(part) } else { None }
+        let (sum, part) = (from + to, from / (from + to));
+        (sum.is_finite() && part.is_finite()).then_some(part)
     };
     let near = part((-taken - taken_error).max(0.0), left + left_error).unwrap_or(0.0);
     let far = part(-taken + taken_error, (left - left_error).max(0.0)).unwrap_or(1.0);

@@ -27,7 +27,7 @@ impl Solver<Space, 3> {
         flush: &mut Flush,
     ) -> Result<Merged> {
         self.bulk.triangulate(points, None)?;
-        let merged = self.merge_in_region(points)?;
+        let merged = self.merge_in_region(region, points)?;
         let coordinates = self.rules.coordinates;
         let mut owned = self.bulk.take_owned(region.own, &region.bounds, sphere_bounds(&coordinates))?;
         let (builder, code) = (&mut self.builder, self.rules.code);
@@ -54,14 +54,17 @@ impl Solver<Space, 3> {
         Ok(merged)
     }
 
-    /// Merges points that coincide: here if they are new, and as the region did that had them first if not.
-    fn merge_in_region(&mut self, points: &mut Residual<3>) -> Result<Merged> {
+    /// Merges points that coincide: here if they are new, and as the region did that had them first if not. They
+    /// are in the same regions.
+    fn merge_in_region(&mut self, region: &PointRegion, points: &mut Residual<3>) -> Result<Merged> {
         self.point_states.clear();
         self.point_states.resize(points.len(), PointState::Interior);
         let (raw, coordinates) = (points.raw as u32, self.rules.coordinates);
+        let ends = [region.own, region.new_points(), region.new_points() + region.again];
+        let group = |v: u32| ends.iter().filter(|&&end| end <= u64::from(v)).count();
         let duplicates = self.bulk.duplicates();
         for &[point, vertex] in &*duplicates {
-            if (point < raw) != (vertex < raw) {
+            if group(point) != group(vertex) {
                 return Err(overlap(points, point, vertex));
             }
             self.point_states[point as usize] = PointState::Merged;
