@@ -66,5 +66,6 @@ pub use merge::{merge_tetrahedra, merge_triangles};
 pub use partial::Part;
 pub use run::{Options, tetrahedralize, tetrahedralize_part, triangulate, triangulate_part};
 pub use sequencer::Outputs;
+#[cfg(feature = "files")]
 pub(crate) use shape::are_on_surface;
 pub use stats::Stats;

@@ -37,7 +37,7 @@ struct Whole {
 
 /// What comes next.
 enum Next {
-    Region(Whole),
+    Region(Box<Whole>),
     /// The length of the input.
     End(u64),
 }
@@ -68,7 +68,7 @@ impl<R: Read> Regions<R> {
         let mut next: Option<Whole> = None;
         loop {
             if let Some(whole) = next.take_if(|whole| whole.points.len() as u64 == whole.region.points()) {
-                return Ok(Next::Region(whole));
+                return Ok(Next::Region(Box::new(whole)));
             }
             match self.reader.next_event()? {
                 Some(Event::Region(region)) => {
@@ -165,14 +165,14 @@ pub(super) fn reduce<W: Write + Send>(
         let batches = parallel::produce("reader", 0, next)?;
         loop {
             match batches.recv().unwrap_or_else(|_| Err(thread_gone()))? {
-                Next::Region(whole) => take(whole)?,
+                Next::Region(whole) => take(*whole)?,
                 Next::End(bytes) => break bytes,
             }
         }
     } else {
         loop {
             match regions.next()? {
-                Next::Region(whole) => take(whole)?,
+                Next::Region(whole) => take(*whole)?,
                 Next::End(bytes) => break bytes,
             }
         }
