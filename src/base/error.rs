@@ -80,8 +80,8 @@ impl Error {
     /// A failure of the operating system during `what` ("reading", "creating the temporary file").
     ///
     /// A broken pipe becomes [`ErrorKind::ClosedPipe`]; an unexpected end of file and invalid data become
-    /// [`ErrorKind::Malformed`]. An error of this type inside of `cause`, such as that of a part of a mesh that is read
-    /// as one stream, is returned as it is.
+    /// [`ErrorKind::Malformed`]. An error of this type inside of `cause`, such as that of a part of a mesh
+    /// that is read as one stream, is returned as it is.
     pub fn io(what: impl Into<String>, cause: io::Error) -> Self {
         let cause = match cause.downcast::<Error>() {
             Ok(inner) => return inner,
@@ -163,8 +163,8 @@ pub fn counted(number: u64, one: &str, many: &str) -> String {
     format!("{number} {}", if number == 1 { one } else { many })
 }
 
-/// A part of a count: "1 of 1 point is", "1 of 3 points is", "2 of 3 points are". `of` are the words for what is
-/// counted, in the singular and the plural, and `verbs` those for what is said of the part.
+/// A part of a count: "1 of 1 point is", "1 of 3 points is", "2 of 3 points are". `of` are the words for what
+/// is counted, in the singular and the plural, and `verbs` those for what is said of the part.
 pub fn counted_of(number: u64, all: u64, of: [&str; 2], verbs: [&str; 2]) -> String {
     format!("{number} of {} {}", counted(all, of[0], of[1]), verbs[usize::from(number != 1)])
 }

@@ -39,8 +39,8 @@ pub struct CellFlags {
 }
 
 impl CellFlags {
-    /// The grid that the flags ask for, for data in `crs`. `window` returns the extent of the data; it is called only if no flag
-    /// states the extent.
+    /// The grid that the flags ask for, for data in `crs`. `window` returns the extent of the data; it is
+    /// called only if no flag states the extent.
     pub fn grid(&self, crs: &Crs, window: impl FnOnce() -> Result<Window>) -> Result<Grid> {
         match (&self.like, self.window()?) {
             (Some(like), _) => Grid::of_file_for(like, crs),

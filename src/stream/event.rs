@@ -138,8 +138,8 @@ fn is_increasing<T: PartialOrd>(values: &[T]) -> bool {
 /// The totals of the whole stream, as END states them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
-    /// Points. For a points stream, those in it; for one of regions, each point once. For a mesh, those of the
-    /// input: its vertices, its merged points, and its residual points that are no vertices.
+    /// Points. For a points stream, those in it; for one of regions, each point once. For a mesh, those of
+    /// the input: its vertices, its merged points, and its residual points that are no vertices.
     pub points: u64,
     /// Cell tags.
     pub cells: u64,

@@ -12,12 +12,13 @@ use spmesh_base::error::{Error, Result};
 /// Length of the payload of a region, in bytes.
 const REGION_LEN: usize = 80;
 
-/// One region of a stream of points in regions. Its points follow it in the stream: those that no other region
-/// has, then the others in the order of the counts. A stream has each point once for each region that has it.
+/// One region of a stream of points in regions. Its points follow it in the stream: those that no other
+/// region has, then the others in the order of the counts. A stream has each point once for each region that
+/// has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointRegion {
-    /// The half-open box of the region, in stored coordinates. Sides may be infinite, but not NaN, and the box
-    /// is not empty. Points of the region may lie outside.
+    /// The half-open box of the region, in stored coordinates. Sides may be infinite, but not NaN, and the
+    /// box is not empty. Points of the region may lie outside.
     pub bounds: Region<3>,
     /// Points that no other region has.
     pub own: u64,

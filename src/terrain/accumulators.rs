@@ -38,8 +38,8 @@ pub(crate) struct Accumulators<C> {
     pub(crate) spilled: u64,
 }
 
-/// A place where tiles meet has so many. With fewer in memory, what is near it writes tiles and reads them back in
-/// turn, which takes hours.
+/// A place where tiles meet has so many. With fewer in memory, what is near it writes tiles and reads them
+/// back in turn, which takes hours.
 const HELD_MIN: usize = 4;
 
 #[derive(Debug, Clone, Copy)]

@@ -78,8 +78,8 @@ pub struct Options {
     pub light: Light,
     /// Triangles with a longer edge are left out. Units: those of the world.
     pub kill: Option<f64>,
-    /// Triangles outside of the concave outline are left out: a chain of triangles leads to them from the convex
-    /// hull in which every crossed edge is longer than this. Units: those of the world.
+    /// Triangles outside of the concave outline are left out: a chain of triangles leads to them from the
+    /// convex hull in which every crossed edge is longer than this. Units: those of the world.
     pub concave: Option<f64>,
     /// Only what is inside of these polygons is shown, in a view from above.
     pub mask: Option<Arc<Mask>>,
@@ -101,8 +101,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// The defaults for a stream of some name: a width of 1,000 pixels, light from the north-west, and colours from
-    /// 2 to 98 percent.
+    /// The defaults for a stream of some name: a width of 1,000 pixels, light from the north-west, and
+    /// colours from 2 to 98 percent.
     pub fn new(name: impl Into<String>) -> Options {
         Options {
             name: name.into(),

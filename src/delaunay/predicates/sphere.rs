@@ -82,13 +82,9 @@ impl SphereBounds {
     ///
     /// Source: thesis 5.4 and 5.7; the module's text has the derivation.
     #[inline]
-    pub fn ball_inside(self, [a, b, c, d]: [Point3; 4], region: [[f64; 3]; 2]) -> bool {
-        let vectors = [b, c, d].map(|point| difference(point, a));
-        let lifts = vectors.map(|vector| {
-            let lift = square(vector);
-            (lift, lift)
-        });
-        self.is_inside(a, vectors, lifts, 0.0, region)
+    pub fn ball_inside(self, corners: [Point3; 4], region: [[f64; 3]; 2]) -> bool {
+        let (vectors, lifts) = from_first(corners);
+        self.is_inside(corners[0], vectors, lifts, 0.0, region)
     }
 
     /// The same for points with weights: whether the ball around the orthocentre, with a squared radius that
@@ -116,12 +112,8 @@ impl SphereBounds {
 
     /// The centre of the sphere through four points, and how far off it may be; `None` if it cannot be told.
     #[inline]
-    pub fn centre(self, [a, b, c, d]: [Point3; 4]) -> Option<Centre> {
-        let vectors = [b, c, d].map(|point| difference(point, a));
-        let lifts = vectors.map(|vector| {
-            let lift = square(vector);
-            (lift, lift)
-        });
+    pub fn centre(self, corners: [Point3; 4]) -> Option<Centre> {
+        let (a, (vectors, lifts)) = (corners[0], from_first(corners));
         let (o, e) = self.offset(vectors, lifts)?;
         let error = std::array::from_fn(|axis| e[axis] + 2.0 * U * (a[axis].abs() + o[axis].abs()) * SLACK);
         let margin = (e[0] + e[1] + e[2]) * SLACK;
@@ -130,8 +122,9 @@ impl SphereBounds {
         Some(Centre { at: std::array::from_fn(|axis| a[axis] + o[axis]), error, radii })
     }
 
-    /// The centre relative to `a` of a tetrahedron of `a` and three vectors, with the lift of each and the sum
-    /// of the magnitudes that it is made of, and the errors along the axes. `None` if the bounds do not hold.
+    /// The centre relative to `a` of a tetrahedron of `a` and three vectors, with the lift of each and the
+    /// sum of the magnitudes that it is made of, and the errors along the axes. `None` if the bounds do not
+    /// hold.
     #[inline(always)]
     fn offset(
         self,
@@ -194,8 +187,8 @@ pub struct Centre {
     pub radii: [f64; 2],
 }
 
-/// Whether the centre of the sphere through the corners of a tetrahedron that is positively oriented lies in a
-/// half-open `region`: on its lower sides, or inside. Exact for all finite coordinates.
+/// Whether the centre of the sphere through the corners of a tetrahedron that is positively oriented lies in
+/// a half-open `region`: on its lower sides, or inside. Exact for all finite coordinates.
 ///
 /// A region's sides are not NaN.
 pub fn centre_is_inside(bounds: SphereBounds, corners: [Point3; 4], region: [[f64; 3]; 2]) -> bool {
@@ -228,6 +221,18 @@ fn centre_is_from(side: f64, axis: usize, [a, b, c, d]: [Point3; 4]) -> bool {
     let volume = forms::dot(&b, &x);
     let numerator = forms::lift(&b) * &x[axis] + forms::lift(&c) * &y[axis] + forms::lift(&d) * &z[axis];
     numerator >= volume * 2 * &place[axis]
+}
+
+/// The vectors from the first corner of a tetrahedron without weights, with the lift of each and the sum of
+/// the magnitudes that it is made of.
+#[inline(always)]
+fn from_first([a, b, c, d]: [Point3; 4]) -> ([Point3; 3], [(f64, f64); 3]) {
+    let vectors = [b, c, d].map(|point| difference(point, a));
+    let lifts = vectors.map(|vector| {
+        let lift = square(vector);
+        (lift, lift)
+    });
+    (vectors, lifts)
 }
 
 #[inline(always)]

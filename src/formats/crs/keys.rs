@@ -123,7 +123,8 @@ impl GeoKeys {
         self.doubles.push(value);
     }
 
-    /// Adds a key with a text: the printable ASCII characters of its parts, each with the mark that ends texts.
+    /// Adds a key with a text: the printable ASCII characters of its parts, each with the mark that ends
+    /// texts.
     pub(crate) fn add_text(&mut self, key: u16, parts: &[String]) {
         let is_kept = |c: &char| (c.is_ascii_graphic() || *c == ' ') && *c != '|';
         let text: String = parts.iter().flat_map(|part| part.chars().filter(is_kept).chain(['|'])).collect();

@@ -1,7 +1,7 @@
 //! GeoTIFF keys of a system.
 //!
-//! Source: OGC GeoTIFF 1.1. Systems with a code are written as their code, others with user-defined keys. What
-//! keys cannot say is reported.
+//! Source: OGC GeoTIFF 1.1. Systems with a code are written as their code, others with user-defined keys.
+//! What keys cannot say is reported.
 
 use crate::crs::compare::contradictions;
 use crate::crs::epsg;

@@ -122,13 +122,14 @@ impl Breaklines {
 ///
 /// # Errors
 /// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a
-/// coordinate is not finite, or there are more than `LINE_VERTICES_MAX` vertices; memory, if there are more than
-/// `vertices_max`.
+/// coordinate is not finite, or there are more than `LINE_VERTICES_MAX` vertices; memory, if there are more
+/// than `vertices_max`.
 pub fn read_breaklines(path: &Path, vertices_max: usize) -> Result<Breaklines> {
     read(path, text_of_lines, vertices_max).map_err(|error| error.of_input(name_of(path)))
 }
 
-/// How what is no GeoJSON, Shapefile or GeoPackage is read: its first bytes, all of it, and the most vertices.
+/// How what is no GeoJSON, Shapefile or GeoPackage is read: its first bytes, all of it, and the most
+/// vertices.
 type ReadText = fn(&[u8], &mut dyn Read, usize) -> Result<Breaklines>;
 
 fn text_of_lines(head: &[u8], input: &mut dyn Read, vertices_max: usize) -> Result<Breaklines> {

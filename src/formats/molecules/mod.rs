@@ -123,8 +123,8 @@ fn read(
     }
 }
 
-/// The format that the caller names, unless it is PDB and an input that may be endless starts without a record
-/// of it: lines that are no records would be skipped to the end.
+/// The format that the caller names, unless it is PDB and an input that may be endless starts without a
+/// record of it: lines that are no records would be skipped to the end.
 fn check(format: Format, head: &[u8]) -> Result<Format> {
     let is_seen = head.len() as u64 == HEAD_LEN;
     if format == Format::Pdb && is_seen && !matches!(detect::detect(head), Ok(Format::Pdb)) {

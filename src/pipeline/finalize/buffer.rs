@@ -65,8 +65,8 @@ pub(super) struct CellBuffers {
 }
 
 impl CellBuffers {
-    /// Buffers of `cells` cells for `records` records in all, that take up to `bytes` of memory and spill to a
-    /// file in `folder`.
+    /// Buffers of `cells` cells for `records` records in all, that take up to `bytes` of memory and spill to
+    /// a file in `folder`.
     ///
     /// If it `spills_cold`, cells that have got no points for long go to the file while there is memory left,
     /// too. In files of tiles these are the cells on the borders, which wait for the tile beyond.

@@ -71,8 +71,8 @@ impl Work<'_> {
     /// leaf, its cell, and the buffers that have its records. Waiting points take up to `bytes`.
     ///
     /// Leaves that are complete within the same [`WINDOW`] of points come in the order of the tree. If the
-    /// points are in random order, nearly all leaves are complete at the very end, and neighbours should follow
-    /// each other.
+    /// points are in random order, nearly all leaves are complete at the very end, and neighbours should
+    /// follow each other.
     pub(super) fn hold_leaves(
         &mut self,
         plan: Plan,

@@ -80,8 +80,8 @@ struct Scatter<'r> {
     regions_max: usize,
     /// Bytes of records whose regions are found together, at most.
     together_max: usize,
-    /// Whether a leaf has more than that. Points that coincide may then be apart, so that each is searched alone:
-    /// they must have the same regions.
+    /// Whether a leaf has more than that. Points that coincide may then be apart, so that each is searched
+    /// alone: they must have the same regions.
     is_split: bool,
     order: SpatialOrder,
     /// Records of a leaf, their points, and for each the range of its groups.

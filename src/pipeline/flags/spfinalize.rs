@@ -128,9 +128,9 @@ pub struct Flags {
     #[arg(long)]
     preserve: bool,
 
-    /// With --octree: write points in overlapping regions, each of which spdelaunay3d tetrahedralizes alone. Most
-    /// points on surfaces wait until the end otherwise, in memory; auto looks at a sample. About N points a
-    /// region with --cell-points N
+    /// With --octree: write points in overlapping regions, each of which spdelaunay3d tetrahedralizes alone.
+    /// Most points on surfaces wait until the end otherwise, in memory; auto looks at a sample. About N
+    /// points a region with --cell-points N
     #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = named(REGIONS))]
     regions: WhenRegions,
 

@@ -112,10 +112,9 @@ pub struct Lines {
 ///
 /// # Errors
 /// Those of reading; usage, if the system of a file differs from that of the stream, a coordinate is beyond
-/// the grid of the stream, or there is water and points have no elevation; memory, if there are more vertices than
-/// `options` allow; malformed, if there are too many
-/// vertices or crossings, an area has no polygon, a feature of water is neither a polygon nor the centre line
-/// or a bank of a river, or banks bound no area.
+/// the grid of the stream, or there is water and points have no elevation; memory, if there are more vertices
+/// than `options` allow; malformed, if there are too many vertices or crossings, an area has no polygon, a
+/// feature of water is neither a polygon nor the centre line or a bank of a river, or banks bound no area.
 pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lines> {
     if options.densify.is_some_and(|longest| !(longest > 0.0 && longest.is_finite())) {
         return Err(Error::usage("--densify, the longest part of a line, must be a positive number"));

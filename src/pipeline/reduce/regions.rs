@@ -1,7 +1,7 @@
 //! Tetrahedralizes points in overlapping regions: one region after the other, each on all threads.
 //!
-//! A region owns the tetrahedra whose circumcentres are in its box. `docs/theory/regions.md` proves that these
-//! are the tetrahedra of all points, each once.
+//! A region owns the tetrahedra whose circumcentres are in its box. `docs/theory/regions.md` proves that
+//! these are the tetrahedra of all points, each once.
 
 use std::collections::HashMap;
 use std::io::{Read, Write};
@@ -15,7 +15,8 @@ use super::node::Solver;
 use super::patches::Flush;
 use super::residual::Residual;
 use super::rules::Rules;
-use super::run::{Options, begin};
+use super::run::{Input, Options, begin, check_weights, mesh_header};
+use super::run_state::located;
 use super::sequencer::{Outputs, Sequencer};
 use super::space::Space;
 use super::stats::Stats;
@@ -79,7 +80,7 @@ impl<R: Read> Regions<R> {
                 Some(Event::Points(points)) if points.is_empty() => self.reader.give_back(points),
                 Some(Event::Points(points)) => {
                     let whole = next.as_mut().expect("the reader refuses points before the first region");
-                    whole.take(&points, self.reader.rows());
+                    whole.points.extend_raw(&points, self.reader.rows());
                     self.reader.give_back(points);
                 }
                 Some(Event::End(_)) | None => return Ok(Next::End(self.reader.bytes_read())),
@@ -90,16 +91,12 @@ impl<R: Read> Regions<R> {
 }
 
 impl Whole {
-    fn take(&mut self, points: &[Point], rows: &[u8]) {
-        self.points.extend_raw(points, rows);
-    }
-
     /// Gives the points of earlier regions the ids of their vertices.
     fn enter(&mut self, live: &Live) -> Result<()> {
         let new = self.region.new_points() as usize;
         self.points.raw = new;
         for &at in &self.points.at[new..] {
-            let Some(&id) = live.ids.get(&key(at)) else {
+            let Some(&id) = live.get(&key(at)) else {
                 return Err(Error::malformed(format!("point {at:?} is in no earlier region")));
             };
             self.points.keys.push(id);
@@ -108,18 +105,12 @@ impl Whole {
     }
 }
 
-/// The vertices that later regions have, too, by their places.
-#[derive(Default)]
-struct Live {
-    ids: HashMap<[u64; 3], u64>,
-}
+/// The ids of the vertices that later regions have, too, by their places.
+type Live = HashMap<[u64; 3], u64>;
 
 fn key(at: Point) -> [u64; 3] {
     at.map(f64::to_bits)
 }
-
-/// The input of a run.
-type Input = Box<dyn Read + Send>;
 
 /// Tetrahedralizes points in regions.
 pub(super) fn reduce<W: Write + Send>(
@@ -129,9 +120,12 @@ pub(super) fn reduce<W: Write + Send>(
     progress: &mut dyn FnMut(u64),
 ) -> Result<Stats> {
     let header = reader.header();
-    check(options)?;
-    let mesh =
-        Header { compressed: options.compress, ..super::run::mesh_header::<Space, 3>(header, None, None) };
+    if options.part.is_some() {
+        let message = "--partial does not go with points in regions: finalize with --regions never";
+        return Err(Error::usage(message));
+    }
+    check_weights(header, options)?;
+    let mesh = Header { compressed: options.compress, ..mesh_header::<Space, 3>(header, None, None) };
     let row_len = header.attributes.row_len();
     let mut sequencer = begin::<Space, W, 3>(outputs, mesh, Region::EVERYTHING)?;
     let rules = Rules::new(sequencer.header(), options.duplicates, false);
@@ -145,40 +139,29 @@ pub(super) fn reduce<W: Write + Send>(
     run.solver.share(threads);
     let name = reader.name().to_string();
     let mut regions = Regions { reader, budget: run.budget, read: 0 };
-    let mut take = |whole: Whole| {
-        let number = whole.number;
-        let locate = |error: Error| match error.kind() {
-            ErrorKind::Malformed => error.at(format!("region {number}")).of_input(&name),
-            ErrorKind::Memory => error.of_input(&name),
-            _ => error,
-        };
-        run.stats.points += whole.region.new_points();
-        run.solve(whole, &mut sequencer, threads).map_err(locate)?;
-        progress(run.stats.points);
-        Ok(())
-    };
-    let input_bytes = if threads.get() > 1 {
-        let next = move || match regions.next() {
+    let mut next: Box<dyn FnMut() -> Result<Next>> = if threads.get() > 1 {
+        let read = move || match regions.next() {
             Ok(Next::Region(whole)) => ControlFlow::Continue(Ok(Next::Region(whole))),
             last => ControlFlow::Break(last),
         };
-        let batches = parallel::produce("reader", 0, next)?;
-        loop {
-            match batches.recv().unwrap_or_else(|_| Err(thread_gone()))? {
-                Next::Region(whole) => take(*whole)?,
-                Next::End(bytes) => break bytes,
-            }
-        }
+        let read = parallel::produce("reader", 0, read)?;
+        Box::new(move || read.recv().unwrap_or_else(|_| Err(thread_gone())))
     } else {
-        loop {
-            match regions.next()? {
-                Next::Region(whole) => take(*whole)?,
-                Next::End(bytes) => break bytes,
-            }
-        }
+        Box::new(move || regions.next())
+    };
+    let input_bytes = loop {
+        let whole = match next()? {
+            Next::Region(whole) => *whole,
+            Next::End(bytes) => break bytes,
+        };
+        let number = whole.number;
+        run.stats.points += whole.region.new_points();
+        let solved = run.solve(whole, &mut sequencer, threads);
+        solved.map_err(|error| located(error, format_args!("region {number}"), &name))?;
+        progress(run.stats.points);
     };
     let Run { mut stats, solver, live, .. } = run;
-    if let Some(at) = live.ids.keys().min() {
+    if let Some(at) = live.keys().min() {
         let at = at.map(f64::from_bits);
         let message = format!("point {at:?} is shared with a later region, and in none");
         return Err(Error::malformed(message).of_input(name));
@@ -208,7 +191,7 @@ impl Run {
         let Run { solver, budget, live, stats } = self;
         let count = whole.points.len();
         // The next region is being read.
-        let held = Held { points: count, buckets: LIVE_BYTES * live.ids.len(), ..Held::default() };
+        let held = Held { points: count, buckets: LIVE_BYTES * live.len(), ..Held::default() };
         solver.allow(budget.check(Load { held, raw: count, ..Load::default() }, count)?);
         whole.enter(live)?;
         let Whole { region, mut points, number } = whole;
@@ -228,32 +211,17 @@ impl Run {
         for v in new {
             let at = points.at[v as usize];
             if let Some(own) = solver.number_in_region(v, &points)
-                && live.ids.insert(key(at), first + own).is_some()
+                && live.insert(key(at), first + own).is_some()
             {
                 return Err(Error::malformed(format!("point {at:?} is new, but in an earlier region, too")));
             }
         }
         for &at in &points.at[count - region.last as usize..] {
-            live.ids.remove(&key(at));
+            live.remove(&key(at));
         }
         stats.leaves += 1;
         stats.leaf_max = stats.leaf_max.max(count as u64);
-        stats.held_max = stats.held_max.max(live.ids.len() as u64);
+        stats.held_max = stats.held_max.max(live.len() as u64);
         Ok(())
     }
-}
-
-/// Checks the options that regions do not go with.
-fn check(options: &Options<3>) -> Result<()> {
-    if options.part.is_some() {
-        return Err(Error::usage(
-            "--partial does not go with points in regions: finalize with --regions never",
-        ));
-    }
-    if options.weighted {
-        return Err(Error::usage(
-            "the points have no weights: finalize them with spfinalize --octree --radii or --weights",
-        ));
-    }
-    Ok(())
 }

@@ -147,7 +147,7 @@ where
 
 /// The input of a run, and what it writes to: of one type each, so that all of the code below is compiled
 /// once, in this crate, and not in each crate that calls it.
-type Input = Box<dyn Read + Send>;
+pub(super) type Input = Box<dyn Read + Send>;
 type Sink<'a> = &'a mut (dyn Write + Send + 'a);
 
 fn boxed<R: Read + Send + 'static>(reader: StreamReader<R>) -> StreamReader<Input> {
@@ -245,7 +245,7 @@ fn check_input<B: Bulk<D>, const D: usize>(header: &Header) -> Result<()> {
 }
 
 /// Checks that there are weights, if they are wanted.
-fn check_weights<const D: usize>(header: &Header, options: &Options<D>) -> Result<()> {
+pub(super) fn check_weights<const D: usize>(header: &Header, options: &Options<D>) -> Result<()> {
     if !options.weighted {
         return Ok(());
     }

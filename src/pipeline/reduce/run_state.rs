@@ -1,5 +1,6 @@
 //! A run under way: the steps that one thread and several have in common.
 
+use std::fmt;
 use std::io::Write;
 use std::num::NonZeroUsize;
 
@@ -70,11 +71,7 @@ impl<const D: usize> Run<D> {
 
     /// Adds input and cell to an error about points; returns other errors unchanged.
     pub(super) fn locate(&self, error: Error, cell: CellCode) -> Error {
-        match error.kind() {
-            ErrorKind::Malformed => error.at(format!("cell {}", cell.0)).of_input(&self.name),
-            ErrorKind::Memory => error.of_input(&self.name),
-            _ => error,
-        }
+        located(error, format_args!("cell {}", cell.0), &self.name)
     }
 
     /// Triangulates the root, if it has points, and writes its patches as they come.
@@ -138,5 +135,14 @@ impl<const D: usize> Run<D> {
         stats.predicates = predicates;
         let outputs = sequencer.end(stats.points, stats.merged, stats.merged)?;
         Ok((outputs, stats))
+    }
+}
+
+/// Adds the input and a place in it to an error about points; returns other errors unchanged.
+pub(super) fn located(error: Error, place: fmt::Arguments, input: &str) -> Error {
+    match error.kind() {
+        ErrorKind::Malformed => error.at(place.to_string()).of_input(input),
+        ErrorKind::Memory => error.of_input(input),
+        _ => error,
     }
 }

@@ -36,7 +36,6 @@ pub(super) type Extent = [Point3; 2];
 
 /// What the tree is made of.
 struct Making<'d> {
-    centres: Vec<Point3>,
     /// The box of the Voronoi vertices of each cell.
     extents: &'d [Extent],
     tree: Boxes,
@@ -47,16 +46,15 @@ impl Boxes {
     pub(crate) fn lay(diagram: &mut Diagram, count: usize) -> Boxes {
         let extents = extents_of_cells(diagram);
         let known = diagram.balls.iter().filter(|ball| ball.error.is_finite());
-        let centres = known.map(|ball| ball.centre).collect();
+        let mut centres: Vec<Point3> = known.map(|ball| ball.centre).collect();
         let tree = Boxes { nodes: Vec::new(), boxes: Vec::new(), reaching: 0 };
-        let mut making = Making { centres, extents: &extents, tree };
-        let (mut of_box, all) = (std::mem::take(&mut making.centres), (0..extents.len() as u32).collect());
-        making.divide(&mut of_box, all, Region::EVERYTHING, count);
+        let mut making = Making { extents: &extents, tree };
+        making.divide(&mut centres, (0..extents.len() as u32).collect(), Region::EVERYTHING, count);
         let tree = making.tree;
         for ball in &mut diagram.balls {
             let [low, high] = [-ball.error, ball.error].map(|e| ball.centre.map(|x| x + e));
             let (mut met, mut more) = (None, false);
-            tree.visit([low, high], &mut |number, _| more |= met.replace(number).is_some());
+            tree.visit([low, high], &mut |number| more |= met.replace(number).is_some());
             ball.place = met.filter(|_| !more);
         }
         tree
@@ -77,14 +75,14 @@ impl Boxes {
         self.boxes[number]
     }
 
-    /// Calls `found` with each box that, with its sides, meets a closed box.
-    pub(super) fn visit(&self, extent: Extent, found: &mut impl FnMut(u32, &Region<3>)) {
+    /// Calls `found` with the number of each box that, with its sides, meets a closed box.
+    pub(super) fn visit(&self, extent: Extent, found: &mut impl FnMut(u32)) {
         self.visit_from(0, extent, found);
     }
 
-    fn visit_from(&self, node: usize, extent: Extent, found: &mut impl FnMut(u32, &Region<3>)) {
+    fn visit_from(&self, node: usize, extent: Extent, found: &mut impl FnMut(u32)) {
         match self.nodes[node] {
-            Node::Box(number) => found(number, &self.boxes[number as usize]),
+            Node::Box(number) => found(number),
             Node::Cut { axis, at, above } => {
                 if extent[0][axis] <= at {
                     self.visit_from(node + 1, extent, found);
@@ -114,15 +112,9 @@ impl Making<'_> {
         let (lower, upper) = centres.split_at_mut(middle);
         let (mut left, mut right) = (region, region);
         (left.max[axis], right.min[axis]) = (at, at);
-        let reach = |side: usize| {
-            let is_there = move |extent: &Extent| match side {
-                0 => extent[0][axis] < at,
-                _ => extent[1][axis] >= at,
-            };
-            cells.iter().copied().filter(|&cell| is_there(&self.extents[cell as usize])).collect::<Vec<_>>()
-        };
-        let (cells_below, cells_above) = (reach(0), reach(1));
-        drop(cells);
+        let extent = |cell: u32| &self.extents[cell as usize];
+        let cells_below = cells.iter().copied().filter(|&cell| extent(cell)[0][axis] < at).collect();
+        let cells_above = cells.into_iter().filter(|&cell| extent(cell)[1][axis] >= at).collect();
         self.divide(lower, cells_below, left, below);
         let above = self.tree.nodes.len() as u32;
         self.tree.nodes[node] = Node::Cut { axis, at, above };
@@ -188,7 +180,8 @@ fn extents_of_cells(diagram: &Diagram) -> Vec<Extent> {
         for vertex in cell.vertices {
             let [low, high] = &mut extents[vertex as usize];
             for axis in 0..3 {
-                // With their errors: else a cut could be found in the noise of centres that are all in one place.
+                // With their errors: else a cut could be found in the noise of centres that are all in one
+                // place.
                 low[axis] = low[axis].min(ball.centre[axis] - ball.error);
                 high[axis] = high[axis].max(ball.centre[axis] + ball.error);
             }

@@ -14,16 +14,16 @@ use spmesh_delaunay::simplex::TETRAHEDRON_FACETS;
 /// Stands for the vertex at infinity.
 pub(super) const INFINITE: u32 = u32::MAX;
 
-/// Stands for no neighbour yet, and for the box of a centre that is not known or near a side of boxes.
+/// Stands for no neighbour yet.
 const NONE: u32 = u32::MAX;
 
-/// Most tetrahedra for each point, those that insertions have deleted among them, beside a number that any few
-/// points may have. Points on surfaces have about ten.
+/// Most tetrahedra for each point, those that insertions have deleted among them, beside a number that any
+/// few points may have. Points on surfaces have about ten.
 const PER_POINT_MAX: usize = 16;
 const TETRAHEDRA_MIN: usize = 1 << 12;
 
-/// A tetrahedron of the sample. One at infinity has its facet of the hull first, counterclockwise as seen from
-/// outside.
+/// A tetrahedron of the sample. One at infinity has its facet of the hull first, counterclockwise as seen
+/// from outside.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cell {
     pub(super) vertices: [u32; 4],
@@ -107,8 +107,8 @@ pub(super) struct Search {
 }
 
 impl Diagram {
-    /// The diagram of points that are all different; `None` if they lie in a plane, or have so many tetrahedra as
-    /// only points on curves have.
+    /// The diagram of points that are all different; `None` if they lie in a plane, or have so many
+    /// tetrahedra as only points on curves have.
     ///
     /// # Errors
     /// Those of the kernel.
@@ -125,8 +125,8 @@ impl Diagram {
             return Ok(None);
         }
         let points: Vec<Point3> = mesh.vertices().iter().map(|vertex| vertex.at).collect();
-        // Along the curve of the vertices, so that what is near is near in memory, too: insertion has scattered
-        // them.
+        // Along the curve of the vertices, so that what is near is near in memory, too: insertion has
+        // scattered them.
         let tetrahedra = mesh.tetrahedra();
         let mut order: Vec<u32> = (0..tetrahedra.len() as u32).collect();
         order.sort_unstable_by_key(|&old| tetrahedra[old as usize].vertices.into_iter().max());
@@ -169,7 +169,7 @@ impl Diagram {
         TETRAHEDRON_FACETS[corner].map(|i| self.points[vertices[i] as usize])
     }
 
-    /// The place of `point` if it is one of the sample, after [`Diagram::search`].
+    /// The vertex of a tetrahedron that is at `point`, if one is.
     fn vertex_at(&self, cell: u32, point: Point3) -> Option<u32> {
         let mut vertices = self.cells[cell as usize].vertices.into_iter();
         vertices.find(|&vertex| vertex != INFINITE && self.points[vertex as usize] == point)

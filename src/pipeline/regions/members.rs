@@ -49,7 +49,7 @@ impl Members {
             return regions;
         }
         let extent = extent_of_cell(set, diagram, search);
-        boxes.visit(extent, &mut |number, _| regions.push(number));
+        boxes.visit(extent, &mut |number| regions.push(number));
         if regions.len() > 1 {
             find_neighbours(diagram, search, neighbours);
             regions.retain(|&number| {

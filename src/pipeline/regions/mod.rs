@@ -5,11 +5,11 @@
 //! Voronoi diagram of a sample and itself reaches. On a surface, the balls of tetrahedra are as large as the
 //! body inside of it, but they are empty, so a point is in few regions all the same.
 //!
-//! `docs/theory/regions.md` proves it. A [`sample`] of the points is tetrahedralized ([`diagram`]); the centres
-//! of its balls tell how to lay the [`boxes`], and its Voronoi cells tell [`members`].
+//! `docs/theory/regions.md` proves it. A [`sample`] of the points is tetrahedralized ([`diagram`]); the
+//! centres of its balls tell how to lay the [`boxes`], and its Voronoi cells tell [`members`].
 //!
-//! Source: Clarkson and Shor, "Applications of random sampling in computational geometry, II", 1989; thesis 5.6
-//! proposes them for finalization.
+//! Source: Clarkson and Shor, "Applications of random sampling in computational geometry, II", 1989; thesis
+//! 5.6 proposes them for finalization.
 
 mod boxes;
 mod diagram;

@@ -5,8 +5,8 @@
 //! own. Rings of areas are left as they are: they cut the mesh.
 //!
 //! Triangles must wait whose circles contain the new vertex. It is close to the hull of the mesh, so such a
-//! circle reaches beyond what is known of the hull, and near the segment. Borders that are inside of the hull, of
-//! meshes that are not convex, get no new vertices.
+//! circle reaches beyond what is known of the hull, and near the segment. Borders that are inside of the
+//! hull, of meshes that are not convex, get no new vertices.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;

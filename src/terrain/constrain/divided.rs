@@ -1,7 +1,7 @@
 //! New vertices on shores between vertices of the mesh that have the elevations of the shore.
 //!
-//! A line that `spfinalize` did not have divides shores at vertices that are not in the mesh. Between them the
-//! shore is no edge yet, so the surface is not level there.
+//! A line that `spfinalize` did not have divides shores at vertices that are not in the mesh. Between them
+//! the shore is no edge yet, so the surface is not level there.
 
 use super::near::{Lines, foot};
 use foldhash::HashMap;

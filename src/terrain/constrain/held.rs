@@ -5,8 +5,8 @@
 //! and the circle of one of its triangles is empty of all vertices. A component of such triangles is *whole*
 //! when no edge of it can get a neighbour that belongs to it.
 //!
-//! * Whether a segment crosses an edge follows from one of its triangles. The other one must come, unless the edge
-//!   is on the border of the mesh.
+//! * Whether a segment crosses an edge follows from one of its triangles. The other one must come, unless the
+//!   edge is on the border of the mesh.
 //! * Whether the other circle contains a vertex is not known. The edge waits.
 //! * An edge with an end that is final gets no further triangle.
 

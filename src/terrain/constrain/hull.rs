@@ -1,6 +1,7 @@
 //! A part of the convex hull of the mesh that is known before the mesh has ended.
 //!
-//! The border of the hull is not known until then, but what is well inside of the vertices so far stays inside.
+//! The border of the hull is not known until then, but what is well inside of the vertices so far stays
+//! inside.
 
 use spmesh_delaunay::cell_tree::CellBox;
 use spmesh_stream::model::points::Point2;

@@ -99,7 +99,8 @@ pub struct Stats {
 ///
 /// # Errors
 /// Usage, if the input is no triangle mesh or is constrained already; malformed, if it breaks a rule, if a
-/// triangle is not counterclockwise, or if segments cross; memory, if more is needed than `options` allow; I/O.
+/// triangle is not counterclockwise, or if segments cross; memory, if more is needed than `options` allow;
+/// I/O.
 pub fn constrain<R: Read, W: Write>(
     reader: &mut StreamReader<R>,
     network: &Network,

@@ -13,9 +13,9 @@ use spmesh_formats::source::Mask;
 
 /// Which cells of a grid have their centre in one of some polygons, or on the border of one.
 ///
-/// A ray to the left of a centre in a polygon crosses its edges an odd number of times. So each edge flips the
-/// cells on its right in every row that it crosses, and the parity of the flips is the sum along the row. Centres
-/// are f64 coordinates of the world; on which side of an edge they are is decided exactly.
+/// A ray to the left of a centre in a polygon crosses its edges an odd number of times. So each edge flips
+/// the cells on its right in every row that it crosses, and the parity of the flips is the sum along the row.
+/// Centres are f64 coordinates of the world; on which side of an edge they are is decided exactly.
 ///
 /// Cost: for a tile, a look at each edge in its rows, and the rows of the edges of polygons that reach into
 /// it.
@@ -133,7 +133,8 @@ impl CellMask {
                 Predicates2::orient2d(predicates, low, high, [self.columns.at(column), y])
             };
             let column = first(left..right, guess, |column| side(column, predicates) != Sign::Positive);
-            // The edge has its lower end, but not its upper one: a row through a vertex crosses one of its edges.
+            // The edge has its lower end, but not its upper one: a row through a vertex crosses one of its
+            // edges.
             if column < right {
                 let word = &mut flips[(row - top) as usize * WORDS + (column - left) as usize / WORD];
                 *word ^= u64::from(y < high[1]) << ((column - left) as usize % WORD);

@@ -1,8 +1,8 @@
 //! Mean, least and greatest elevations of the surface over whole cells.
 //!
 //! Each triangle is cut at the sides of cells (`cut`). What it adds to a cell is rounded to integers and then
-//! added up, so the order of triangles does not matter. A cell may get a part of a triangle at any time, so all
-//! tiles wait for the end of the mesh.
+//! added up, so the order of triangles does not matter. A cell may get a part of a triangle at any time, so
+//! all tiles wait for the end of the mesh.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -109,8 +109,8 @@ impl Coverage {
         })
     }
 
-    /// Passes all tiles to `stages`; `cache` knows which cells are outside of the mask. Returns the number of tiles and
-    /// the bytes in temporary files.
+    /// Passes all tiles to `stages`; `cache` knows which cells are outside of the mask. Returns the number of
+    /// tiles and the bytes in temporary files.
     pub(super) fn finish(mut self, cache: &TileCache, stages: &mut Stages) -> Result<[u64; 2]> {
         let mut values = vec![f32::NAN; CELLS];
         for at in places(cache.tiles()) {

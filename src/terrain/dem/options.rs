@@ -17,7 +17,8 @@ use spmesh_stream::Crs;
 pub enum Interpolation {
     /// Linear in each triangle.
     Linear,
-    /// The value of the nearest corner of the triangle; of several, the one with the least x, then the least y.
+    /// The value of the nearest corner of the triangle; of several, the one with the least x, then the least
+    /// y.
     Nearest,
 }
 
@@ -28,12 +29,13 @@ pub enum Quantity {
     Elevation,
     /// The angle of the surface with the horizontal, in degrees.
     Slope,
-    /// The direction of steepest descent, in degrees clockwise from north; no data where the surface is level.
+    /// The direction of steepest descent, in degrees clockwise from north; no data where the surface is
+    /// level.
     Aspect,
     /// The brightness of the surface in some light, as bytes from 1 to 255.
     Hillshade(Shading),
-    /// The colour of the elevation, lit as a hillshade: red, green, blue and opacity. Colours span these elevations, or
-    /// all that the header of the mesh states. It follows from cells whatever the method.
+    /// The colour of the elevation, lit as a hillshade: red, green, blue and opacity. Colours span these
+    /// elevations, or all that the header of the mesh states. It follows from cells whatever the method.
     ShadedRelief(Shading, Option<[f64; 2]>),
     /// An attribute of the points, as `spmesh_stream::model::attributes::Attributes::column` takes it.
     Attribute(String, Interpolation),
@@ -65,8 +67,8 @@ impl Sample {
 pub enum Method {
     /// The triangle at the centre of the cell.
     Triangle,
-    /// The cells of the raster of elevations: of a cell and its eight neighbours. A cell without all of them has no
-    /// value.
+    /// The cells of the raster of elevations: of a cell and its eight neighbours. A cell without all of them
+    /// has no value.
     Cells(Differences),
 }
 
@@ -81,12 +83,13 @@ pub struct Options {
     pub method: Method,
     /// Triangles with a longer edge are left out. Units: those of the world.
     pub kill: Option<f64>,
-    /// Triangles outside of the concave outline are left out: a chain of triangles leads to them from the convex
-    /// hull in which every crossed edge is longer than this. Units: those of the world.
+    /// Triangles outside of the concave outline are left out: a chain of triangles leads to them from the
+    /// convex hull in which every crossed edge is longer than this. Units: those of the world.
     pub concave: Option<f64>,
     /// Cells with centres outside of these polygons have no data.
     pub mask: Option<Arc<Mask>>,
-    /// Cells without data inside of the outline and the mask are filled from data at most this many cells away.
+    /// Cells without data inside of the outline and the mask are filled from data at most this many cells
+    /// away.
     pub fill: Option<u32>,
     /// Bytes for tiles, and for triangles that wait for the outline; others wait in temporary files.
     pub memory: u64,
@@ -161,7 +164,8 @@ impl Quantity {
         )
     }
 
-    /// The value of a whole plane, from its gradient, in which all coordinates have one unit; `None` if it varies.
+    /// The value of a whole plane, from its gradient, in which all coordinates have one unit; `None` if it
+    /// varies.
     pub(super) fn of_plane(&self, gradient: Point2) -> Result<Option<f32>> {
         let value = match self {
             Quantity::Elevation | Quantity::Attribute(..) => return Ok(None),

@@ -61,8 +61,8 @@ memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// Write the height of a canopy above the ground as a raster, without pits.
 ///
-/// Reads LAS, LAZ or COPC files and a triangle mesh of the ground, as spdelaunay2d writes it. Writes a GeoTIFF or an
-/// ESRI grid.
+/// Reads LAS, LAZ or COPC files and a triangle mesh of the ground, as spdelaunay2d writes it. Writes a
+/// GeoTIFF or an ESRI grid.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {

@@ -158,7 +158,8 @@ pub struct Flags {
     format: Option<Format>,
 
     /// Memory for tiles, and for triangles that wait for the outline of --concave; others wait in temporary
-    /// files (see --temp-dir). A quarter of it is for vertices that are not final [default: 32M, beside these]
+    /// files (see --temp-dir). A quarter of it is for vertices that are not final [default: 32M, beside
+    /// these]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory: Option<u64>,
 

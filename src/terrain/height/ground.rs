@@ -27,13 +27,13 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// Reads a triangle mesh with elevations; calls `progress` with the number of vertices read. The temporary
-    /// file is in `temp_dir`, or in the system's folder for temporary files. `memory` is for vertices that are not
-    /// final. Units: bytes.
+    /// Reads a triangle mesh with elevations; calls `progress` with the number of vertices read. The
+    /// temporary file is in `temp_dir`, or in the system's folder for temporary files. `memory` is for
+    /// vertices that are not final. Units: bytes.
     ///
     /// # Errors
-    /// If the input is no triangle mesh with elevations, is malformed or truncated; if the temporary file fails;
-    /// memory, if more vertices are not final than it has room for.
+    /// If the input is no triangle mesh with elevations, is malformed or truncated; if the temporary file
+    /// fails; memory, if more vertices are not final than it has room for.
     pub fn read<R: Read>(
         reader: &mut StreamReader<R>,
         temp_dir: Option<&Path>,

@@ -1,7 +1,8 @@
 //! `spdem --points`: rasters of what the points in each cell are like.
 //!
-//! `place` finds the cell of a point. `statistic` says what is kept of the points of a cell, and what follows from it;
-//! it counts and sums in integers, so the order of the points does not matter. The cells are in [`Accumulators`].
+//! `place` finds the cell of a point. `statistic` says what is kept of the points of a cell, and what follows
+//! from it; it counts and sums in integers, so the order of the points does not matter. The cells are in
+//! [`Accumulators`].
 
 mod place;
 mod statistic;
@@ -57,8 +58,8 @@ pub struct Stats {
     pub notices: Vec<String>,
 }
 
-/// The window that has all points of a stream in its cells, in world coordinates. Points on a border between cells
-/// are in the right or upper one, so it ends a little above the greatest coordinates.
+/// The window that has all points of a stream in its cells, in world coordinates. Points on a border between
+/// cells are in the right or upper one, so it ends a little above the greatest coordinates.
 ///
 /// # Errors
 /// Usage, if the header has no bounds.
@@ -101,14 +102,14 @@ pub fn check(header: &Header, options: &Options) -> Result<Option<Column>> {
 
 /// Writes the raster of a stream of points; calls `progress` with the number of points read.
 ///
-/// A point on the border between two cells is in the right or upper one. Sums are exact, and rounded at the end only, so
-/// the raster does not depend on the order of the points.
+/// A point on the border between two cells is in the right or upper one. Sums are exact, and rounded at the
+/// end only, so the raster does not depend on the order of the points.
 ///
 /// Memory: `options.memory` for cells, and some 50 bytes for each tile.
 ///
 /// # Errors
-/// If the input is no stream of points, is malformed or truncated; if values are too great; if there are too many
-/// tiles; if writing fails.
+/// If the input is no stream of points, is malformed or truncated; if values are too great; if there are too
+/// many tiles; if writing fails.
 pub fn rasterize<R: Read, W: Write + Seek>(
     reader: &mut StreamReader<R>,
     output: Destination<W>,

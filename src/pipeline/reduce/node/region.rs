@@ -12,13 +12,13 @@ use spmesh_delaunay::delaunay3::CornerParts;
 use spmesh_stream::{PatchBlocks, PointRegion};
 
 impl Solver<Space, 3> {
-    /// Triangulates the points of a region, in the order of its counts, and writes the tetrahedra that it owns.
-    /// Points that earlier regions have, too, have the ids of their vertices as keys. Each point becomes a
-    /// vertex in its first region, and is finalized in its last.
+    /// Triangulates the points of a region, in the order of its counts, and writes the tetrahedra that it
+    /// owns. Points that earlier regions have, too, have the ids of their vertices as keys. Each point
+    /// becomes a vertex in its first region, and is finalized in its last.
     ///
     /// # Errors
-    /// Those of the kernel and of `flush`; malformed, if coinciding points are forbidden, or if earlier regions
-    /// have one of them and not the other.
+    /// Those of the kernel and of `flush`; malformed, if coinciding points are forbidden, or if earlier
+    /// regions have one of them and not the other.
     pub(in crate::reduce) fn solve_region(
         &mut self,
         region: &PointRegion,
@@ -54,8 +54,8 @@ impl Solver<Space, 3> {
         Ok(merged)
     }
 
-    /// Merges points that coincide: here if they are new, and as the region did that had them first if not. They
-    /// are in the same regions.
+    /// Merges points that coincide: here if they are new, and as the region did that had them first if not.
+    /// They are in the same regions.
     fn merge_in_region(&mut self, region: &PointRegion, points: &mut Residual<3>) -> Result<Merged> {
         self.point_states.clear();
         self.point_states.resize(points.len(), PointState::Interior);
