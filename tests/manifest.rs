@@ -66,8 +66,8 @@ fn further_programs_take_the_same_features_of_dependencies() {
     );
 }
 
-/// Otherwise tests use other code than the programs, and what tests have compiled is of no use for the builds,
-/// checks and planted faults after them.
+/// Otherwise tests use other code than the programs, and what tests have compiled is of no use for the
+/// builds, checks and planted faults after them.
 #[test]
 fn tests_take_the_same_features_of_dependencies_as_programs() {
     let of_tests = foreign(&["--workspace", "--edges", "dev"]);

@@ -22,6 +22,11 @@ pub fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
+/// The bytes of the vector of this name that programs take.
+pub fn vector(name: &str) -> Vec<u8> {
+    load("pass", "txt").into_iter().find(|vector| vector.name == name).unwrap().bytes
+}
+
 /// All vectors of a folder, by name.
 pub fn load(folder: &str, extension: &str) -> Vec<Vector> {
     let mut vectors = Vec::new();

@@ -84,7 +84,8 @@ fn check(mesh: &Mesh, grid: &Grid) {
         }
         let uncovered = |(value, cover): (&f32, &[f64; 4])| cover[0] == 0.0 && !value.is_nan();
         assert!(!found.iter().zip(&covers).any(uncovered));
-        // Neither the order of triangles nor memory shows: half of the least has four tiles of 32 bytes a cell.
+        // Neither the order of triangles nor memory shows: half of the least has four tiles of 32 bytes a
+        // cell.
         let tight = Options { memory: 16 << 20, ..sampled(sample) };
         assert!(is_same(&found, &raster(&shuffled, grid, &tight)), "{sample:?}");
         let (tiff, _) = file(&shuffled, RasterFormat::GeoTiff, grid, &tight).unwrap();

@@ -5,7 +5,7 @@ use spmesh_stream::model::bounds::{Point, Region};
 use spmesh_stream::{Coordinates, Event, Header, Kind, PointRegion, StreamWriter};
 
 use crate::programs::{outcome, run};
-use crate::vectors::{load, verify};
+use crate::vectors::{vector, verify};
 
 fn header() -> Header {
     Header::new(Kind::RegionPoints, Coordinates::F64, 3, false)
@@ -114,11 +114,6 @@ fn the_writer_checks_the_number_of_points_in_the_header() {
     writer.points(&[[0.0; 3]]).unwrap();
     let error = writer.end(0, 0).expect_err("the header states two points");
     assert!(error.to_string().contains("another number of points"), "{error}");
-}
-
-/// The bytes of a vector of regions.
-fn vector(name: &str) -> Vec<u8> {
-    load("pass", "txt").into_iter().find(|vector| vector.name == name).unwrap().bytes
 }
 
 #[test]

@@ -4,12 +4,8 @@ use serde_json::{Value, json};
 
 use super::four::empty;
 use crate::programs::{outcome, run};
-use crate::vectors::load;
+use crate::vectors::vector;
 use spmesh_stream::Kind;
-
-fn vector(name: &str) -> Vec<u8> {
-    load("pass", "txt").into_iter().find(|vector| vector.name == name).unwrap().bytes
-}
 
 #[test]
 fn spinfo_reports_them() {
