@@ -57,7 +57,8 @@ fn in_regions(points: &[Point], region_points: u64, threads: usize) -> (Vec<u8>,
     };
     let threads = threads.try_into().unwrap();
     let options = finalize::Options {
-        leaves: Leaves::Collapsed { cell_points: 1_000, level_max: None },
+        // Small leaves, so that regions are complete before all points have come.
+        leaves: Leaves::Collapsed { cell_points: 12, level_max: None },
         order: Order::Chunked,
         compress: false,
         thin: None,

@@ -5,6 +5,7 @@
 //! |---|---|---|
 //! | results as they come, each handled by the caller | [`for_each_result`] | before it returns |
 //! | jobs given one at a time, results in their order | [`OrderedPool`] | when the pool is dropped |
+//! | long items with a part in their order, each on one thread | [`in_turn()`] | before it returns |
 //! | one thread prepares buffers, the caller consumes them | [`read_ahead()`] | before it returns |
 //! | a source that may block forever | [`produce()`] | with the source, or when the receiver is gone |
 //! | a call at intervals, such as a display | [`Ticker`] | when the ticker is dropped |
@@ -17,6 +18,7 @@
 //! that started it, except in [`produce()`].
 
 mod buffer_pool;
+mod in_turn;
 mod ordered_pool;
 mod produce;
 mod read_ahead;
@@ -25,6 +27,7 @@ mod threads;
 mod ticker;
 
 pub use buffer_pool::BufferPool;
+pub use in_turn::{InTurn, in_turn};
 pub use ordered_pool::OrderedPool;
 pub use produce::produce;
 pub use read_ahead::read_ahead;

@@ -60,26 +60,29 @@ impl Work<'_> {
     ) -> Result<()> {
         writer.cells(&plan.take_empty())?;
         let (header, bytes) = (writer.header().clone(), options.budget.bytes());
-        self.hold_leaves(plan, options, &header, bytes, |leaf, cell, buffers| {
-            buffers.drain(leaf, |bytes| writer.encoded_records(bytes))?;
-            writer.cells(&[cell])
+        self.hold_leaves(plan, options, &header, bytes, |leaves, cells, buffers| {
+            leaves.iter().try_for_each(|&leaf| {
+                buffers.drain(leaf, |bytes| writer.encoded_records(bytes))?;
+                writer.cells(&[cells[leaf]])
+            })
         })?;
         writer.end(0, 0).map(drop)
     }
 
-    /// Holds the points of a leaf until its counter is zero, then gives them to `complete`: the number of the
-    /// leaf, its cell, and the buffers that have its records. Waiting points take up to `bytes`.
+    /// Holds the points of a leaf until its counter is zero, then gives them to `take`: the numbers of
+    /// leaves, the cells of all leaves, and the buffers that have their records. Waiting points take up to
+    /// `bytes`.
     ///
-    /// Leaves that are complete within the same [`WINDOW`] of points come in the order of the tree. If the
-    /// points are in random order, nearly all leaves are complete at the very end, and neighbours should
-    /// follow each other.
+    /// Leaves that are complete within the same [`WINDOW`] of points come together, in the order of the tree.
+    /// If the points are in random order, nearly all leaves are complete at the very end, and neighbours
+    /// should follow each other.
     pub(super) fn hold_leaves(
         &mut self,
         plan: Plan,
         options: &Options,
         header: &Header,
         bytes: u64,
-        mut take: impl FnMut(usize, CellCode, &mut CellBuffers) -> Result<()>,
+        mut take: impl FnMut(&mut [usize], &[CellCode], &mut CellBuffers) -> Result<()>,
     ) -> Result<()> {
         let record_len = header.record_len();
         let bytes = bytes.saturating_sub(plan.bytes()).max(WAITING_MIN);
@@ -90,7 +93,9 @@ impl Work<'_> {
         let (locator, mut countdown) = plan.split();
         let mut take_leaves = |complete: &mut Vec<usize>, buffers: &mut CellBuffers| {
             complete.sort_unstable();
-            complete.drain(..).try_for_each(|leaf| take(leaf, locator.leaves()[leaf], buffers))
+            take(complete, locator.leaves(), buffers)?;
+            complete.clear();
+            Ok(())
         };
         let (mut complete, mut points, mut window_end) = (Vec::new(), 0, WINDOW);
         let prepare = |batch: &PointBatch, located: &mut Located| located.prepare(&locator, header, batch);

@@ -36,6 +36,7 @@ mod plan;
 mod recipe;
 mod relief;
 mod run;
+mod scatter;
 mod select;
 mod shores;
 mod spill;

@@ -31,6 +31,18 @@ pub enum Leaves {
     Level(u8),
 }
 
+impl Leaves {
+    /// Leaves of points that come in regions, which may be larger.
+    pub(super) fn of_regions(self) -> Leaves {
+        match self {
+            Leaves::Collapsed { cell_points, level_max } => {
+                Leaves::Collapsed { cell_points: cell_points.min(CELL_POINTS), level_max }
+            }
+            Leaves::Level(_) => self,
+        }
+    }
+}
+
 /// When points of space come in overlapping regions instead of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WhenRegions {

@@ -73,6 +73,11 @@ impl Plan {
         self.tree
     }
 
+    /// The cells that are leaves, in the order of the tree.
+    pub(super) fn cells(&self) -> &[CellCode] {
+        &self.leaves
+    }
+
     /// Number of leaves.
     pub(super) fn leaves(&self) -> usize {
         self.leaves.len()

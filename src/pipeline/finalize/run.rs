@@ -155,7 +155,8 @@ impl Work<'_> {
             return self.write_untagged(StreamWriter::new(output, header)?);
         };
         let regions = self.regions(counts.points, options)?;
-        let plan = Plan::new(cells, options.leaves, &options.budget)?;
+        let leaves = regions.as_ref().map_or(options.leaves, |_| options.leaves.of_regions());
+        let plan = Plan::new(cells, leaves, &options.budget)?;
         self.note_plan(&plan);
         if let Some(regions) = regions {
             return self.write_in_regions(&regions, plan, header, options, output);

@@ -89,7 +89,7 @@ const fn names(both: [&'static str; 2], dimensions: usize) -> &'static str {
 type Reader = StreamReader<Box<dyn Read + Send>>;
 
 /// Receives the number of points done.
-type Done<'d> = dyn FnMut(u64) + 'd;
+type Done<'d> = dyn FnMut(u64) + Send + 'd;
 
 /// The output, to be committed, and the counts of the run.
 type Ran = Result<(Output, Stats), Error>;

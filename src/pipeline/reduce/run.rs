@@ -73,7 +73,7 @@ pub fn triangulate<R, W>(
     reader: StreamReader<R>,
     output: W,
     options: &Options,
-    progress: impl FnMut(u64),
+    progress: impl FnMut(u64) + Send,
 ) -> Result<(W, Stats)>
 where
     R: Read + Send + 'static,
@@ -96,7 +96,7 @@ pub fn tetrahedralize<R, W>(
     reader: StreamReader<R>,
     output: W,
     options: &Options<3>,
-    progress: impl FnMut(u64),
+    progress: impl FnMut(u64) + Send,
 ) -> Result<(W, Stats)>
 where
     R: Read + Send + 'static,
@@ -117,7 +117,7 @@ pub fn triangulate_part<R, W>(
     reader: StreamReader<R>,
     mut outputs: Outputs<W>,
     options: &Options,
-    mut progress: impl FnMut(u64),
+    mut progress: impl FnMut(u64) + Send,
 ) -> Result<(Outputs<W>, Stats)>
 where
     R: Read + Send + 'static,
@@ -135,7 +135,7 @@ pub fn tetrahedralize_part<R, W>(
     reader: StreamReader<R>,
     mut outputs: Outputs<W>,
     options: &Options<3>,
-    mut progress: impl FnMut(u64),
+    mut progress: impl FnMut(u64) + Send,
 ) -> Result<(Outputs<W>, Stats)>
 where
     R: Read + Send + 'static,
@@ -159,7 +159,7 @@ fn reduce_plane(
     reader: StreamReader<Input>,
     outputs: Outputs<Sink>,
     options: &Options,
-    progress: &mut dyn FnMut(u64),
+    progress: &mut (dyn FnMut(u64) + Send),
 ) -> Result<Stats> {
     Ok(reduce::<Plane, Input, Sink, 2>(reader, outputs, options, progress)?.1)
 }
@@ -169,7 +169,7 @@ fn reduce_space(
     reader: StreamReader<Input>,
     outputs: Outputs<Sink>,
     options: &Options<3>,
-    progress: &mut dyn FnMut(u64),
+    progress: &mut (dyn FnMut(u64) + Send),
 ) -> Result<Stats> {
     if reader.header().kind == Kind::RegionPoints {
         return regions::reduce(reader, outputs, options, progress);
@@ -182,7 +182,7 @@ fn reduce<B, R, W, const D: usize>(
     reader: StreamReader<R>,
     outputs: Outputs<W>,
     options: &Options<D>,
-    progress: impl FnMut(u64),
+    progress: impl FnMut(u64) + Send,
 ) -> Result<(Outputs<W>, Stats)>
 where
     B: Bulk<D>,
@@ -298,7 +298,7 @@ fn alone<B: Bulk<D>, R: Read, W: Write + Send, const D: usize>(
     mut run: Run<D>,
     mut cells: CellReader<R, D>,
     mut sequencer: Sequencer<W>,
-    mut progress: impl FnMut(u64),
+    mut progress: impl FnMut(u64) + Send,
 ) -> Result<(Outputs<W>, Stats)> {
     let mut worker = Worker::<B, D>::new(run.rules);
     let (mut fresh, mut blocks) = (Residual::default(), PatchBlocks::default());

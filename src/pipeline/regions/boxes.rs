@@ -22,35 +22,46 @@ enum Node {
     Box(u32),
 }
 
-/// A binary tree of boxes, numbered from one end to the other: boxes of near numbers are near.
+/// Boxes whose last points come in different parts of the input, of so many, are numbered in this order.
+const PARTS: f64 = 64.0;
+
+/// A binary tree of boxes, numbered in about the order in which the points of their regions have come, and
+/// else from one end to the other: boxes of near numbers are near.
 #[derive(Debug)]
 pub(crate) struct Boxes {
     nodes: Vec<Node>,
     boxes: Vec<Region<3>>,
+    /// The part of the input in which the last of the sample for each comes.
+    parts: Vec<u32>,
     /// The Voronoi cells of the sample that reach into boxes, over all of these.
     reaching: usize,
 }
 
 /// A closed box.
-pub(super) type Extent = [Point3; 2];
+pub(crate) type Extent = [Point3; 2];
 
 /// What the tree is made of.
 struct Making<'d> {
     /// The box of the Voronoi vertices of each cell.
     extents: &'d [Extent],
+    /// The part of the input that each cell's point is in.
+    parts: &'d [u32],
     tree: Boxes,
 }
 
 impl Boxes {
-    /// `count` boxes; fewer if centres coincide. Notes in the diagram which box has each centre.
-    pub(crate) fn lay(diagram: &mut Diagram, count: usize) -> Boxes {
+    /// `count` boxes; fewer if centres coincide. Notes in the diagram which box has each centre. Before each
+    /// point that was given for the diagram came `before` of all points, as a part of one.
+    pub(crate) fn lay(diagram: &mut Diagram, before: &[f64], count: usize) -> Boxes {
         let extents = extents_of_cells(diagram);
+        let parts: Vec<u32> = diagram.given.iter().map(|&at| (PARTS * before[at as usize]) as u32).collect();
         let known = diagram.balls.iter().filter(|ball| ball.error.is_finite());
         let mut centres: Vec<Point3> = known.map(|ball| ball.centre).collect();
-        let tree = Boxes { nodes: Vec::new(), boxes: Vec::new(), reaching: 0 };
-        let mut making = Making { extents: &extents, tree };
+        let tree = Boxes { nodes: Vec::new(), boxes: Vec::new(), parts: Vec::new(), reaching: 0 };
+        let mut making = Making { extents: &extents, parts: &parts, tree };
         making.divide(&mut centres, (0..extents.len() as u32).collect(), Region::EVERYTHING, count);
-        let tree = making.tree;
+        let mut tree = making.tree;
+        tree.renumber();
         for ball in &mut diagram.balls {
             let [low, high] = [-ball.error, ball.error].map(|e| ball.centre.map(|x| x + e));
             let (mut met, mut more) = (None, false);
@@ -58,6 +69,20 @@ impl Boxes {
             ball.place = met.filter(|_| !more);
         }
         tree
+    }
+
+    /// Numbers the boxes in the order of the parts of the input.
+    fn renumber(&mut self) {
+        let mut order: Vec<u32> = (0..self.boxes.len() as u32).collect();
+        order.sort_by_key(|&number| self.parts[number as usize]);
+        self.boxes = order.iter().map(|&number| self.boxes[number as usize]).collect();
+        let mut numbers = vec![0; order.len()];
+        (0..).zip(&order).for_each(|(new, &old)| numbers[old as usize] = new);
+        for node in &mut self.nodes {
+            if let Node::Box(number) = node {
+                *number = numbers[*number as usize];
+            }
+        }
     }
 
     /// Number of boxes.
@@ -103,6 +128,8 @@ impl Making<'_> {
         let Some((axis, at)) = cut else {
             self.tree.nodes.push(Node::Box(self.tree.boxes.len() as u32));
             self.tree.boxes.push(region);
+            let last = cells.iter().map(|&cell| self.parts[cell as usize]).max();
+            self.tree.parts.push(last.unwrap_or(0));
             self.tree.reaching += cells.len();
             return;
         };

@@ -86,6 +86,8 @@ impl Ball {
 #[derive(Debug)]
 pub(crate) struct Diagram {
     pub(super) points: Vec<Point3>,
+    /// Where each point is among those that were given.
+    pub(super) given: Vec<u32>,
     pub(super) cells: Vec<Cell>,
     /// The balls of the finite tetrahedra, which are the first.
     pub(super) balls: Vec<Ball>,
@@ -125,6 +127,7 @@ impl Diagram {
             return Ok(None);
         }
         let points: Vec<Point3> = mesh.vertices().iter().map(|vertex| vertex.at).collect();
+        let given = mesh.vertices().iter().map(|vertex| vertex.index).collect();
         // Along the curve of the vertices, so that what is near is near in memory, too: insertion has
         // scattered them.
         let tetrahedra = mesh.tetrahedra();
@@ -147,13 +150,13 @@ impl Diagram {
         let corners = |cell: &Cell| cell.vertices.map(|vertex| points[vertex as usize]);
         let balls = cells.iter().map(|cell| Ball::of(corners(cell))).collect();
         close(&mut cells);
-        Ok(Some(Diagram { points, cells, balls }))
+        Ok(Some(Diagram { points, given, cells, balls }))
     }
 
     /// Bytes that it takes.
     pub(crate) fn bytes(&self) -> u64 {
         let cells = self.cells.len() * (size_of::<Cell>() + 2 * size_of::<u32>());
-        (cells + size_of_val(&*self.balls) + size_of_val(&*self.points)) as u64
+        (cells + size_of_val(&*self.balls) + size_of_val(&*self.points) + size_of_val(&*self.given)) as u64
     }
 
     /// Whether a tetrahedron is at infinity.
@@ -187,28 +190,36 @@ impl Diagram {
         vertex.is_some()
     }
 
-    /// Finds the tetrahedra that points up to `radius` from `centre` may be in conflict with; returns whether
-    /// all are finite.
+    /// Finds the tetrahedra that points up to `radius` from `centre` may be in conflict with, while `goes_on`
+    /// holds for the box of each.
     ///
     /// Those that the ball around `centre` meets are connected, since it is convex, and have all of them.
-    pub(super) fn search_near(&self, centre: Point3, radius: f64, search: &mut Search) -> bool {
+    pub(super) fn search_near(
+        &self,
+        centre: Point3,
+        radius: f64,
+        search: &mut Search,
+        mut goes_on: impl FnMut(Option<u32>) -> bool,
+    ) {
         let start = self.walk(centre, search);
-        let mut are_finite = !self.is_infinite(start);
-        if are_finite {
-            self.flood(start, search, |cell, _| match self.balls.get(cell as usize) {
-                Some(ball) => {
-                    let reach = ball.outer.sqrt() + radius;
-                    // False for a NaN, which is met.
-                    let is_far = square_of_distance(centre, ball.centre) > reach * reach * (1.0 + ROUNDING);
-                    are_finite && !is_far
-                }
-                None => {
-                    are_finite &= self.is_inside_hull(cell, centre, radius);
-                    false
-                }
-            });
-        }
-        are_finite
+        let place = |cell: u32| self.balls.get(cell as usize).and_then(|ball| ball.place);
+        let mut searches = goes_on(place(start));
+        self.flood(start, search, |cell, _| {
+            let is_met = searches && !self.is_far(cell, centre, radius);
+            searches &= !is_met || goes_on(place(cell));
+            is_met
+        });
+    }
+
+    /// Whether points up to `radius` from `centre` are certainly not in conflict with a tetrahedron.
+    #[inline]
+    fn is_far(&self, cell: u32, centre: Point3, radius: f64) -> bool {
+        let Some(ball) = self.balls.get(cell as usize) else {
+            return self.is_inside_hull(cell, centre, radius);
+        };
+        let reach = ball.outer.sqrt() + radius;
+        // False for a NaN.
+        square_of_distance(centre, ball.centre) > reach * reach * (1.0 + ROUNDING)
     }
 
     /// Finds the tetrahedra around `start` for which `is_met` holds, and the facets where they end.

@@ -1,56 +1,72 @@
-//! A random sample of points that depends on the set of them alone.
+//! A random sample of points that depends on the set of them alone, and when they come.
 
 use spmesh_base::random::Random;
 use spmesh_stream::model::bounds::Point;
 
 /// The points whose hashes are least.
 ///
-/// Memory: 32 bytes for each of `most` points, twice while they come.
+/// Memory: 40 bytes for each of `most` points, twice while they come.
 #[derive(Debug)]
 pub(crate) struct Sample {
     /// Points that are kept at least, if there are so many.
     most: usize,
     /// Hashes from here on are too great.
     end: u64,
-    kept: Vec<(u64, Point)>,
+    kept: Vec<Kept>,
+    /// Points that have come.
+    points: u64,
+}
+
+#[derive(Debug)]
+struct Kept {
+    hash: u64,
+    point: Point,
+    /// Points that have come before it; before the last of those that are equal.
+    before: u64,
 }
 
 impl Sample {
     /// An empty sample that will have at least `most` points, if there are so many different ones.
     pub(crate) fn new(most: usize) -> Sample {
-        Sample { most, end: u64::MAX, kept: Vec::new() }
+        Sample { most, end: u64::MAX, kept: Vec::new(), points: 0 }
     }
 
     /// Takes points of the set.
     pub(crate) fn add(&mut self, points: &[Point]) {
-        for &point in points {
+        for (&point, before) in points.iter().zip(self.points..) {
             // Adding zero turns -0.0 into 0.0, so that equal points have one hash.
             let point = point.map(|coordinate| coordinate + 0.0);
             let hash = hash(point);
             if hash < self.end {
-                self.kept.push((hash, point));
+                self.kept.push(Kept { hash, point, before });
                 if self.kept.len() >= 2 * self.most.max(1) {
                     self.shrink();
                 }
             }
         }
+        self.points += points.len() as u64;
     }
 
     /// Leaves out equal points, and those of greater hashes.
     fn shrink(&mut self) {
-        self.kept.sort_unstable_by(|(a, p), (b, q)| a.cmp(b).then_with(|| p.partial_cmp(q).expect("finite")));
-        self.kept.dedup();
+        self.kept.sort_unstable_by(|p, q| {
+            let by_point = || p.point.partial_cmp(&q.point).expect("finite");
+            p.hash.cmp(&q.hash).then_with(by_point).then(q.before.cmp(&p.before))
+        });
+        self.kept.dedup_by(|next, last| next.point == last.point);
         if self.kept.len() > self.most {
-            self.end = self.kept[self.most].0;
+            self.end = self.kept[self.most].hash;
             self.kept.truncate(self.most);
         }
     }
 
-    /// The `count` points of least hash, in the order of their hashes; all if there are fewer.
-    pub(crate) fn take(mut self, count: usize) -> Vec<Point> {
+    /// The `count` points of least hash, in the order of their hashes; all if there are fewer. Beside each,
+    /// the part of all points that came before it.
+    pub(crate) fn take(mut self, count: usize) -> (Vec<Point>, Vec<f64>) {
         self.shrink();
         self.kept.truncate(count);
-        self.kept.into_iter().map(|(_, point)| point).collect()
+        let (points, all) = (self.kept.iter().map(|kept| kept.point), self.points as f64);
+        (points.collect(), self.kept.iter().map(|kept| kept.before as f64 / all).collect())
     }
 }
 
@@ -69,7 +85,7 @@ mod tests {
         let sampled = |points: &[Point], piece: usize| {
             let mut sample = Sample::new(300);
             points.chunks(piece).for_each(|points| sample.add(points));
-            sample.take(200)
+            sample.take(200).0
         };
         let first = sampled(&points, 7);
         assert_eq!(first.len(), 200);
@@ -77,5 +93,16 @@ mod tests {
         random.shuffle(&mut shuffled);
         assert_eq!(sampled(&shuffled, 1_000), first);
         assert_eq!(sampled(&points[..10], 3).len(), 10);
+    }
+
+    #[test]
+    fn the_last_of_equal_points_counts() {
+        let points: Vec<Point> = [3.0, 1.0, 2.0, 1.0, 3.0].map(|x| [x, 0.0, 0.0]).to_vec();
+        let mut sample = Sample::new(10);
+        points.chunks(2).for_each(|points| sample.add(points));
+        let (points, before) = sample.take(10);
+        for (point, before) in points.iter().zip(before) {
+            assert_eq!(before, [0.6, 0.4, 0.8][point[0] as usize - 1]);
+        }
     }
 }

@@ -8,28 +8,41 @@ use super::super::residual::Residual;
 use super::super::space::{Space, sphere_bounds};
 use super::{PointState, Solver};
 use spmesh_base::error::Result;
-use spmesh_delaunay::delaunay3::CornerParts;
+use spmesh_delaunay::delaunay3::{CornerParts, Corners};
 use spmesh_stream::{PatchBlocks, PointRegion};
 
 impl Solver<Space, 3> {
-    /// Triangulates the points of a region, in the order of its counts, and writes the tetrahedra that it
-    /// owns. Points that earlier regions have, too, have the ids of their vertices as keys. Each point
-    /// becomes a vertex in its first region, and is finalized in its last.
+    /// Tetrahedralizes the points of a region, in the order of its counts. Only those that are new need no
+    /// keys yet.
     ///
     /// # Errors
-    /// Those of the kernel and of `flush`; malformed, if coinciding points are forbidden, or if earlier
-    /// regions have one of them and not the other.
+    /// Those of the kernel; malformed, if coinciding points are forbidden, or if earlier regions have one of
+    /// them and not the other.
     pub(in crate::reduce) fn solve_region(
         &mut self,
         region: &PointRegion,
         points: &mut Residual<3>,
-        blocks: &mut PatchBlocks,
-        flush: &mut Flush,
-    ) -> Result<Merged> {
+    ) -> Result<(Corners, Merged)> {
         self.bulk.triangulate(points, None)?;
         let merged = self.merge_in_region(region, points)?;
-        let coordinates = self.rules.coordinates;
-        let mut owned = self.bulk.take_owned(region.own, &region.bounds, sphere_bounds(&coordinates))?;
+        let bounds = sphere_bounds(&self.rules.coordinates);
+        Ok((self.bulk.take_owned(region.own, &region.bounds, bounds)?, merged))
+    }
+
+    /// Writes the tetrahedra that a region owns, which this solver has found last. Points that earlier
+    /// regions have, too, have the ids of their vertices as keys. Each point becomes a vertex in its first
+    /// region, and is finalized in its last.
+    ///
+    /// # Errors
+    /// Those of `flush`.
+    pub(in crate::reduce) fn write_region(
+        &mut self,
+        region: &PointRegion,
+        points: &Residual<3>,
+        owned: &mut Corners,
+        blocks: &mut PatchBlocks,
+        flush: &mut Flush,
+    ) -> Result<()> {
         let (builder, code) = (&mut self.builder, self.rules.code);
         builder.start(points.len(), code, 0, true);
         let CornerParts { vertices, tetrahedra, .. } = owned.parts();
@@ -50,8 +63,7 @@ impl Solver<Space, 3> {
                 flush(blocks)?;
             }
         }
-        builder.isolated(unused.into_iter(), points, code, blocks, Some(flush))?;
-        Ok(merged)
+        builder.isolated(unused.into_iter(), points, code, blocks, Some(flush))
     }
 
     /// Merges points that coincide: here if they are new, and as the region did that had them first if not.
