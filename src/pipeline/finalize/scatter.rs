@@ -20,9 +20,6 @@ use spmesh_stream::{Header, decode_points};
 const ALONE: usize = 32;
 const PARTS: usize = 4;
 
-/// How often the sides of leaves are halved to find the regions that their points may have.
-const HALVED: u32 = 0;
-
 /// Points that a thread takes at least.
 const PIECE: usize = 2048;
 
@@ -54,11 +51,7 @@ impl LeafRegions {
             let all: Vec<u32> = (0..regions.boxes.len() as u32).collect();
             let of_cell = |&cell| {
                 let (low, high) = tree.corners(cell);
-                let mut found = Vec::new();
-                of_box([low, high], HALVED, &all, regions, &mut members, &mut found);
-                found.sort_unstable();
-                found.dedup();
-                found
+                members.of_all([low, high], &all, &regions.diagram, &regions.boxes).to_vec()
             };
             Ok::<Vec<_>, Infallible>(cells.iter().map(of_cell).collect())
         };
@@ -88,30 +81,6 @@ impl LeafRegions {
     /// Bytes that they take.
     pub(super) fn bytes(&self) -> u64 {
         (size_of_val(&*self.ends) + size_of_val(&*self.regions)) as u64
-    }
-}
-
-/// Finds the regions that the points in a box may have, in boxes of half its sides where there are several.
-fn of_box(
-    [low, high]: [Point; 2],
-    halved: u32,
-    among: &[u32],
-    regions: &Regions,
-    members: &mut Members,
-    found: &mut Vec<u32>,
-) {
-    let some = members.of_all([low, high], among, &regions.diagram, &regions.boxes);
-    if halved == 0 || some.len() == 1 {
-        found.extend(some);
-        return;
-    }
-    let some = some.to_vec();
-    let middle: Point = std::array::from_fn(|axis| 0.5 * (low[axis] + high[axis]));
-    for octant in 0..8 {
-        let is_upper = |axis: usize| octant >> axis & 1 == 1;
-        let low = std::array::from_fn(|axis| if is_upper(axis) { middle[axis] } else { low[axis] });
-        let high = std::array::from_fn(|axis| if is_upper(axis) { high[axis] } else { middle[axis] });
-        of_box([low, high], halved - 1, &some, regions, members, found);
     }
 }
 

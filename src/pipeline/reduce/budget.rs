@@ -83,6 +83,13 @@ impl Budget {
         Budget { limit, threads: threads.max(1), bytes, largest: 0 }
     }
 
+    /// The same limit for nodes of so many bytes for each point that is being triangulated, all of which are
+    /// given together: their kernels keep no memory.
+    pub(super) fn of_kernels(self, bytes: usize, row_len: usize) -> Budget {
+        let [raw, waiting, _] = self.bytes;
+        Budget { bytes: [raw, waiting, bytes + 2 * row_len], largest: 0, ..self }
+    }
+
     /// Whether all `points` of the input fit into one node. The answer is for [`THREADS_DEFAULT_MAX`]: it
     /// decides what is written, which must not depend on the number of threads.
     pub(super) fn holds(&self, points: Option<u64>) -> bool {

@@ -35,6 +35,10 @@ use spmesh_stream::{Event, Header, PatchBlocks, PointRegion, StreamReader};
 /// Bytes of a vertex that later regions have, too, with room to grow.
 const LIVE_BYTES: usize = 120;
 
+/// Bytes of a point whose region is being tetrahedralized. Its tetrahedra stay where they are until they are
+/// written.
+const KERNEL_BYTES: usize = 420;
+
 /// A failure is noticed after this time, although the input is silent.
 const PATIENCE: Duration = Duration::from_millis(200);
 
@@ -134,7 +138,7 @@ pub(super) fn reduce<W: Write + Send>(
     let (row_len, all) = (header.attributes.row_len(), header.points.unwrap_or(0));
     let sequencer = begin::<Space, W, 3>(outputs, mesh, Region::EVERYTHING)?;
     let rules = Rules::new(sequencer.header(), options.duplicates, false);
-    let budget = Budget::new::<Space, 3>(options.memory, options.threads, row_len);
+    let budget = Budget::new::<Space, 3>(options.memory, 1, row_len).of_kernels(KERNEL_BYTES, row_len);
     let name = reader.name().to_string();
     let threads = NonZeroUsize::new(options.threads).unwrap_or(NonZeroUsize::MIN);
     let mut regions = Regions { reader, budget, read: 0 };

@@ -10,7 +10,7 @@ use spmesh_stream::model::bounds::Region;
 #[derive(Debug, Default)]
 pub(crate) struct Members {
     search: Search,
-    neighbours: Vec<u32>,
+    neighbours: Neighbours,
     /// The regions of the last point, increasing.
     regions: Vec<u32>,
     others: Vec<u32>,
@@ -86,13 +86,15 @@ impl Members {
         others.clear();
         others.extend(among.iter().filter(is_between));
         if !others.is_empty() {
-            find_neighbours(diagram, search, neighbours);
-            let extent = extent_of_cells(set, diagram, search);
-            regions.extend(others.iter().filter(|&&number| {
-                let within = intersection(&boxes.get(number as usize), &extent);
-                let mut nearer = neighbours.iter().map(|&vertex| diagram.points[vertex as usize]);
-                !is_empty(&within) && !nearer.any(|other| is_nearer(other, set, &within))
-            }));
+            neighbours.find(diagram, search);
+            let nearer = || neighbours.found.iter().map(|&vertex| diagram.points[vertex as usize]);
+            let is_met = |number: u32, extent: &Extent| {
+                let within = intersection(&boxes.get(number as usize), extent);
+                !is_empty(&within) && !nearer().any(|other| is_nearer(other, set, &within))
+            };
+            let extent = extent_of_centres(diagram, search);
+            others.retain(|&number| is_met(number, &extent));
+            regions.append(others);
         }
         regions.sort_unstable();
         debug_assert!(!regions.is_empty(), "a Voronoi cell meets a box");
@@ -167,15 +169,32 @@ impl Set {
 }
 
 /// The points of the sample whose cells are beside the one that was searched.
-fn find_neighbours(diagram: &Diagram, search: &Search, neighbours: &mut Vec<u32>) {
-    neighbours.clear();
-    for &[cell, beyond] in &search.border {
-        let [cell, beyond] = [cell, beyond].map(|cell| &diagram.cells[cell as usize].vertices);
-        let shared = cell.iter().filter(|vertex| **vertex != INFINITE && beyond.contains(vertex));
-        neighbours.extend(shared);
+#[derive(Debug, Default)]
+struct Neighbours {
+    found: Vec<u32>,
+    /// For each point of the sample the number of the last search that found it.
+    seen: Vec<u32>,
+    number: u32,
+}
+
+impl Neighbours {
+    fn find(&mut self, diagram: &Diagram, search: &Search) {
+        self.found.clear();
+        if self.seen.len() != diagram.points.len() || self.number == u32::MAX {
+            self.seen.clear();
+            self.seen.resize(diagram.points.len(), 0);
+            self.number = 0;
+        }
+        self.number += 1;
+        for &[cell, beyond] in &search.border {
+            let [cell, beyond] = [cell, beyond].map(|cell| &diagram.cells[cell as usize].vertices);
+            for &vertex in cell.iter().filter(|vertex| **vertex != INFINITE && beyond.contains(vertex)) {
+                if std::mem::replace(&mut self.seen[vertex as usize], self.number) != self.number {
+                    self.found.push(vertex);
+                }
+            }
+        }
     }
-    neighbours.sort_unstable();
-    neighbours.dedup();
 }
 
 /// A box that grows around what is added.
@@ -209,13 +228,6 @@ impl Growing {
         self.add(ball.centre, ball.error);
     }
 
-    fn join(&mut self, [low, high]: Extent) {
-        for axis in 0..3 {
-            self.0[0][axis] = self.0[0][axis].min(low[axis]);
-            self.0[1][axis] = self.0[1][axis].max(high[axis]);
-        }
-    }
-
     /// Adds what lies infinitely far outside of a facet of the hull.
     fn add_direction(&mut self, outward: &Outward) {
         let Growing([low, high]) = self;
@@ -233,17 +245,14 @@ impl Growing {
     }
 }
 
-/// The box of the Voronoi cells of a set.
-fn extent_of_cells(set: Set, diagram: &Diagram, search: &Search) -> Extent {
+/// A box of the Voronoi cells of a set: their vertices lie between the centres that were searched.
+fn extent_of_centres(diagram: &Diagram, search: &Search) -> Extent {
     let mut extent = Growing::new();
-    for &cell in &search.conflicts {
+    for &cell in search.conflicts.iter().chain(search.border.iter().map(|[_, beyond]| beyond)) {
         match diagram.balls.get(cell as usize) {
             Some(ball) => extent.add_centre(ball),
             None => extent.add_direction(&Outward::of(diagram, cell)),
         }
-    }
-    for &edge in set.border(search) {
-        extent.join(vertex_on(edge, set, diagram));
     }
     extent.0
 }
