@@ -2,7 +2,9 @@
 
 use spmesh_base::error::{ErrorKind, Result};
 use spmesh_formats::source::{Description, PointReader};
-use spmesh_pipeline::finalize::{self, Budget, InRegions, Leaves, Order, Passes, Spooling, WhenRegions};
+use spmesh_pipeline::finalize::{
+    self, Budget, InRegions, Leaves, Observer, Order, Passes, Spooling, WhenRegions,
+};
 use spmesh_pipeline::reduce::Options;
 use spmesh_stream::model::attributes::Attributes;
 use spmesh_stream::model::bounds::{Point, Region};
@@ -44,8 +46,30 @@ impl Passes for Memory {
     }
 }
 
-/// The points in regions of about `region_points`, and how many regions a point is in at most.
+/// Collects notices.
+#[derive(Default)]
+struct Notices(Vec<String>);
+
+impl Observer for Notices {
+    fn notice(&mut self, message: &str) {
+        self.0.push(message.to_string());
+    }
+}
+
+/// The points in regions of about `region_points`, and the figures of the run. No notice is expected.
 fn in_regions(points: &[Point], region_points: u64, threads: usize) -> (Vec<u8>, finalize::Stats) {
+    let mut notices = Notices::default();
+    let result = with_notices(points, region_points, threads, &mut notices);
+    assert!(notices.0.is_empty(), "{:?}", notices.0);
+    result
+}
+
+fn with_notices(
+    points: &[Point],
+    region_points: u64,
+    threads: usize,
+    notices: &mut Notices,
+) -> (Vec<u8>, finalize::Stats) {
     let description = Description {
         coordinates: if fits_a_grid(points) { GRID } else { Coordinates::F64 },
         dims: 3,
@@ -70,7 +94,7 @@ fn in_regions(points: &[Point], region_points: u64, threads: usize) -> (Vec<u8>,
     };
     let mut stream = Vec::new();
     let stats =
-        finalize::run(&Memory { description, points: points.to_vec() }, &options, &mut (), &mut stream);
+        finalize::run(&Memory { description, points: points.to_vec() }, &options, notices, &mut stream);
     (stream, stats.unwrap())
 }
 
@@ -147,10 +171,10 @@ fn gyroid(count: usize, random: &mut Random) -> Vec<Point> {
 fn points_on_a_surface_are_in_few_regions() {
     let points = gyroid(20_000, &mut Random::new(5));
     let (_, stats) = in_regions(&points, 4_000, 2);
-    assert!(stats.regions == 10, "{stats:?}");
+    assert!((8..14).contains(&stats.regions), "{stats:?}");
     assert!(stats.region_points < 3 * stats.points, "{stats:?}");
     assert!(stats.region_points_max < 8_000, "{stats:?}");
-    assert_eq!(assert_same_set(&points, 4_000, "a gyroid"), 10);
+    assert_eq!(assert_same_set(&points, 4_000, "a gyroid"), stats.regions);
     let far = [points, vec![[1e9, -1e9, 1e9]]].concat();
     assert_same_set(&far, 4_000, "a gyroid and a point far away");
 }
@@ -186,13 +210,16 @@ fn points_on_a_sphere_are_in_one_region() {
 
 #[test]
 fn points_on_curves_come_in_cells() {
-    for point in
-        [|t: f64| [t, t * t, t * t * t], |t: f64| if t < 0.5 { [t, 0.0, 0.0] } else { [0.0, t, 1.0] }]
-    {
+    let cubic = |t: f64| [t, t * t, t * t * t];
+    let lines = |t: f64| if t < 0.5 { [t, 0.0, 0.0] } else { [0.0, t, 1.0] };
+    let expected = ["about 7.9e8, a mesh of 14.2 GB", "about 3.9e8, a mesh of 7.1 GB"];
+    for (point, expected) in [cubic, lines].into_iter().zip(expected) {
         let points: Vec<Point> = (0..40_000).map(|i| point(f64::from(i) / 40_000.0)).collect();
-        let (stream, stats) = in_regions(&points, 1_000, 2);
+        let mut notices = Notices::default();
+        let (stream, stats) = with_notices(&points, 1_000, 2, &mut notices);
         let reader = StreamReader::new(&stream[..], "points").unwrap();
         assert_eq!((reader.header().kind, stats.regions), (Kind::Points, 0));
+        assert!(notices.0.len() == 1 && notices.0[0].contains(expected), "{:?}", notices.0);
     }
 }
 

@@ -7,7 +7,7 @@ use super::plan::Plan;
 use super::scatter::{GROUPS, LeafRegions, Scatter};
 use super::work::Work;
 use crate::reduce::are_on_surface;
-use crate::regions::{Boxes, Diagram, Sample};
+use crate::regions::{Boxes, Diagram, Sample, tetrahedra_on_curves};
 use spmesh_base::error::Result;
 use spmesh_formats::source::Description;
 use spmesh_stream::{Header, Kind, PointRegion, StreamWriter};
@@ -23,6 +23,9 @@ const SAMPLED_MIN: u64 = 8;
 const SAMPLED_MAX: u64 = 1 << 17;
 const SAMPLED_BYTES: u64 = 1_200;
 
+/// In so many regions is a point, as long as nothing is known.
+const COPIES: f64 = 1.5;
+
 /// Regions do not pay if points are in as many on average: most of them near one sphere.
 const COPIES_MAX: f64 = 4.0;
 
@@ -31,6 +34,9 @@ const TELLING: usize = 1 << 12;
 
 /// Bytes of the memory budget for each region, at least.
 const BYTES_PER_REGION: u64 = 2 << 10;
+
+/// Bytes of a tetrahedron in a stream of the mesh of points on a curve.
+const BYTES_PER_TETRAHEDRON: f64 = 18.0;
 
 /// Bytes for waiting points that are taken at least.
 const MEMORY_MIN: u64 = 1 << 20;
@@ -90,17 +96,27 @@ impl Work<'_> {
     pub(super) fn regions(&mut self, points: u64, options: &Options) -> Result<Option<Regions>> {
         let Some(sample) = self.sample.take() else { return Ok(None) };
         let InRegions { when, points: region_points, .. } = options.regions;
-        // About as many points are copies.
-        let most = options.budget.bytes() / BYTES_PER_REGION;
-        let count = points.saturating_mul(2).div_ceil(region_points.max(1)).min(most.max(1));
+        let most = (options.budget.bytes() / BYTES_PER_REGION).max(1);
+        let of_copies = |copies: f64| (points as f64 * copies / region_points.max(1) as f64).ceil() as u64;
+        let count = of_copies(COPIES).min(most);
         let sampled = (SAMPLED_PER_REGION.saturating_mul(count)).min(points / SAMPLED_PART).max(SAMPLED_MIN);
         let (mut sample, before) = sample.take(usize::MAX);
+        if let Some(tetrahedra) = tetrahedra_on_curves(&sample, points)? {
+            let gigabytes = tetrahedra * BYTES_PER_TETRAHEDRON / 1e9;
+            self.observer.notice(&format!(
+                "points on curves have tetrahedra by the square of their number: about {tetrahedra:.1e}, a mesh of {gigabytes:.1} GB"
+            ));
+            return Ok(None);
+        }
         let tells = sample.len() >= TELLING;
         if when == WhenRegions::Auto && (points <= region_points || !tells || !are_on_surface(&sample)) {
             return Ok(None);
         }
         sample.truncate(sampled as usize);
         let Some(mut diagram) = Diagram::of(&sample)? else { return Ok(None) };
+        let boxes = Boxes::lay(&mut diagram, &before, count as usize);
+        // Now it is known how many copies there will be, and so how large the regions.
+        let count = of_copies(boxes.copies(&diagram)).min(most);
         let boxes = Boxes::lay(&mut diagram, &before, count as usize);
         let pays = boxes.len() > 1 && boxes.copies(&diagram) < COPIES_MAX;
         Ok((when == WhenRegions::Always || pays).then_some(Regions { diagram, boxes }))

@@ -19,7 +19,7 @@ const NONE: u32 = u32::MAX;
 
 /// Most tetrahedra for each point, those that insertions have deleted among them, beside a number that any
 /// few points may have. Points on surfaces have about ten.
-const PER_POINT_MAX: usize = 16;
+pub(super) const PER_POINT_MAX: usize = 16;
 const TETRAHEDRA_MIN: usize = 1 << 12;
 
 /// A tetrahedron of the sample. One at infinity has its facet of the hull first, counterclockwise as seen

@@ -12,12 +12,14 @@
 //! 5.6 proposes them for finalization.
 
 mod boxes;
+mod curves;
 mod diagram;
 mod members;
 mod outward;
 mod sample;
 
 pub(crate) use boxes::Boxes;
+pub(crate) use curves::tetrahedra_on_curves;
 pub(crate) use diagram::Diagram;
 pub(crate) use members::Members;
 pub(crate) use sample::Sample;
