@@ -1,6 +1,7 @@
 //! Long items, each with a part that must wait for its turn.
 
 use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
@@ -57,11 +58,13 @@ struct Turns<'t, T: InTurn, N> {
     input: Mutex<(u64, Option<N>)>,
     turn: Mutex<Turn<T::Shared>>,
     changed: Condvar,
+    /// Set after a failure: no further item is begun.
+    ends: AtomicBool,
 }
 
-/// Takes items from `next` until it returns `None`, works on them on as many threads as there are `states`,
-/// and finishes them one at a time, in their order, each on its thread. Returns what the threads and the
-/// turns kept.
+/// Takes items from `next`, which gets a flag that is set after a failure, until it returns `None`, works on
+/// them on as many threads as there are `states`, and finishes them one at a time, in their order, each on
+/// its thread. Returns what the threads and the turns kept.
 ///
 /// Memory: an item for each thread.
 ///
@@ -75,11 +78,16 @@ pub fn in_turn<T: InTurn>(
     task: &T,
     mut states: Vec<T::State>,
     shared: T::Shared,
-    next: impl FnMut() -> Result<Option<T::Item>> + Send,
+    next: impl FnMut(&AtomicBool) -> Result<Option<T::Item>> + Send,
 ) -> Result<(Vec<T::State>, T::Shared)> {
     let turn = Turn { number: 0, under_way: 0, is_over: false, result: Ok(()), shared };
-    let turns =
-        Turns { task, input: Mutex::new((0, Some(next))), turn: Mutex::new(turn), changed: Condvar::new() };
+    let turns = Turns {
+        task,
+        input: Mutex::new((0, Some(next))),
+        turn: Mutex::new(turn),
+        changed: Condvar::new(),
+        ends: AtomicBool::new(false),
+    };
     thread::scope(|scope| {
         let mut others = Vec::new();
         let (first, rest) = states.split_first_mut().expect("a state for each thread");
@@ -100,7 +108,7 @@ pub fn in_turn<T: InTurn>(
     result.map(|()| (states, shared))
 }
 
-impl<T: InTurn, N: FnMut() -> Result<Option<T::Item>> + Send> Turns<'_, T, N> {
+impl<T: InTurn, N: FnMut(&AtomicBool) -> Result<Option<T::Item>> + Send> Turns<'_, T, N> {
     fn run(&self, state: &mut T::State) {
         /// Others must not wait for the turn of an item that has panicked.
         struct OnPanic<F: Fn()>(F);
@@ -117,6 +125,9 @@ impl<T: InTurn, N: FnMut() -> Result<Option<T::Item>> + Send> Turns<'_, T, N> {
                 Ok(item) => (self.task.weight(&item), self.task.work(state, item)),
                 Err(error) => (0, Err(error)),
             };
+            if done.is_err() {
+                self.ends.store(true, Ordering::Relaxed);
+            }
             let mut turn = self.wait(self.turn(), |turn| turn.number != number);
             if turn.is_over {
                 return;
@@ -125,6 +136,7 @@ impl<T: InTurn, N: FnMut() -> Result<Option<T::Item>> + Send> Turns<'_, T, N> {
             turn.number += 1;
             turn.under_way -= weight;
             turn.is_over = finished.is_err();
+            self.ends.fetch_or(turn.is_over, Ordering::Relaxed);
             turn.result = finished;
             drop(turn);
             self.changed.notify_all();
@@ -135,7 +147,9 @@ impl<T: InTurn, N: FnMut() -> Result<Option<T::Item>> + Send> Turns<'_, T, N> {
     fn take(&self) -> Option<(u64, Result<T::Item>)> {
         let mut input = self.input.lock().unwrap_or_else(PoisonError::into_inner);
         let (number, next) = &mut *input;
-        let Some(item) = next.as_mut()?().transpose() else {
+        let item =
+            if self.ends.load(Ordering::Relaxed) { None } else { next.as_mut()?(&self.ends).transpose() };
+        let Some(item) = item else {
             *next = None;
             return None;
         };
@@ -147,6 +161,11 @@ impl<T: InTurn, N: FnMut() -> Result<Option<T::Item>> + Send> Turns<'_, T, N> {
             turn.under_way += self.task.weight(&item);
             Ok(item)
         });
+        if self.ends.load(Ordering::Relaxed) {
+            // What is under way decides which error is the first.
+            *next = None;
+            return None;
+        }
         if item.is_err() {
             *next = None;
         }
@@ -169,6 +188,7 @@ impl<T: InTurn, N: FnMut() -> Result<Option<T::Item>> + Send> Turns<'_, T, N> {
 
     /// Lets nothing more begin.
     fn end(&self) {
+        self.ends.store(true, Ordering::Relaxed);
         self.turn().is_over = true;
         self.changed.notify_all();
     }
@@ -225,7 +245,7 @@ mod tests {
             Err(error) => (10, Some(error)),
         };
         let mut numbers = 0..count;
-        in_turn(task, vec![0; threads], Vec::new(), || match numbers.next() {
+        in_turn(task, vec![0; threads], Vec::new(), |_| match numbers.next() {
             Some(number) => Ok(Some(number)),
             None => failure.take().map_or(Ok(None), Err),
         })
@@ -259,5 +279,19 @@ mod tests {
     fn a_panic_goes_on_with_the_caller() {
         let task = Squares { fails_at: NEVER, panics_at: 11, under_way_max: NEVER };
         squares(3, &task, Ok(40)).unwrap();
+    }
+
+    #[test]
+    #[should_panic = "as it should"]
+    fn a_panic_ends_the_wait_for_more() {
+        let task = Squares { fails_at: NEVER, panics_at: 0, under_way_max: NEVER };
+        let mut has_come = false;
+        let next = |ends: &AtomicBool| {
+            while has_come && !ends.load(Ordering::Relaxed) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            Ok((!std::mem::replace(&mut has_come, true)).then_some(0))
+        };
+        in_turn(&task, vec![0; 3], Vec::new(), next).unwrap();
     }
 }

@@ -7,6 +7,7 @@ use super::options::{Leaves, Options, depth_max};
 use super::passes::Pass;
 use super::passes::input_changed;
 use super::work::Work;
+use crate::regions::Sample;
 use spmesh_base::error::Result;
 use spmesh_formats::source::FillValues;
 use spmesh_stream::Coordinates;
@@ -177,7 +178,8 @@ impl Work<'_> {
             found.prepare(&tree, &batch.points);
             Ok(())
         };
-        let mut sample = self.sample.take();
+        // The points may have been counted before, in another tree.
+        let mut sample = self.sample.take().map(Sample::again);
         self.read_all(Pass::Count, prepare, |batch, found| {
             if let Some(sample) = &mut sample {
                 sample.add(&batch.points);

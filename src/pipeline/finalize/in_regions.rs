@@ -29,7 +29,7 @@ const COPIES: f64 = 1.5;
 /// Regions do not pay if points are in as many on average: most of them near one sphere.
 const COPIES_MAX: f64 = 4.0;
 
-/// Fewer points do not tell on what they lie.
+/// A sample of fewer points does not tell whether they lie on a surface.
 const TELLING: usize = 1 << 12;
 
 /// Bytes of the memory budget for each region, at least.
@@ -94,14 +94,15 @@ impl<W: Write> Regional<'_, W> {
 impl Work<'_> {
     /// The regions for `points` points, if they come in regions.
     pub(super) fn regions(&mut self, points: u64, options: &Options) -> Result<Option<Regions>> {
-        let Some(sample) = self.sample.take() else { return Ok(None) };
+        let Some(mut sample) = self.sample.take() else { return Ok(None) };
         let InRegions { when, points: region_points, .. } = options.regions;
         let most = (options.budget.bytes() / BYTES_PER_REGION).max(1);
         let of_copies = |copies: f64| (points as f64 * copies / region_points.max(1) as f64).ceil() as u64;
         let count = of_copies(COPIES).min(most);
         let sampled = (SAMPLED_PER_REGION.saturating_mul(count)).min(points / SAMPLED_PART).max(SAMPLED_MIN);
+        let distinct = sample.distinct().unwrap_or(points);
         let (mut sample, before) = sample.take(usize::MAX);
-        if let Some(tetrahedra) = tetrahedra_on_curves(&sample, points)? {
+        if let Some(tetrahedra) = tetrahedra_on_curves(&sample, distinct)? {
             let gigabytes = tetrahedra * BYTES_PER_TETRAHEDRON / 1e9;
             self.observer.notice(&format!(
                 "points on curves have tetrahedra by the square of their number: about {tetrahedra:.1e}, a mesh of {gigabytes:.1} GB"
@@ -142,7 +143,7 @@ impl Work<'_> {
         // together, since much of the search is common to them.
         let held = regions.diagram.bytes() + of_leaves.bytes();
         let bytes = options.budget.bytes().saturating_sub(held).max(MEMORY_MIN) / 2;
-        let mut scatter = Scatter::new(regions, &header, options, bytes)?;
+        let mut scatter = Scatter::new(regions, &header, options, bytes.max(Scatter::bytes_min(regions)))?;
         self.hold_leaves(plan, options, &header, bytes, |leaves, _, buffers| {
             // So that the first regions are complete soon where all leaves are complete at once.
             leaves.sort_by_key(|&leaf| of_leaves.get(leaf)[0]);

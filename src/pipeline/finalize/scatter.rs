@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
 
-use super::buffer::CellBuffers;
+use super::buffer::{CELL_COST, CellBuffers};
 use super::in_regions::Regions;
 use super::options::Options;
 use super::run::Stats;
@@ -28,8 +28,8 @@ const PIECE: usize = 2048;
 const TOGETHER_MAX: u64 = 16 << 20;
 const TOGETHER_MIN: u64 = 64 << 10;
 
-/// A region and a point copied into it, in groups: those of no other region, those that are in a later one,
-/// in an earlier and a later one, and in an earlier one.
+/// The points of a region are in four groups: those that are in no other region, in a later one, in an
+/// earlier and a later one, and in an earlier one.
 pub(super) const GROUPS: usize = 4;
 
 /// The regions that the points of each leaf may have.
@@ -108,6 +108,11 @@ pub(super) struct Scatter<'r> {
 }
 
 impl<'r> Scatter<'r> {
+    /// Bytes for waiting points, at least: twice what the state of all groups takes, and some pages.
+    pub(super) fn bytes_min(regions: &Regions) -> u64 {
+        2 * (GROUPS * regions.boxes.len()) as u64 * CELL_COST + (1 << 19)
+    }
+
     pub(super) fn new(
         regions: &'r Regions,
         header: &'r Header,

@@ -82,7 +82,8 @@ impl<R: Read> Regions<R> {
         self.budget.check(load, points).map_err(|error| error.of_input(self.reader.name()))?;
         if points > MAX_POINTS {
             let message = format!("a region of {points} points, the kernel takes at most {MAX_POINTS}");
-            return Err(Error::new(ErrorKind::Memory, format!("{message}: finalize with smaller regions")));
+            let error = Error::new(ErrorKind::Memory, format!("{message}: finalize with smaller regions"));
+            return Err(error.of_input(self.reader.name()));
         }
         Ok(())
     }
@@ -135,7 +136,7 @@ pub(super) fn reduce<W: Write + Send>(
     }
     check_weights(header, options)?;
     let mesh = Header { compressed: options.compress, ..mesh_header::<Space, 3>(header, None, None) };
-    let (row_len, all) = (header.attributes.row_len(), header.points.unwrap_or(0));
+    let (row_len, all) = (header.attributes.row_len(), header.points.unwrap_or(u64::MAX));
     let sequencer = begin::<Space, W, 3>(outputs, mesh, Region::EVERYTHING)?;
     let rules = Rules::new(sequencer.header(), options.duplicates, false);
     let budget = Budget::new::<Space, 3>(options.memory, 1, row_len).of_kernels(KERNEL_BYTES, row_len);
@@ -147,10 +148,10 @@ pub(super) fn reduce<W: Write + Send>(
         last => ControlFlow::Break(last),
     };
     let read = parallel::produce("reader", 0, read)?;
-    let task =
-        Task { threads, all, budget, name: &name, has_failed: AtomicBool::new(false), writer: PhantomData };
+    let is_alone = AtomicBool::new(false);
+    let task = Task { threads, all, budget, name: &name, is_alone, writer: PhantomData };
     let mut input_bytes = 0;
-    let next = || loop {
+    let next = |ends: &AtomicBool| loop {
         match read.recv_timeout(PATIENCE) {
             Ok(Ok(Next::Region(whole))) => return Ok(Some(*whole)),
             Ok(Ok(Next::End(bytes))) => {
@@ -159,7 +160,7 @@ pub(super) fn reduce<W: Write + Send>(
             }
             Ok(Err(error)) => return Err(error),
             // The input may stay silent, and there is nothing more to be done for it.
-            Err(RecvTimeoutError::Timeout) if task.has_failed.load(Ordering::Relaxed) => return Ok(None),
+            Err(RecvTimeoutError::Timeout) if ends.load(Ordering::Relaxed) => return Ok(None),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return Err(thread_gone()),
         }
@@ -189,7 +190,8 @@ struct Task<'t, W> {
     budget: Budget,
     /// The name of the input.
     name: &'t str,
-    has_failed: AtomicBool,
+    /// Whether a region takes all threads and all memory that there is.
+    is_alone: AtomicBool,
     writer: PhantomData<fn() -> W>,
 }
 
@@ -210,13 +212,17 @@ impl<'t, W: Write + Send + 't> InTurn for Task<'t, W> {
     /// Regions are tetrahedralized at once if there is memory for that; else one after the other, each on all
     /// threads.
     fn admits(&self, whole: &mut Whole, under_way: u64, run: &Run<W>) -> Result<bool> {
+        if under_way > 0 && self.is_alone.load(Ordering::Relaxed) {
+            return Ok(false);
+        }
         let (count, mut budget) = (whole.points.len(), self.budget);
         // The next region is being read.
         let held = Held { points: count, buckets: LIVE_BYTES * run.live.len(), ..Held::default() };
         let mut room = |points: usize| budget.check(Load { held, raw: points, ..Load::default() }, points);
         match room(count + under_way as usize) {
             Ok(spare) => {
-                let is_alone = under_way == 0 && (room(2 * count).is_err() || 2 * count as u64 > self.all);
+                let is_alone = under_way == 0 && (room(2 * count).is_err() || count as u64 > self.all / 2);
+                self.is_alone.store(is_alone, Ordering::Relaxed);
                 (whole.threads, whole.spare) = match self.threads {
                     threads if is_alone => (threads, spare),
                     threads => (
@@ -251,12 +257,9 @@ impl<'t, W: Write + Send + 't> InTurn for Task<'t, W> {
 }
 
 impl<W> Task<'_, W> {
-    /// Says in which region an error is, and stops the others.
+    /// Says in which region an error is.
     fn located<T>(&self, result: Result<T>, number: u64) -> Result<T> {
-        result.map_err(|error| {
-            self.has_failed.store(true, Ordering::Relaxed);
-            located(error, format_args!("region {number}"), self.name)
-        })
+        result.map_err(|error| located(error, format_args!("region {number}"), self.name))
     }
 }
 

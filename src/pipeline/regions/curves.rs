@@ -11,9 +11,13 @@ use spmesh_delaunay::predicates::Point3;
 const COUNTED_MAX: usize = 1_000;
 const COUNTED_MIN: usize = 250;
 
-/// More tetrahedra for each point than surfaces and volumes have by far, and fewer than anybody would notice.
+/// More tetrahedra for each point than surfaces and volumes have by far, and so many that it is worth a
+/// message.
 const MANY: f64 = 64.0;
-const FEW: f64 = 1e7;
+const NOTABLE: f64 = 1e7;
+
+/// Tetrahedra that grow by a smaller power of the number of points are of a thin tube, and need not go on so.
+const POWER_MIN: f64 = 1.6;
 
 /// About how many tetrahedra so many points have, of which this is a random sample; `None` if they are not
 /// many for each point, or the sample is too small to tell.
@@ -29,9 +33,10 @@ pub(crate) fn tetrahedra_on_curves(sample: &[Point3], points: u64) -> Result<Opt
     if all < (PER_POINT_MAX * counted.len()) as f64 {
         return Ok(None);
     }
-    let growth = (all / count(&counted[..counted.len() / 2])?.max(1.0)).log2().clamp(1.0, 2.0);
+    let growth = (all / count(&counted[..counted.len() / 2])?.max(1.0)).log2().min(2.0);
     let expected = all * (points as f64 / counted.len() as f64).powf(growth);
-    Ok((expected > FEW.max(MANY * points as f64)).then_some(expected))
+    let are_many = growth > POWER_MIN && expected > NOTABLE.max(MANY * points as f64);
+    Ok(are_many.then_some(expected))
 }
 
 fn count(points: &[Point3]) -> Result<f64> {

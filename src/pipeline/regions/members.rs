@@ -106,7 +106,7 @@ struct Found<'f> {
     /// All that the cells meet, increasing.
     among: &'f [u32],
     regions: &'f mut Vec<u32>,
-    /// Whether no vertices are known but those in these boxes.
+    /// Whether all vertices lie in these boxes.
     are_all_known: bool,
 }
 
@@ -157,7 +157,9 @@ impl Set {
         let point: Point3 = std::array::from_fn(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
         // Squares of what is less may underflow.
         let least = 4.0 * f64::MIN_POSITIVE.sqrt();
-        let near = square_of_distance(low, high).sqrt() * (0.5 + ROUNDING) + least;
+        let half: Point3 =
+            std::array::from_fn(|axis| (point[axis] - low[axis]).max(high[axis] - point[axis]));
+        let near = square_of_distance(half, [0.0; 3]).sqrt() * (1.0 + ROUNDING) + least;
         near.is_finite().then_some(Set { point, near, is_sample: false })
     }
 

@@ -31,6 +31,17 @@ impl Sample {
         Sample { most, end: u64::MAX, kept: Vec::new(), points: 0 }
     }
 
+    /// An empty sample of the same size.
+    pub(crate) fn again(self) -> Sample {
+        Sample::new(self.most)
+    }
+
+    /// The number of different points, if the sample has all of them.
+    pub(crate) fn distinct(&mut self) -> Option<u64> {
+        self.shrink();
+        (self.kept.len() < self.most).then_some(self.kept.len() as u64)
+    }
+
     /// Takes points of the set.
     pub(crate) fn add(&mut self, points: &[Point]) {
         for (&point, before) in points.iter().zip(self.points..) {
