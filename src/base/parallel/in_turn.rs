@@ -1,11 +1,10 @@
 //! Long items, each with a part that must wait for its turn.
 
-use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-use super::threads::spawn_scoped;
+use super::threads::{join, on_panic, spawn_scoped};
 use crate::error::Result;
 
 /// What is done with items, one after the other or on several threads.
@@ -47,6 +46,7 @@ struct Turn<S> {
     number: u64,
     /// Weight of the items under way.
     under_way: u64,
+    /// No further item is finished.
     is_over: bool,
     result: Result<()>,
     shared: S,
@@ -58,7 +58,7 @@ struct Turns<'t, T: InTurn, N> {
     input: Mutex<(u64, Option<N>)>,
     turn: Mutex<Turn<T::Shared>>,
     changed: Condvar,
-    /// Set after a failure: no further item is begun.
+    /// Set after a failure: no further item is begun. Earlier ones may still be finished.
     ends: AtomicBool,
 }
 
@@ -92,16 +92,14 @@ pub fn in_turn<T: InTurn>(
         let mut others = Vec::new();
         let (first, rest) = states.split_first_mut().expect("a state for each thread");
         let started = rest.iter_mut().try_for_each(|state| {
-            others.push(spawn_scoped(scope, "worker", || turns.run(state))?);
+            others.push(spawn_scoped(scope, "worker", || turns.run_guarded(state))?);
             Ok(())
         });
         match started {
-            Ok(()) => turns.run(first),
+            Ok(()) => turns.run_guarded(first),
             Err(_) => turns.end(),
         }
-        for other in others {
-            other.join().unwrap_or_else(|panic| resume_unwind(panic));
-        }
+        others.into_iter().for_each(join);
         started
     })?;
     let Turn { result, shared, .. } = turns.turn.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -109,17 +107,12 @@ pub fn in_turn<T: InTurn>(
 }
 
 impl<T: InTurn, N: FnMut(&AtomicBool) -> Result<Option<T::Item>> + Send> Turns<'_, T, N> {
+    /// Others do not wait for the turn of an item that has panicked.
+    fn run_guarded(&self, state: &mut T::State) {
+        on_panic(|| self.end(), || self.run(state));
+    }
+
     fn run(&self, state: &mut T::State) {
-        /// Others must not wait for the turn of an item that has panicked.
-        struct OnPanic<F: Fn()>(F);
-        impl<F: Fn()> Drop for OnPanic<F> {
-            fn drop(&mut self) {
-                if thread::panicking() {
-                    self.0();
-                }
-            }
-        }
-        let _on_panic = OnPanic(|| self.end());
         while let Some((number, item)) = self.take() {
             let (weight, done) = match item {
                 Ok(item) => (self.task.weight(&item), self.task.work(state, item)),
@@ -128,7 +121,7 @@ impl<T: InTurn, N: FnMut(&AtomicBool) -> Result<Option<T::Item>> + Send> Turns<'
             if done.is_err() {
                 self.ends.store(true, Ordering::Relaxed);
             }
-            let mut turn = self.wait(self.turn(), |turn| turn.number != number);
+            let mut turn = self.turn_of(number);
             if turn.is_over {
                 return;
             }
@@ -177,16 +170,13 @@ impl<T: InTurn, N: FnMut(&AtomicBool) -> Result<Option<T::Item>> + Send> Turns<'
         self.turn.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn wait<'g>(
-        &'g self,
-        turn: MutexGuard<'g, Turn<T::Shared>>,
-        mut waits: impl FnMut(&Turn<T::Shared>) -> bool,
-    ) -> MutexGuard<'g, Turn<T::Shared>> {
-        let mut waits = |turn: &mut Turn<T::Shared>| !turn.is_over && waits(turn);
-        self.changed.wait_while(turn, &mut waits).unwrap_or_else(PoisonError::into_inner)
+    /// Waits for the turn of an item, or until none comes any more.
+    fn turn_of(&self, number: u64) -> MutexGuard<'_, Turn<T::Shared>> {
+        let waits = |turn: &mut Turn<T::Shared>| !turn.is_over && turn.number != number;
+        self.changed.wait_while(self.turn(), waits).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets nothing more begin.
+    /// Lets nothing more be begun or finished.
     fn end(&self) {
         self.ends.store(true, Ordering::Relaxed);
         self.turn().is_over = true;

@@ -57,17 +57,22 @@ impl Stop {
 
     /// Runs one item; a panic stops the others.
     pub(super) fn guard<T>(&self, work: impl FnOnce() -> T) -> T {
-        struct OnPanic<'a>(&'a Stop);
-        impl Drop for OnPanic<'_> {
-            fn drop(&mut self) {
-                if thread::panicking() {
-                    self.0.set();
-                }
+        on_panic(|| self.set(), work)
+    }
+}
+
+/// Calls `end` if `work` panics, so that other threads do not wait for it.
+pub(super) fn on_panic<T>(end: impl Fn(), work: impl FnOnce() -> T) -> T {
+    struct OnPanic<F: Fn()>(F);
+    impl<F: Fn()> Drop for OnPanic<F> {
+        fn drop(&mut self) {
+            if thread::panicking() {
+                self.0();
             }
         }
-        let _on_panic = OnPanic(self);
-        work()
     }
+    let _on_panic = OnPanic(end);
+    work()
 }
 
 fn no_thread(cause: std::io::Error) -> Error {

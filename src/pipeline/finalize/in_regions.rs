@@ -115,12 +115,16 @@ impl Work<'_> {
         }
         sample.truncate(sampled as usize);
         let Some(mut diagram) = Diagram::of(&sample)? else { return Ok(None) };
-        let boxes = Boxes::lay(&mut diagram, &before, count as usize);
+        let boxes = Boxes::lay(&diagram, &before, count as usize);
         // Now it is known how many copies there will be, and so how large the regions.
         let count = of_copies(boxes.copies(&diagram)).min(most);
-        let boxes = Boxes::lay(&mut diagram, &before, count as usize);
+        let boxes = Boxes::lay(&diagram, &before, count as usize);
         let pays = boxes.len() > 1 && boxes.copies(&diagram) < COPIES_MAX;
-        Ok((when == WhenRegions::Always || pays).then_some(Regions { diagram, boxes }))
+        if when == WhenRegions::Auto && !pays {
+            return Ok(None);
+        }
+        boxes.place_centres(&mut diagram);
+        Ok(Some(Regions { diagram, boxes }))
     }
 
     /// Holds the points of all regions, and writes one region after the other.

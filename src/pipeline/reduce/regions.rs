@@ -165,8 +165,7 @@ pub(super) fn reduce<W: Write + Send>(
             Err(RecvTimeoutError::Disconnected) => return Err(thread_gone()),
         }
     };
-    let mut solvers: Vec<_> = (0..threads.get()).map(|_| Solver::new(rules)).collect();
-    solvers.iter_mut().for_each(|solver| solver.share(NonZeroUsize::MIN));
+    let solvers = (0..threads.get()).map(|_| Solver::new(rules)).collect();
     let run = Run { sequencer, live: Live::default(), stats: Stats::default(), progress };
     let (solvers, run) = parallel::in_turn(&task, solvers, run, next)?;
     let Run { mut stats, sequencer, live, .. } = run;
@@ -223,12 +222,10 @@ impl<'t, W: Write + Send + 't> InTurn for Task<'t, W> {
             Ok(spare) => {
                 let is_alone = under_way == 0 && (room(2 * count).is_err() || count as u64 > self.all / 2);
                 self.is_alone.store(is_alone, Ordering::Relaxed);
-                (whole.threads, whole.spare) = match self.threads {
-                    threads if is_alone => (threads, spare),
-                    threads => (
-                        NonZeroUsize::MIN,
-                        if spare < u64::MAX { spare / threads.get() as u64 } else { spare },
-                    ),
+                (whole.threads, whole.spare) = match spare {
+                    _ if is_alone => (self.threads, spare),
+                    u64::MAX => (NonZeroUsize::MIN, u64::MAX),
+                    _ => (NonZeroUsize::MIN, spare / self.threads.get() as u64),
                 };
                 Ok(true)
             }

@@ -50,9 +50,9 @@ struct Making<'d> {
 }
 
 impl Boxes {
-    /// `count` boxes; fewer if centres coincide. Notes in the diagram which box has each centre. Before each
-    /// point that was given for the diagram came `before` of all points, as a part of one.
-    pub(crate) fn lay(diagram: &mut Diagram, before: &[f64], count: usize) -> Boxes {
+    /// `count` boxes; fewer if centres coincide. Before each point that was given for the diagram came `before`
+    /// of all points, as a part of one.
+    pub(crate) fn lay(diagram: &Diagram, before: &[f64], count: usize) -> Boxes {
         let extents = extents_of_cells(diagram);
         let parts: Vec<u32> = diagram.given.iter().map(|&at| (PARTS * before[at as usize]) as u32).collect();
         let known = diagram.balls.iter().filter(|ball| ball.error.is_finite());
@@ -62,13 +62,17 @@ impl Boxes {
         making.divide(&mut centres, (0..extents.len() as u32).collect(), Region::EVERYTHING, count);
         let mut tree = making.tree;
         tree.renumber();
+        tree
+    }
+
+    /// Notes in the diagram which box has each centre.
+    pub(crate) fn place_centres(&self, diagram: &mut Diagram) {
         for ball in &mut diagram.balls {
             let [low, high] = [-ball.error, ball.error].map(|e| ball.centre.map(|x| x + e));
             let (mut met, mut more) = (None, false);
-            tree.visit([low, high], &mut |number| more |= met.replace(number).is_some());
+            self.visit([low, high], &mut |number| more |= met.replace(number).is_some());
             ball.place = met.filter(|_| !more);
         }
-        tree
     }
 
     /// Numbers the boxes in the order of the parts of the input.

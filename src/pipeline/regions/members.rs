@@ -413,7 +413,8 @@ mod tests {
         let mut random = Random::new(11);
         let sample: Vec<Point3> = (0..300).map(|_| place(&mut random)).collect();
         let mut diagram = Diagram::of(&sample).unwrap().unwrap();
-        let boxes = Boxes::lay(&mut diagram, &vec![0.0; sample.len()], 20);
+        let boxes = Boxes::lay(&diagram, &vec![0.0; sample.len()], 20);
+        boxes.place_centres(&mut diagram);
         let all: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut members = Members::default();
         let (mut some_of_all, mut met) = (0, 0);
