@@ -22,6 +22,7 @@ pub mod processor;
 mod random;
 pub mod simplex;
 pub mod vector;
+mod walk;
 
 pub use error::{Error, Result};
 pub use location::Location;

@@ -1,7 +1,7 @@
 //! Points on the nodes of grids, which the kernel covers without insertion, against plain insertion.
 
-use super::kernel::checked;
-use spmesh_delaunay::delaunay2::{Kernel, Triangles, triangulate};
+use super::kernel::{checked, triangulate};
+use spmesh_delaunay::delaunay2::{Kernel, Triangles};
 use spmesh_reference::sets::Random;
 use spmesh_reference::{as_set, exact, incremental};
 use std::collections::HashMap;

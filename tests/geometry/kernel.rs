@@ -1,9 +1,17 @@
 //! The 2D kernel against independent triangulations, and its output against its own promises.
 
-use spmesh_delaunay::delaunay2::{Corner, Kernel, NONE, Triangles, distinct, triangulate};
+use spmesh_delaunay::Result;
+use spmesh_delaunay::delaunay2::{Corner, Kernel, NONE, Triangles, distinct};
 use spmesh_reference::sets::{self, Random};
 use spmesh_reference::{as_set, exhaustive, incremental};
 use std::collections::HashSet;
+
+/// What a new kernel makes of points.
+pub(super) fn triangulate(points: &[[f64; 2]]) -> Result<Triangles> {
+    let mut mesh = Triangles::default();
+    Kernel::new().triangulate(points, &mut mesh)?;
+    Ok(mesh)
+}
 
 fn triangles(mesh: &Triangles) -> impl Iterator<Item = [u32; 3]> + '_ {
     mesh.triangles().iter().map(|triangle| triangle.vertices)

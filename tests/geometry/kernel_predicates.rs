@@ -187,5 +187,9 @@ fn perturbation_takes_the_lexicographically_largest_point() {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let mesh = spmesh_delaunay::delaunay2::triangulate(&square).expect("finite points");
     assert_eq!(mesh.triangles().len(), 2);
-    assert!(mesh.left_of(1, 3).is_some() && mesh.left_of(3, 1).is_some(), "{:?}", mesh.triangles());
+    assert!(
+        mesh.arrays().left_of(1, 3).is_some() && mesh.arrays().left_of(3, 1).is_some(),
+        "{:?}",
+        mesh.triangles()
+    );
 }

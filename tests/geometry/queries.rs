@@ -4,6 +4,7 @@ use spmesh_delaunay::Location;
 use spmesh_delaunay::{delaunay2, delaunay3};
 use spmesh_reference::sets::Random;
 use std::collections::{BTreeMap, BTreeSet};
+use std::num::NonZeroUsize;
 
 /// Coordinates are even integers below this, so that odd targets fall between points.
 const SIDE: i64 = 8;
@@ -72,6 +73,30 @@ fn expected<const N: usize, const D: usize>(
     Location::Outside
 }
 
+/// Checks where many targets at once are found, some of them not finite or just outside: `found` for one and for three
+/// threads.
+fn check_all<const N: usize, const D: usize>(
+    points: &[[f64; D]],
+    simplices: &[[u32; N]],
+    found: impl Fn(&[[f64; D]], NonZeroUsize) -> Vec<u32>,
+) {
+    let mut all: Vec<[f64; D]> = targets().collect();
+    let mut least: Vec<u32> = all
+        .iter()
+        .map(|&target| {
+            let contains = |&simplex: &[u32; N]| face(points, simplex, target).is_some();
+            simplices.iter().position(contains).map_or(u32::MAX, |number| number as u32)
+        })
+        .collect();
+    for (place, beyond) in [f64::NAN, f64::INFINITY, 1e300, -5e-324].into_iter().enumerate() {
+        all.insert(7 * place, [beyond; D]);
+        least.insert(7 * place, u32::MAX);
+    }
+    for threads in [1, 3] {
+        assert_eq!(found(&all, NonZeroUsize::new(threads).unwrap()), least, "{points:?}");
+    }
+}
+
 /// Checks neighbours, edges, hull and representatives.
 fn check<const N: usize, const F: usize, const D: usize>(
     points: &[[f64; D]],
@@ -134,6 +159,7 @@ fn triangulations_answer_as_all_their_triangles_do() {
         let simplices: Vec<[u32; 3]> = mesh.simplices().collect();
         assert_eq!(mesh.points(), points);
         let hull = mesh.hull().collect();
+        check_all(&points, &simplices, |targets, threads| mesh.locate_all(targets, threads));
         check(&points, &simplices, |i| mesh.neighbours(i), &mesh.edges(), hull, &mesh.representatives());
         for target in targets() {
             assert_eq!(mesh.locate(target), expected(&points, &simplices, target), "{points:?} {target:?}");
@@ -153,6 +179,7 @@ fn tetrahedralizations_answer_as_all_their_tetrahedra_do() {
         let mesh = delaunay3::triangulate(&points).expect("finite points");
         let simplices: Vec<[u32; 4]> = mesh.simplices().collect();
         let hull = mesh.hull().collect();
+        check_all(&points, &simplices, |targets, threads| mesh.locate_all(targets, threads));
         check(&points, &simplices, |i| mesh.neighbours(i), &mesh.edges(), hull, &mesh.representatives());
         for target in targets() {
             assert_eq!(mesh.locate(target), expected(&points, &simplices, target), "{points:?} {target:?}");

@@ -1,26 +1,19 @@
 //! A triangulation that answers questions.
 
-use super::triangles::{Corner, Triangles};
+use super::half_edge::NONE;
+use super::triangles::{Triangle, Triangles};
 use crate::location::Location;
 use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
-use std::ops::Deref;
+use crate::walk::{self, End, Walkable};
+use std::num::NonZeroUsize;
 
 /// A Delaunay triangulation with its points. All vertices are indices of the input points.
 ///
-/// [`Tetrahedralization`](crate::delaunay3::Tetrahedralization) has the same methods in space. The arrays of
-/// the kernel are at hand too, by way of [`Deref`].
+/// [`Tetrahedralization`](crate::delaunay3::Tetrahedralization) has the same methods in space.
 #[derive(Debug, Default)]
 pub struct Triangulation {
-    points: Vec<Point2>,
-    triangles: Triangles,
-}
-
-impl Deref for Triangulation {
-    type Target = Triangles;
-
-    fn deref(&self) -> &Triangles {
-        &self.triangles
-    }
+    pub(super) points: Vec<Point2>,
+    pub(super) triangles: Triangles,
 }
 
 impl Triangulation {
@@ -34,10 +27,25 @@ impl Triangulation {
         &self.points
     }
 
+    /// The arrays of the kernel.
+    pub fn arrays(&self) -> &Triangles {
+        &self.triangles
+    }
+
+    /// All triangles with their neighbours; [`Triangulation::simplices`] are their vertices alone.
+    pub fn triangles(&self) -> &[Triangle] {
+        self.triangles.triangles()
+    }
+
+    /// Points left out because an equal point of lesser index is there: `[duplicate, vertex]`.
+    pub fn duplicates(&self) -> &[[u32; 2]] {
+        &self.triangles.duplicates
+    }
+
     /// The triangles by their vertices, counterclockwise. Their numbers are those of
     /// [`Triangulation::neighbours`].
     pub fn simplices(&self) -> impl ExactSizeIterator<Item = [u32; 3]> + '_ {
-        self.triangles.triangles().iter().map(|triangle| triangle.vertices)
+        self.triangles().iter().map(|triangle| triangle.vertices)
     }
 
     /// The triangles across the edges opposite to the three vertices of triangle `number`; `None` at the
@@ -46,7 +54,7 @@ impl Triangulation {
     /// # Panics
     /// If there is no such triangle.
     pub fn neighbours(&self, number: u32) -> [Option<u32>; 3] {
-        let triangle = &self.triangles.triangles()[number as usize];
+        let triangle = &self.triangles()[number as usize];
         [0, 1, 2].map(|side| triangle.neighbour(side).map(|corner| corner.triangle))
     }
 
@@ -65,7 +73,7 @@ impl Triangulation {
     /// The edges of the hull, counterclockwise; none if there are no triangles.
     pub fn hull(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
         let vertices = &self.triangles.hull;
-        let count = if self.triangles.triangles().is_empty() { 0 } else { vertices.len() };
+        let count = if self.triangles().is_empty() { 0 } else { vertices.len() };
         (0..count).map(move |i| [vertices[i], vertices[(i + 1) % count]])
     }
 
@@ -85,29 +93,37 @@ impl Triangulation {
     ///
     /// Cost: a walk of O(sqrt n) triangles for points that are spread evenly.
     pub fn locate(&self, target: Point2) -> Location {
+        self.locate_from(target, 0)
+    }
+
+    /// [`Triangulation::locate`] by a walk that begins at triangle `start`: short, if that is near.
+    ///
+    /// # Panics
+    /// If there are triangles, but none of this number.
+    pub fn locate_from(&self, target: Point2, start: u32) -> Location {
         if !target.iter().all(|coordinate| coordinate.is_finite()) {
             return Location::Outside;
         }
-        let triangles = self.triangles.triangles();
-        if triangles.is_empty() {
+        if self.triangles().is_empty() {
             return self.locate_on_line(target);
         }
-        let mut predicates = FiniteFloatPredicates::default();
-        let mut number = 0;
-        // In a Delaunay triangulation this walk meets no triangle twice.
-        loop {
-            let triangle = &triangles[number as usize];
-            let [a, b, c] = triangle.vertices;
-            let signs = [[b, c], [c, a], [a, b]]
-                .map(|[u, v]| predicates.orient2d(self.points[u as usize], self.points[v as usize], target));
-            let Some(side) = signs.iter().position(|&sign| sign == Sign::Negative) else {
-                return Location::in_simplex(number, triangle.vertices, signs);
-            };
-            match triangle.neighbour(side) {
-                Some(Corner { triangle, .. }) => number = triangle,
-                None => return Location::Outside,
-            }
+        let End { simplex, sides } = walk::walk(self, start, target, &mut FiniteFloatPredicates::default());
+        let vertices = self.triangles()[simplex as usize].vertices;
+        sides.map_or(Location::Outside, |sides| Location::in_simplex(simplex, vertices, sides))
+    }
+
+    /// For each target the number of the triangle that contains it, its border included: the least, if there are
+    /// several. [`NONE`] for targets that are outside, or not finite.
+    ///
+    /// The targets are asked for in order along a curve, in blocks, on so many threads; the answers do not depend
+    /// on them.
+    ///
+    /// Cost: O(log m) for each of m targets that are spread as the points are, to put it in order.
+    pub fn locate_all(&self, targets: &[Point2], threads: NonZeroUsize) -> Vec<u32> {
+        if self.triangles().is_empty() {
+            return vec![NONE; targets.len()];
         }
+        walk::find_all(self, targets, threads, NONE)
     }
 
     /// Without triangles, the vertices are in lexicographic order.
@@ -115,5 +131,27 @@ impl Triangulation {
         let vertices = &self.triangles.hull;
         let found = vertices.binary_search_by(|&v| lexicographic(self.points[v as usize], target));
         found.map_or(Location::Outside, |place| Location::Vertex(vertices[place]))
+    }
+}
+
+impl Walkable<2, 3> for Triangulation {
+    type Predicates = FiniteFloatPredicates;
+
+    #[inline]
+    fn side(
+        &self,
+        number: u32,
+        corner: usize,
+        target: Point2,
+        predicates: &mut FiniteFloatPredicates,
+    ) -> Sign {
+        let vertices = self.triangles()[number as usize].vertices;
+        let [u, v] = [1, 2].map(|turn| self.points[vertices[(corner + turn) % 3] as usize]);
+        predicates.orient2d(u, v, target)
+    }
+
+    #[inline]
+    fn across(&self, number: u32, corner: usize) -> Option<u32> {
+        self.triangles()[number as usize].neighbour(corner).map(|corner| corner.triangle)
     }
 }

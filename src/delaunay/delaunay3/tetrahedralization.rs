@@ -4,7 +4,9 @@ use super::stats::Stats;
 use crate::location::Location;
 use crate::predicates::{FiniteFloatPredicates3, Point3, Predicates3, Sign};
 use crate::simplex::TETRAHEDRON_FACETS;
+use crate::walk::{self, End, Walkable};
 use bytemuck::{Pod, Zeroable};
+use std::num::NonZeroUsize;
 
 /// No tetrahedron: beyond a facet of the hull.
 pub const NONE: u32 = u32::MAX;
@@ -197,6 +199,14 @@ impl Tetrahedralization {
     ///
     /// Cost: a walk of O(cbrt n) tetrahedra for points that are spread evenly; without tetrahedra, O(n).
     pub fn locate(&self, target: Point3) -> Location {
+        self.locate_from(target, 0)
+    }
+
+    /// [`Tetrahedralization::locate`] by a walk that begins at tetrahedron `start`: short, if that is near.
+    ///
+    /// # Panics
+    /// If there are tetrahedra, but none of this number.
+    pub fn locate_from(&self, target: Point3, start: u32) -> Location {
         if !target.iter().all(|coordinate| coordinate.is_finite()) {
             return Location::Outside;
         }
@@ -204,22 +214,45 @@ impl Tetrahedralization {
             let found = self.vertices.iter().find(|vertex| vertex.at == target);
             return found.map_or(Location::Outside, |vertex| Location::Vertex(vertex.index));
         }
-        let mut predicates = FiniteFloatPredicates3::default();
-        let mut number = 0;
-        // In a Delaunay tetrahedralization this walk meets no tetrahedron twice.
-        loop {
-            let tetrahedron = &self.tetrahedra[number as usize];
-            let signs = TETRAHEDRON_FACETS.map(|facet| {
-                let [a, b, c] = facet.map(|i| self.vertices[tetrahedron.vertices[i] as usize].at);
-                predicates.orient3d(target, a, b, c)
-            });
-            let Some(side) = signs.iter().position(|&sign| sign == Sign::Negative) else {
-                return Location::in_simplex(number, self.input_indices(tetrahedron.vertices), signs);
-            };
-            match tetrahedron.neighbour(side) {
-                Some(corner) => number = corner.tetrahedron,
-                None => return Location::Outside,
-            }
+        let End { simplex, sides } = walk::walk(self, start, target, &mut FiniteFloatPredicates3::default());
+        let vertices = self.input_indices(self.tetrahedra[simplex as usize].vertices);
+        sides.map_or(Location::Outside, |sides| Location::in_simplex(simplex, vertices, sides))
+    }
+
+    /// For each target the number of the tetrahedron that contains it, its border included: the least, if there
+    /// are several. [`NONE`] for targets that are outside, or not finite.
+    ///
+    /// The targets are asked for in order along a curve, in blocks, on so many threads; the answers do not depend
+    /// on them.
+    ///
+    /// Cost: O(log m) for each of m targets that are spread as the points are, to put it in order.
+    pub fn locate_all(&self, targets: &[Point3], threads: NonZeroUsize) -> Vec<u32> {
+        if self.tetrahedra.is_empty() {
+            return vec![NONE; targets.len()];
         }
+        walk::find_all(self, targets, threads, NONE)
+    }
+}
+
+impl Walkable<3, 4> for Tetrahedralization {
+    type Predicates = FiniteFloatPredicates3;
+
+    #[inline]
+    fn side(
+        &self,
+        number: u32,
+        corner: usize,
+        target: Point3,
+        predicates: &mut FiniteFloatPredicates3,
+    ) -> Sign {
+        let tetrahedron = &self.tetrahedra[number as usize];
+        let [a, b, c] =
+            TETRAHEDRON_FACETS[corner].map(|i| self.vertices[tetrahedron.vertices[i] as usize].at);
+        predicates.orient3d(target, a, b, c)
+    }
+
+    #[inline]
+    fn across(&self, number: u32, corner: usize) -> Option<u32> {
+        self.tetrahedra[number as usize].neighbour(corner).map(|corner| corner.tetrahedron)
     }
 }

@@ -289,7 +289,7 @@ pub fn control_bending(basis: &Basis) -> Result<Symmetric> {
         add_square(&mut rows, corners, dependence.map(|share| share / half), 1.0 / diagonals);
     });
     let of_function = polygon::area(&basis.domain_corners()).max(f64::MIN_POSITIVE) / basis.len() as f64;
-    for &pair in &mesh.duplicates {
+    for &pair in mesh.duplicates() {
         add_square(&mut rows, pair, [1.0, -1.0], 1.0 / of_function);
     }
     Ok(Symmetric::of_rows(&rows, |_| true))

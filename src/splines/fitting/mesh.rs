@@ -35,7 +35,7 @@ impl Mesh {
 
     /// Vertices of the hull, counterclockwise, including vertices on its edges.
     pub(super) fn hull(&self) -> &[u32] {
-        &self.triangulation.hull
+        &self.triangulation.arrays().hull
     }
 
     pub(super) fn triangles_len(&self) -> usize {

@@ -158,6 +158,7 @@ fn far_places(places: &[Point2], divided: &[Vec<Point2>], near: f64) -> Result<V
     }
     delaunay2::triangulate(places)
         .map_err(Error::of_computation)?
+        .arrays()
         .hull
         .iter()
         .for_each(|&id| is_kept[id as usize] = true);

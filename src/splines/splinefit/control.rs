@@ -41,7 +41,7 @@ impl ControlMesh {
         Ok(ControlMesh {
             points: sites.iter().zip(coefficients).map(|(&[x, y], &z)| [x, y, z]).collect(),
             triangles: mesh.triangles().iter().map(|triangle| triangle.vertices).collect(),
-            merged: mesh.duplicates.len() as u64,
+            merged: mesh.duplicates().len() as u64,
             crs: layout.frame.crs.clone(),
         })
     }

@@ -28,7 +28,7 @@ pub fn kernel2(bytes: &[u8]) {
     let triangles: Vec<[u32; 3]> = mesh.triangles().iter().map(|triangle| triangle.vertices).collect();
     let header = Header::new(Kind::TriangleMesh, Coordinates::F64, 2, false);
     let at = |v: u32| [points[v as usize][0], points[v as usize][1], 0.0];
-    let (mut stream, merged) = (Vec::new(), mesh.duplicates.len() as u64);
+    let (mut stream, merged) = (Vec::new(), mesh.duplicates().len() as u64);
     write_triangles(header, &triangles, points.len(), merged, at, &mut stream).expect("memory takes it");
     let mut reader = StreamReader::new(&stream[..], "kernel2").expect("a header");
     let mut audit = Audit::new(reader.header(), Standard::Canonical, None).expect("a mesh has an audit");

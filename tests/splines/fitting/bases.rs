@@ -14,7 +14,7 @@ pub const ONE: NonZeroUsize = NonZeroUsize::MIN;
 /// whole hull.
 pub fn pulled_apart(points: &[[f64; 2]]) -> Basis {
     let knots = Knots::new(points.to_vec()).expect("finite points");
-    let hull = delaunay2::triangulate(points).expect("a triangulation").hull.clone();
+    let hull = delaunay2::triangulate(points).expect("a triangulation").arrays().hull.clone();
     let special = features(&knots, &Features { corners: hull, ..Features::default() }).expect("features");
     let all = special.generate(&Rule::Delaunay, 1).expect("configurations");
     let links = configurations::links(&special.knots, &all[1]).expect("links");

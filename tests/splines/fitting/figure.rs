@@ -29,7 +29,7 @@ fn errors(basis: &Basis, side: f64, f: fn([f64; 2]) -> f64) -> (f64, f64) {
 /// Functions over configurations of knots with the border pulled apart.
 fn collected(points: &[[f64; 2]], configurations: impl Fn(&Knots) -> Configurations) -> Basis {
     let knots = Knots::new(points.to_vec()).expect("finite points");
-    let hull = delaunay2::triangulate(points).expect("a triangulation").hull.clone();
+    let hull = delaunay2::triangulate(points).expect("a triangulation").arrays().hull.clone();
     let special = features(&knots, &Features { corners: hull, ..Features::default() }).expect("features");
     let made = configurations(&special.knots);
     let links = configurations::links(&special.knots, &made).expect("links");

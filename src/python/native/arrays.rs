@@ -1,0 +1,34 @@
+//! Between arrays of numpy and slices.
+
+use numpy::ndarray::Array2;
+use numpy::{Element, IntoPyArray, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The rows of an array of `D` columns; `None` for another number of columns.
+///
+/// # Errors
+/// If the array does not lie in memory row by row.
+pub(crate) fn rows<'a, T: Element, const D: usize>(
+    array: &'a PyReadonlyArray2<'_, T>,
+) -> PyResult<Option<&'a [[T; D]]>> {
+    if array.shape()[1] != D {
+        return Ok(None);
+    }
+    let numbers = array.as_slice().map_err(|_| PyValueError::new_err("the array is not contiguous"))?;
+    Ok(Some(numbers.as_chunks().0))
+}
+
+/// An array of these rows, without a copy.
+pub(crate) fn array_of<T: Element, const D: usize>(
+    py: Python<'_>,
+    rows: Vec<[T; D]>,
+) -> Bound<'_, PyArray2<T>> {
+    let shape = (rows.len(), D);
+    Array2::from_shape_vec(shape, rows.into_flattened()).expect("rows of D").into_pyarray(py)
+}
+
+/// Numbers of vertices or simplices as numpy's users know them: 32 bits, -1 for none.
+pub(crate) fn signed(number: u32) -> i32 {
+    number.cast_signed()
+}

@@ -1,0 +1,13 @@
+//! `spmesh._native`: triangulations of arrays of numpy. The module `spmesh.delaunay` gives them their names, checks
+//! arguments and documents them; nothing here is for users.
+
+mod arrays;
+mod mesh;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::mesh::Mesh;
+}

@@ -1,0 +1,145 @@
+//! Triangulations of the plane and of space as one class of Python.
+
+use crate::arrays::{array_of, rows, signed};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyOverflowError, PyValueError};
+use pyo3::prelude::*;
+use spmesh_delaunay::{Error, delaunay2, delaunay3};
+use std::borrow::Cow;
+use std::num::NonZeroUsize;
+
+/// Targets that are asked for between two looks at signals.
+const TARGETS: usize = 1 << 22;
+
+/// A triangulation.
+#[pyclass(frozen, module = "spmesh._native")]
+pub(crate) struct Mesh {
+    dimensions: Dimensions,
+    threads: NonZeroUsize,
+}
+
+enum Dimensions {
+    Two(delaunay2::Triangulation),
+    Three(delaunay3::Tetrahedralization),
+}
+use Dimensions::{Three, Two};
+
+fn error_of(error: Error) -> PyErr {
+    match error {
+        Error::TooManyPoints { .. } | Error::TooManyTetrahedra(_) => {
+            PyOverflowError::new_err(error.to_string())
+        }
+        _ => PyValueError::new_err(error.to_string()),
+    }
+}
+
+#[pymethods]
+impl Mesh {
+    /// Triangulates an array of two or three columns.
+    #[new]
+    fn new(py: Python<'_>, points: PyReadonlyArray2<'_, f64>, threads: NonZeroUsize) -> PyResult<Mesh> {
+        // Other threads of Python may write to the array meanwhile.
+        let dimensions = if let Some(points) = rows::<f64, 2>(&points)? {
+            let points = points.to_vec();
+            py.detach(|| delaunay2::triangulate(&points)).map(Two)
+        } else if let Some(points) = rows::<f64, 3>(&points)? {
+            let points = points.to_vec();
+            py.detach(|| {
+                let mut kernel = delaunay3::Kernel::new();
+                kernel.threads = threads;
+                let mut mesh = delaunay3::Tetrahedralization::default();
+                kernel.triangulate(Cow::Owned(points), &mut mesh).map(|()| mesh)
+            })
+            .map(Three)
+        } else {
+            return Err(PyValueError::new_err("points have 2 or 3 columns"));
+        };
+        Ok(Mesh { dimensions: dimensions.map_err(error_of)?, threads })
+    }
+
+    /// Vertices of each simplex.
+    fn simplices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
+        match &self.dimensions {
+            Two(mesh) => {
+                array_of(py, py.detach(|| mesh.simplices().map(|simplex| simplex.map(signed)).collect()))
+            }
+            Three(mesh) => {
+                array_of(py, py.detach(|| mesh.simplices().map(|simplex| simplex.map(signed)).collect()))
+            }
+        }
+    }
+
+    /// Neighbours of each simplex, opposite to its vertices.
+    fn neighbors<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
+        let or_none = |number: Option<u32>| number.map_or(-1, signed);
+        match &self.dimensions {
+            Two(mesh) => {
+                let count = mesh.simplices().len() as u32;
+                array_of(
+                    py,
+                    py.detach(|| (0..count).map(|number| mesh.neighbours(number).map(or_none)).collect()),
+                )
+            }
+            Three(mesh) => {
+                let count = mesh.tetrahedra().len() as u32;
+                array_of(
+                    py,
+                    py.detach(|| (0..count).map(|number| mesh.neighbours(number).map(or_none)).collect()),
+                )
+            }
+        }
+    }
+
+    /// Facets of the hull.
+    fn hull<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
+        match &self.dimensions {
+            Two(mesh) => array_of(py, mesh.hull().map(|facet| facet.map(signed)).collect()),
+            Three(mesh) => array_of(py, mesh.hull().map(|facet| facet.map(signed)).collect()),
+        }
+    }
+
+    /// Points left out, each with the equal one that is a vertex.
+    fn duplicates<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
+        let duplicates = match &self.dimensions {
+            Two(mesh) => mesh.duplicates(),
+            Three(mesh) => &mesh.duplicates,
+        };
+        array_of(py, duplicates.iter().map(|pair| pair.map(signed)).collect())
+    }
+
+    /// The simplex that contains each target, or -1.
+    fn locate<'py>(
+        &self,
+        py: Python<'py>,
+        targets: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<i32>>> {
+        let mut found: Vec<i32> = Vec::with_capacity(targets.shape()[0]);
+        match &self.dimensions {
+            Two(mesh) => in_pieces(py, &targets, |targets| {
+                found.extend(mesh.locate_all(targets, self.threads).into_iter().map(signed))
+            })?,
+            Three(mesh) => in_pieces(py, &targets, |targets| {
+                found.extend(mesh.locate_all(targets, self.threads).into_iter().map(signed))
+            })?,
+        }
+        Ok(found.into_pyarray(py))
+    }
+}
+
+/// Gives `work` all targets in pieces, without the lock of the interpreter, and looks for signals in between.
+fn in_pieces<const D: usize>(
+    py: Python<'_>,
+    targets: &PyReadonlyArray2<'_, f64>,
+    mut work: impl FnMut(&[[f64; D]]) + Send,
+) -> PyResult<()> {
+    let Some(targets) = rows::<f64, D>(targets)? else {
+        return Err(PyValueError::new_err(format!("targets have {D} columns, as points")));
+    };
+    for piece in targets.chunks(TARGETS) {
+        // Other threads of Python may write to the array meanwhile.
+        let piece = piece.to_vec();
+        py.detach(|| work(&piece));
+        py.check_signals()?;
+    }
+    Ok(())
+}
