@@ -7,7 +7,8 @@ use crate::points::Point2;
 /// Result of every fallible operation of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Why points or lines could not be computed with. Nothing of the output was changed then.
+/// Why points or lines could not be computed with. The output is as it was, or
+/// empty where the work had begun.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
@@ -20,6 +21,8 @@ pub enum Error {
     },
     /// More tetrahedra would arise than the kernel may make.
     TooManyTetrahedra(usize),
+    /// Somebody stopped the kernel ([`Watch::stop`](crate::Watch::stop)).
+    Stopped,
     /// A coordinate or a weight is infinite or not a number.
     NotFinite {
         /// Index of the point.
@@ -59,6 +62,7 @@ impl fmt::Display for Error {
                 write!(f, "{count} points in one piece, the kernel takes at most {most}")
             }
             Error::TooManyTetrahedra(most) => write!(f, "more than {most} tetrahedra, the kernel's maximum"),
+            Error::Stopped => f.write_str("stopped"),
             Error::NotFinite { point, found } => write!(f, "point {point}: {found}"),
             Error::BeyondGrid { place, most } => {
                 write!(f, "a vertex of a line at {place:?} on the grid, the most is {most}")
@@ -75,11 +79,11 @@ impl std::error::Error for Error {}
 
 impl From<Error> for io::Error {
     /// `InvalidInput`: the request is too large for a kernel. `InvalidData`: points or lines are wrong, or
-    /// lines cross too often. `Other`: the work has become too large.
+    /// lines cross too often. `Other`: the work has become too large, or was stopped.
     fn from(error: Error) -> io::Error {
         let kind = match error {
             Error::TooManyPoints { .. } => io::ErrorKind::InvalidInput,
-            Error::TooManyTetrahedra(_) => io::ErrorKind::Other,
+            Error::TooManyTetrahedra(_) | Error::Stopped => io::ErrorKind::Other,
             _ => io::ErrorKind::InvalidData,
         };
         io::Error::new(kind, error)

@@ -23,6 +23,8 @@ mod random;
 pub mod simplex;
 pub mod vector;
 mod walk;
+mod watch;
 
 pub use error::{Error, Result};
 pub use location::Location;
+pub use watch::Watch;

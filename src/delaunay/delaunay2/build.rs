@@ -4,6 +4,7 @@ use super::insertion::{Cavity, Insertion};
 use super::locate::Start;
 use super::mesh::Mesh;
 use crate::predicates::{Point2, Predicates2, Sign, WithPredicates2};
+use crate::watch::{Pace, Watch};
 
 /// Triangulates distinct points, all in one arithmetic.
 pub(super) struct Build<'s, 'a> {
@@ -14,10 +15,11 @@ pub(super) struct Build<'s, 'a> {
     /// The finite vertices in the order of insertion.
     pub(super) sequence: &'a [u32],
     pub(super) cavity: &'a mut Cavity,
+    pub(super) watch: Option<&'a Watch>,
 }
 
 impl<'s> WithPredicates2 for Build<'s, '_> {
-    /// The triangulation; `None` if all points are on one line.
+    /// The triangulation; `None` if all points are on one line. Of some of the points only, if the work is stopped.
     type Output = Option<Mesh<'s>>;
 
     fn with(self, predicates: &mut impl Predicates2) -> Self::Output {
@@ -30,7 +32,11 @@ impl<'s> WithPredicates2 for Build<'s, '_> {
         let mesh = Mesh::new(self.points, self.memory, [a, b, c]);
         let mut insertion = Insertion::new(mesh, predicates, self.cavity);
         let mut start = Start { triangle: 0, is_seen: false };
+        let mut pace = Pace::of(self.watch);
         for place in (2..self.sequence.len()).filter(|&place| place != third) {
+            if pace.is_stopped() {
+                break;
+            }
             let after = self.sequence.get(place + 1).unwrap_or(&self.sequence[place]);
             start = insertion.insert(self.sequence[place], start, self.points[*after as usize]);
         }

@@ -25,6 +25,7 @@ pub use triangulation::Triangulation;
 use crate::error::{Error, Result};
 use crate::order::{Curve, Rounds, sort_in};
 use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts};
+use crate::watch::Watch;
 use build::Build;
 use extract::Extraction;
 use grid::Grid;
@@ -32,6 +33,7 @@ use insertion::Cavity;
 use line::OffLine;
 use mesh::INFINITE;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// Greatest number of points: the words of triangles, 16 per point, are numbered in 32 bits.
 pub const MAX_POINTS: usize = 268_000_000;
@@ -44,6 +46,8 @@ pub struct Kernel {
     inserter: Inserter,
     grid: Grid,
     counts: PredicateCounts,
+    /// Who is told how far the kernel is, and may stop it.
+    pub watch: Option<Arc<Watch>>,
 }
 
 /// What triangulates by insertion, with its buffers.
@@ -72,7 +76,7 @@ impl Kernel {
     ///
     /// # Errors
     /// Malformed, if a coordinate is not finite; usage, if there are too many points. `triangles` is
-    /// unchanged then.
+    /// unchanged then. Stopped, by [`Kernel::watch`]: `triangles` are empty then.
     ///
     /// Cost: O(n) for points that are spread evenly, or clustered evenly; about 24 bytes per point in the
     /// kernel and 68 in the triangles.
@@ -94,10 +98,12 @@ impl Kernel {
         if self.grid.find(points, arithmetic, &mut self.counts, &mut triangles.duplicates) {
             let (rest, of_rest) = self.grid.rest();
             of_rest.clear();
-            self.inserter.triangulate(rest, &Extent::of(rest), &mut self.counts, of_rest);
+            let watch = self.watch.as_deref();
+            self.inserter.triangulate(rest, &Extent::of(rest), &mut self.counts, of_rest, watch)?;
             self.grid.finish(points.len(), triangles);
         } else {
-            self.inserter.triangulate(points, &extent, &mut self.counts, triangles);
+            let watch = self.watch.as_deref();
+            self.inserter.triangulate(points, &extent, &mut self.counts, triangles, watch)?;
         }
         Ok(())
     }
@@ -116,7 +122,8 @@ impl Inserter {
         extent: &Extent,
         counts: &mut PredicateCounts,
         triangles: &mut Triangles,
-    ) {
+        watch: Option<&Watch>,
+    ) -> Result<()> {
         // The order is found in the memory of the triangles, which are not there yet.
         let memory = &mut triangles.memory.allocate(points.len() + 1)[..4 * points.len()];
         self.take_sorted(bytemuck::cast_slice_mut(memory), points, extent, &mut triangles.duplicates);
@@ -128,8 +135,13 @@ impl Inserter {
             memory: triangles.memory.allocate(self.points.len()),
             sequence: &self.sequence,
             cavity: &mut self.cavity,
+            watch,
         };
         let mesh = Arithmetic::of(extent).run(build, counts).expect("points off a line");
+        if let Err(stopped) = Watch::check(watch) {
+            triangles.clear();
+            return Err(stopped);
+        }
         let extraction = Extraction {
             mesh,
             indices: &self.indices,
@@ -139,6 +151,7 @@ impl Inserter {
         };
         let count = extraction.run(points.len());
         triangles.memory.set_count(count);
+        Ok(())
     }
 
     /// Fills `indices` and `points` with the distinct points in order along the curve, after the vertex at
@@ -197,7 +210,5 @@ impl Inserter {
 /// # Ok::<(), spmesh_delaunay::Error>(())
 /// ```
 pub fn triangulate(points: &[Point2]) -> Result<Triangulation> {
-    let mut triangles = Triangles::default();
-    Kernel::new().triangulate(points, &mut triangles)?;
-    Ok(Triangulation::new(points.to_vec(), triangles))
+    Triangulation::by(&mut Kernel::new(), points.to_vec())
 }

@@ -1,7 +1,9 @@
 //! A triangulation that answers questions.
 
+use super::Kernel;
 use super::half_edge::NONE;
 use super::triangles::{Triangle, Triangles};
+use crate::error::Result;
 use crate::location::Location;
 use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
 use crate::walk::{self, End, Walkable};
@@ -17,9 +19,14 @@ pub struct Triangulation {
 }
 
 impl Triangulation {
-    /// The `triangles` of `points`.
-    pub(super) fn new(points: Vec<Point2>, triangles: Triangles) -> Triangulation {
-        Triangulation { points, triangles }
+    /// The triangulation of points that a kernel makes.
+    ///
+    /// # Errors
+    /// As [`Kernel::triangulate`].
+    pub fn by(kernel: &mut Kernel, points: Vec<Point2>) -> Result<Triangulation> {
+        let mut triangles = Triangles::default();
+        kernel.triangulate(&points, &mut triangles)?;
+        Ok(Triangulation { points, triangles })
     }
 
     /// The input points, duplicates included.

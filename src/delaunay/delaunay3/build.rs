@@ -10,6 +10,7 @@ use super::weights::Weights;
 use super::whole::Setting;
 use crate::order::Insertions;
 use crate::predicates::{Point3, Predicates3, Sign, WithPredicates3};
+use crate::watch::Pace;
 
 /// Inserts vertices into a complex, all in one arithmetic.
 pub(super) struct Build<'a, 's, W> {
@@ -27,8 +28,8 @@ pub(super) struct Build<'a, 's, W> {
 }
 
 impl<W: Weights> Build<'_, '_, W> {
-    /// Inserts the vertices: all but those refused, or, if there is no more room, all until the one refused
-    /// last.
+    /// Inserts the vertices: all but those refused, or, if there is no more room or the work is stopped, all
+    /// until the one refused last.
     ///
     /// Inlined, like everything that it calls with lanes, into one function per kind of processor.
     #[inline(always)]
@@ -49,7 +50,12 @@ impl<W: Weights> Build<'_, '_, W> {
             unfiltered: 0,
             token,
         };
+        let mut pace = Pace::of(setting.watch.as_deref());
         for vertex in insertions {
+            if pace.is_stopped() {
+                refused.push(vertex);
+                break;
+            }
             if first.contains(&vertex) {
                 continue;
             }

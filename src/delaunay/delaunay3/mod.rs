@@ -22,6 +22,7 @@ mod lanes;
 mod locate;
 mod parts;
 mod search;
+mod sorted;
 mod star;
 mod stats;
 #[cfg(test)]
@@ -41,11 +42,13 @@ use crate::error::{Error, Result};
 use crate::order::{Curve, Insertions, Places, Sequence, SpatialOrder, Suffixes};
 use crate::parallel;
 use crate::predicates::{Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3};
+use crate::watch::Watch;
 use build::{Build, First};
 use exact::EXACT;
 use insertion::Buffers;
 use std::borrow::Cow;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 use std::time::Instant;
 use weights::{Equal, PerVertex, Weights};
 use whole::{Setting, TETRAHEDRA_MAX, Tally, Whole};
@@ -78,6 +81,8 @@ pub struct Kernel {
     pub tetrahedra_max: usize,
     /// Whether the parts of insertions are timed ([`Stats`]), which takes some time itself.
     pub is_timed: bool,
+    /// Who is told how far the kernel is, and may stop it.
+    pub watch: Option<Arc<Watch>>,
     /// Whether portable instructions are used only: for tests.
     is_portable: bool,
 }
@@ -94,6 +99,7 @@ impl Default for Kernel {
             points_per_thread: POINTS_PER_THREAD,
             tetrahedra_max: TETRAHEDRA_MAX,
             is_timed: false,
+            watch: None,
             is_portable: false,
         }
     }
@@ -115,7 +121,7 @@ impl Kernel {
     ///
     /// # Errors
     /// Malformed, if a coordinate is not finite; usage, if there are too many points: `mesh` is unchanged
-    /// then. I/O, if there are more tetrahedra than [`Kernel::tetrahedra_max`], which even [`MAX_POINTS`]
+    /// then. Stopped, by [`Kernel::watch`]. I/O, if there are more tetrahedra than [`Kernel::tetrahedra_max`], which even [`MAX_POINTS`]
     /// points have only in rare configurations.
     ///
     /// Cost: O(n) for points that are spread evenly in space. Memory: about 250 bytes per point.
@@ -185,6 +191,7 @@ impl Kernel {
                 first,
                 is_timed: self.is_timed,
                 is_portable: self.is_portable,
+                watch: self.watch.clone(),
             };
             let (vertices, tetrahedra) = (&mut mesh.vertices, &mut mesh.tetrahedra);
             let (vertices, tetrahedra) = (std::mem::take(vertices), std::mem::take(tetrahedra));

@@ -12,7 +12,7 @@ use std::num::NonZeroUsize;
 pub const NONE: u32 = u32::MAX;
 
 /// A corner of a tetrahedron; it stands for the facet opposite to it, too.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Corner {
     /// Index of the tetrahedron.
     pub tetrahedron: u32,

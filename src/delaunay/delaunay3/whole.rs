@@ -11,7 +11,9 @@ use super::{Kernel, MAX_POINTS, parts};
 use crate::error::{Error, Result};
 use crate::order::{Insertions, Sequence};
 use crate::predicates::{Arithmetic3, PredicateCounts};
+use crate::watch::Watch;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// Most tetrahedra whose words have numbers of 32 bits. No room is greater.
 pub(super) const NUMBERED: usize = 1 << 29;
@@ -34,6 +36,7 @@ pub(super) struct Setting<W> {
     pub(super) is_timed: bool,
     /// Whether only portable instructions are used.
     pub(super) is_portable: bool,
+    pub(super) watch: Option<Arc<Watch>>,
 }
 
 /// What insertions did.
@@ -120,6 +123,7 @@ impl Whole {
         let mut refused = Vec::new();
         loop {
             self.run(setting, insertions, buffers, tally, &mut refused);
+            Watch::check(setting.watch.as_deref())?;
             // Only lack of room refuses vertices here.
             while let Some(vertex) = refused.pop() {
                 self.grow()?;

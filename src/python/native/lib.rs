@@ -3,6 +3,7 @@
 
 mod arrays;
 mod mesh;
+mod waiting;
 
 use pyo3::prelude::*;
 

@@ -1,6 +1,7 @@
 //! Triangulations of the plane and of space as one class of Python.
 
 use crate::arrays::{array_of, rows, signed};
+use crate::waiting::wait_for;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyOverflowError, PyValueError};
 use pyo3::prelude::*;
@@ -37,24 +38,38 @@ fn error_of(error: Error) -> PyErr {
 impl Mesh {
     /// Triangulates an array of two or three columns.
     #[new]
-    fn new(py: Python<'_>, points: PyReadonlyArray2<'_, f64>, threads: NonZeroUsize) -> PyResult<Mesh> {
-        // Other threads of Python may write to the array meanwhile.
+    #[pyo3(signature = (points, threads, progress=None))]
+    fn new(
+        py: Python<'_>,
+        points: PyReadonlyArray2<'_, f64>,
+        threads: NonZeroUsize,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Mesh> {
+        // Points are copied, as other threads of Python may write to the array meanwhile.
+        let count = points.shape()[0];
         let dimensions = if let Some(points) = rows::<f64, 2>(&points)? {
             let points = points.to_vec();
-            py.detach(|| delaunay2::triangulate(&points)).map(Two)
+            wait_for(py, count, progress, |watch| {
+                let mut kernel = delaunay2::Kernel::new();
+                kernel.watch = Some(watch);
+                delaunay2::Triangulation::by(&mut kernel, points).map(Two)
+            })
         } else if let Some(points) = rows::<f64, 3>(&points)? {
             let points = points.to_vec();
-            py.detach(|| {
+            wait_for(py, count, progress, |watch| {
                 let mut kernel = delaunay3::Kernel::new();
                 kernel.threads = threads;
+                kernel.watch = Some(watch);
                 let mut mesh = delaunay3::Tetrahedralization::default();
-                kernel.triangulate(Cow::Owned(points), &mut mesh).map(|()| mesh)
+                kernel.triangulate(Cow::Owned(points), &mut mesh)?;
+                drop(kernel);
+                mesh.sort();
+                Ok(Three(mesh))
             })
-            .map(Three)
         } else {
             return Err(PyValueError::new_err("points have 2 or 3 columns"));
         };
-        Ok(Mesh { dimensions: dimensions.map_err(error_of)?, threads })
+        Ok(Mesh { dimensions: dimensions?.map_err(error_of)?, threads })
     }
 
     /// Vertices of each simplex.

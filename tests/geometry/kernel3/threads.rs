@@ -1,15 +1,18 @@
 //! Several threads: each set is cut into parts of a few points, and the result proved as that of one thread
 //! is.
 
-use super::promises::tetrahedra;
+use super::promises::{prove, tetrahedra};
 use super::proved;
+use spmesh_delaunay::delaunay2;
 use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
 use spmesh_delaunay::order::Sequence;
+use spmesh_delaunay::{Error, Watch};
 use spmesh_reference::clouds::{self, FAMILIES, Family};
 use spmesh_reference::sets::Random;
 use spmesh_reference::space::Point;
 use std::borrow::Cow;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 const THREADS: [usize; 3] = [2, 3, 8];
 
@@ -43,6 +46,60 @@ fn mixtures_of_any_size() {
         let points = clouds::mixture(&mut random, size);
         let points_per_thread = random.integer(0, 12) as usize;
         proved(&mut parallel(THREADS[seed as usize % 3], points_per_thread), &points);
+    }
+}
+
+/// A tetrahedralization that was put in order stays one, and does not tell how many threads made it.
+#[test]
+fn order_without_threads() {
+    for seed in 0..60 {
+        let mut random = Random::new(400 + seed);
+        let points = clouds::mixture(&mut random, 10 * seed as usize);
+        let sorted = |mut kernel: Kernel| -> Vec<_> {
+            let mut mesh = proved(&mut kernel, &points);
+            mesh.sort();
+            assert_eq!(prove(&points, &mesh), Ok(()));
+            mesh.tetrahedra()
+                .iter()
+                .map(|t| (t.vertices, [0, 1, 2, 3].map(|side| t.neighbour(side))))
+                .collect()
+        };
+        let expected = sorted(Kernel::new());
+        assert!(expected.is_sorted(), "{expected:?}");
+        for threads in THREADS {
+            assert!(sorted(parallel(threads, 4)) == expected, "{threads} threads, {points:?}");
+        }
+    }
+}
+
+/// Somebody stops the work: at once, or while it goes on.
+#[test]
+fn watched() {
+    let points = clouds::of(&mut Random::new(5), Family::Uniform, 30_000);
+    for (threads, is_stopped) in
+        [1, 3].into_iter().flat_map(|threads| [false, true].map(|stop| (threads, stop)))
+    {
+        let mut kernel = parallel(threads, 1_000);
+        let watch = Arc::new(Watch::default());
+        kernel.watch = Some(watch.clone());
+        if is_stopped {
+            watch.stop();
+        }
+        let mut mesh = Tetrahedralization::default();
+        let made = kernel.triangulate(Cow::Borrowed(&points), &mut mesh);
+        assert_eq!(made, if is_stopped { Err(Error::Stopped) } else { Ok(()) });
+        assert_eq!(mesh.tetrahedra().is_empty(), is_stopped);
+        assert_eq!(watch.inserted() < points.len() / 2, is_stopped, "{}", watch.inserted());
+        let plane: Vec<[f64; 2]> = points.iter().map(|&[x, y, _]| [x, y]).collect();
+        let (mut kernel, mut triangles) = (delaunay2::Kernel::new(), delaunay2::Triangles::default());
+        let watch = Arc::new(Watch::default());
+        kernel.watch = Some(watch.clone());
+        if is_stopped {
+            watch.stop();
+        }
+        assert_eq!(kernel.triangulate(&plane, &mut triangles).is_err(), is_stopped);
+        assert_eq!(triangles.triangles().is_empty(), is_stopped);
+        assert_eq!(watch.inserted() < points.len() / 2, is_stopped, "{}", watch.inserted());
     }
 }
 
