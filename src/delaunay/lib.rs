@@ -9,6 +9,7 @@ pub mod delaunay2;
 pub mod delaunay3;
 mod error;
 mod location;
+mod nearest;
 pub mod network;
 pub mod noding;
 pub mod order;

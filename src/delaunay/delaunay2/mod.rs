@@ -11,11 +11,16 @@ mod extract;
 mod grid;
 mod half_edge;
 mod insertion;
+pub mod interpolation;
 mod line;
 mod locate;
 mod mesh;
+mod nearest;
+mod star;
 mod triangles;
 mod triangulation;
+mod voronoi;
+mod walk;
 
 pub use distinct::distinct;
 pub use half_edge::NONE;

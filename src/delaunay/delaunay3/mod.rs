@@ -20,9 +20,11 @@ mod insertion;
 mod insphere3;
 mod lanes;
 mod locate;
+mod nearest;
 mod parts;
 mod search;
 mod star;
+mod stars;
 mod stats;
 #[cfg(test)]
 mod tests;
@@ -34,6 +36,7 @@ mod words;
 
 pub use corners::{CornerParts, Corners, turned};
 pub use edges::{EDGES, Ring};
+pub use stars::Stars;
 pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
 

@@ -1,0 +1,116 @@
+//! The nearest vertices of a target.
+
+use super::stars::TetrahedraAround;
+use super::tetrahedralization::{Corner, Tetrahedralization};
+use crate::nearest::{Graph, Search, nearest_of_all};
+use crate::predicates::{FiniteFloatPredicates3, Point3, Predicates3, Sign};
+use crate::simplex::TETRAHEDRON_FACETS;
+
+/// A vertex of the mesh in a tetrahedron.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct VertexIn {
+    pub(super) vertex: u32,
+    pub(super) tetrahedron: u32,
+}
+
+/// The mesh with buffers.
+struct Edges<'m> {
+    mesh: &'m Tetrahedralization,
+    around: TetrahedraAround,
+}
+
+impl Graph<3> for Edges<'_> {
+    type Node = VertexIn;
+
+    fn point(&self, node: VertexIn) -> Point3 {
+        self.mesh.vertices[node.vertex as usize].at
+    }
+
+    fn index(&self, node: VertexIn) -> u32 {
+        self.mesh.vertices[node.vertex as usize].index
+    }
+
+    fn find_neighbours(&mut self, node: VertexIn, neighbours: &mut Vec<VertexIn>) {
+        self.around.find_vertices(self.mesh, node, neighbours);
+    }
+}
+
+impl Tetrahedralization {
+    /// The vertex nearest to the target, exactly: that of least index, if several are. The target may be
+    /// outside of the hull. `None` if there are no points or the target is not finite.
+    ///
+    /// Domain: without weights.
+    ///
+    /// Cost: a walk of O(cbrt n) tetrahedra for points that are spread evenly; without tetrahedra, O(n).
+    pub fn nearest(&self, target: Point3) -> Option<u32> {
+        self.nearest_from(target, 0)
+    }
+
+    /// The same, found from tetrahedron `start`: fast if it is near. Any number will do.
+    pub fn nearest_from(&self, target: Point3, start: u32) -> Option<u32> {
+        match self.first_vertex(target, start) {
+            Some(first) => Some(Search::new(&mut self.along_edges(), target).nearest(first)),
+            None => self.nearest_of_flat(target, 1).first().copied(),
+        }
+    }
+
+    /// The `count` vertices nearest to the target, or all if there are fewer: exactly, by distance, then by
+    /// index. None if the target is not finite.
+    ///
+    /// Domain: without weights.
+    ///
+    /// Cost: that of [`Tetrahedralization::nearest`], and O(log k) for each of the k vertices and their
+    /// neighbours.
+    pub fn k_nearest(&self, target: Point3, count: usize) -> Vec<u32> {
+        match self.first_vertex(target, 0) {
+            Some(first) => Search::new(&mut self.along_edges(), target).k_nearest(first, count),
+            None => self.nearest_of_flat(target, count),
+        }
+    }
+
+    fn along_edges(&self) -> Edges<'_> {
+        Edges { mesh: self, around: TetrahedraAround::default() }
+    }
+
+    /// A vertex of the tetrahedron where the walk to the target ends, if there are tetrahedra.
+    fn first_vertex(&self, target: Point3, start: u32) -> Option<VertexIn> {
+        if !target.iter().all(|coordinate| coordinate.is_finite()) {
+            return None;
+        }
+        let mut predicates = FiniteFloatPredicates3::default();
+        let mut tetrahedron = start.min(self.tetrahedra.len().checked_sub(1)? as u32);
+        let mut entered = None;
+        // In a Delaunay tetrahedralization this walk meets no tetrahedron twice.
+        loop {
+            let Corners { vertices, at } = self.corners(tetrahedron);
+            let exit = (0..4).find(|&side| {
+                let [a, b, c] = TETRAHEDRON_FACETS[side].map(|i| at[i]);
+                Some(side) != entered && predicates.orient3d(target, a, b, c) == Sign::Negative
+            });
+            let next = exit.and_then(|side| self.tetrahedra[tetrahedron as usize].neighbour(side));
+            let Some(Corner { tetrahedron: next, corner }) = next else {
+                return Some(VertexIn { vertex: vertices[0], tetrahedron });
+            };
+            (tetrahedron, entered) = (next, Some(corner as usize));
+        }
+    }
+
+    fn corners(&self, number: u32) -> Corners {
+        let vertices = self.tetrahedra[number as usize].vertices;
+        Corners { vertices, at: vertices.map(|v| self.vertices[v as usize].at) }
+    }
+
+    /// Without tetrahedra.
+    fn nearest_of_flat(&self, target: Point3, count: usize) -> Vec<u32> {
+        if !target.iter().all(|coordinate| coordinate.is_finite()) {
+            return Vec::new();
+        }
+        nearest_of_all(self.vertices.iter().map(|vertex| (vertex.at, vertex.index)), target, count)
+    }
+}
+
+/// The corners of a tetrahedron.
+struct Corners {
+    vertices: [u32; 4],
+    at: [Point3; 4],
+}
