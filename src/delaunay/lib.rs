@@ -22,7 +22,9 @@ mod prefetch;
 pub mod processor;
 mod random;
 pub mod simplex;
+mod starts;
 pub mod vector;
 
 pub use error::{Error, Result};
 pub use location::Location;
+pub use starts::Starts;

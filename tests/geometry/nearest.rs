@@ -52,11 +52,13 @@ fn nearest_vertices_of_the_plane_are_those_of_a_search() {
     for round in 0..400 {
         let points = planar_set(&mut random, round);
         let mesh = delaunay2::triangulate(&points).expect("finite points");
+        let starts = mesh.starts();
         for target in targets(&mut random, &points) {
             let expected = by_distance(&points, target);
             assert_eq!(mesh.nearest(target), expected.first().copied(), "{points:?} {target:?}");
             let start = random.integer(0, 60) as u32;
             assert_eq!(mesh.nearest_from(target, start), expected.first().copied());
+            assert_eq!(mesh.nearest_from(target, starts.near(target)), expected.first().copied());
             for count in [0, 1, 7, points.len() + 1] {
                 let expected = &expected[..count.min(expected.len())];
                 assert_eq!(mesh.k_nearest(target, count), expected, "{points:?} {target:?}");
@@ -75,11 +77,13 @@ fn nearest_vertices_of_space_are_those_of_a_search() {
             points.push(first);
         }
         let mesh = delaunay3::triangulate(&points).expect("finite points");
+        let starts = mesh.starts();
         for target in targets(&mut random, &points) {
             let expected = by_distance(&points, target);
             assert_eq!(mesh.nearest(target), expected.first().copied(), "{points:?} {target:?}");
             let start = random.integer(0, 60) as u32;
             assert_eq!(mesh.nearest_from(target, start), expected.first().copied());
+            assert_eq!(mesh.nearest_from(target, starts.near(target)), expected.first().copied());
             for count in [0, 1, 7, points.len() + 1] {
                 let expected = &expected[..count.min(expected.len())];
                 assert_eq!(mesh.k_nearest(target, count), expected, "{points:?} {target:?}");

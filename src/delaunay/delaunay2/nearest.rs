@@ -31,7 +31,8 @@ impl Triangulation {
         self.nearest_from(target, 0)
     }
 
-    /// The same, found from triangle `start`: fast if it is near. Any number will do.
+    /// The same, found from triangle `start`: fast if it is near, such as the one that
+    /// [`Starts`](crate::Starts) find. Any number will do.
     pub fn nearest_from(&self, target: Point2, start: u32) -> Option<u32> {
         match self.first_vertex(target, start) {
             Some(first) => Some(Search::new(&mut &*self, target).nearest(first)),
@@ -44,7 +45,12 @@ impl Triangulation {
     ///
     /// Cost: that of [`Triangulation::nearest`], and O(log k) for each of the k vertices and their neighbours.
     pub fn k_nearest(&self, target: Point2, count: usize) -> Vec<u32> {
-        match self.first_vertex(target, 0) {
+        self.k_nearest_from(target, count, 0)
+    }
+
+    /// The same, found from triangle `start`.
+    pub fn k_nearest_from(&self, target: Point2, count: usize, start: u32) -> Vec<u32> {
+        match self.first_vertex(target, start) {
             Some(first) => Search::new(&mut &*self, target).k_nearest(first, count),
             None => self.nearest_on_line(target, count),
         }
@@ -52,8 +58,8 @@ impl Triangulation {
 
     /// A vertex of the triangle where the walk to the target ends, if there are triangles.
     fn first_vertex(&self, target: Point2, start: u32) -> Option<u32> {
-        let (Arrival::Inside(number, _) | Arrival::Outside(number)) =
-            self.walk(target, start, &mut FiniteFloatPredicates::default())?;
+        let (Arrival::Inside(number, _) | Arrival::Outside(number) | Arrival::OnTheWay(number)) =
+            self.walk(target, start, usize::MAX, &mut FiniteFloatPredicates::default())?;
         Some(self.triangles.triangles()[number as usize].vertices[0])
     }
 

@@ -3,8 +3,9 @@
 use super::stars::TetrahedraAround;
 use super::tetrahedralization::{Corner, Tetrahedralization};
 use crate::nearest::{Graph, Search, nearest_of_all};
-use crate::predicates::{FiniteFloatPredicates3, Point3, Predicates3, Sign};
+use crate::predicates::{Extent, FiniteFloatPredicates3, Point3, Predicates3, Sign};
 use crate::simplex::TETRAHEDRON_FACETS;
+use crate::starts::Starts;
 
 /// A vertex of the mesh in a tetrahedron.
 #[derive(Debug, Clone, Copy)]
@@ -46,7 +47,8 @@ impl Tetrahedralization {
         self.nearest_from(target, 0)
     }
 
-    /// The same, found from tetrahedron `start`: fast if it is near. Any number will do.
+    /// The same, found from tetrahedron `start`: fast if it is near, such as the one that [`Starts`] find. Any
+    /// number will do.
     pub fn nearest_from(&self, target: Point3, start: u32) -> Option<u32> {
         match self.first_vertex(target, start) {
             Some(first) => Some(Search::new(&mut self.along_edges(), target).nearest(first)),
@@ -62,10 +64,23 @@ impl Tetrahedralization {
     /// Cost: that of [`Tetrahedralization::nearest`], and O(log k) for each of the k vertices and their
     /// neighbours.
     pub fn k_nearest(&self, target: Point3, count: usize) -> Vec<u32> {
-        match self.first_vertex(target, 0) {
+        self.k_nearest_from(target, count, 0)
+    }
+
+    /// The same, found from tetrahedron `start`.
+    pub fn k_nearest_from(&self, target: Point3, count: usize, start: u32) -> Vec<u32> {
+        match self.first_vertex(target, start) {
             Some(first) => Search::new(&mut self.along_edges(), target).k_nearest(first, count),
             None => self.nearest_of_flat(target, count),
         }
+    }
+
+    /// Tetrahedra to begin walks at, for targets in no order. Cost: a sort of about as many as points.
+    pub fn starts(&self) -> Starts<3> {
+        let at = |vertex: u32| self.vertices[vertex as usize].at;
+        let extent = Extent::of_each(self.vertices.iter().map(|vertex| vertex.at));
+        let corner = |number: u32| at(self.tetrahedra[number as usize].vertices[0]);
+        Starts::new(self.tetrahedra.len(), &extent, corner)
     }
 
     fn along_edges(&self) -> Edges<'_> {

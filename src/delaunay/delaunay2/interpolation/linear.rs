@@ -2,46 +2,41 @@
 
 use super::weighted_sum;
 use crate::delaunay2::Triangulation;
-use crate::delaunay2::walk::Arrival;
+use crate::delaunay2::walk::{Arrival, Walker, corner_at};
 use crate::predicates::exact_integers::{integers, quotient};
 use crate::predicates::forms::{Form, Orient2d};
-use crate::predicates::{FiniteFloatPredicates, Point2, area, is_bounded};
+use crate::predicates::{Point2, Sign, area, is_bounded};
 use num_bigint::BigInt;
 
 /// Interpolates linearly in each triangle.
 #[derive(Debug)]
 pub struct Linear<'m> {
-    mesh: &'m Triangulation,
-    last: u32,
-    predicates: FiniteFloatPredicates,
+    walker: Walker<'m>,
 }
 
 impl<'m> Linear<'m> {
     /// An interpolator of values at the vertices of `mesh`.
     pub fn new(mesh: &'m Triangulation) -> Linear<'m> {
-        Linear { mesh, last: 0, predicates: FiniteFloatPredicates::default() }
+        Linear { walker: Walker::new(mesh) }
     }
 
-    /// The corners of the triangle that contains the target, with its barycentric coordinates. `None` outside
+    /// The corners of a triangle that contains the target, with its barycentric coordinates. `None` outside
     /// of the hull, also if the target is not finite. Without triangles only vertices have weights.
     ///
     /// Each weight has a relative error below 3e-14: it is zero exactly where the target is on the opposite
     /// edge, and one at the corner. The target is the mean of the corners in these weights up to that error.
     ///
-    /// Cost: a walk from the triangle of the last target.
+    /// Cost: a walk from the triangle of the last target, or from one of [`Triangulation::starts`].
     pub fn weights(&mut self, target: Point2) -> Option<[(u32, f64); 3]> {
-        let mesh = self.mesh;
-        match mesh.walk(target, self.last, &mut self.predicates) {
-            Some(Arrival::Inside(number, _)) => {
-                self.last = number;
+        let mesh = self.walker.mesh;
+        match self.walker.walk(target) {
+            Some(Arrival::Inside(number, signs)) => {
+                let number = canonical(mesh, number, signs);
                 let triangle = &mesh.triangles.triangles()[number as usize];
                 let weights = barycentric(mesh.places(triangle), target);
                 Some([0, 1, 2].map(|corner| (triangle.vertices[corner], weights[corner])))
             }
-            Some(Arrival::Outside(number)) => {
-                self.last = number;
-                None
-            }
+            Some(_) => None,
             None => mesh.vertex_on_line(target).map(|v| [(v, 1.0), (v, 0.0), (v, 0.0)]),
         }
     }
@@ -54,6 +49,17 @@ impl<'m> Linear<'m> {
     pub fn interpolate(&mut self, values: &[f64], target: Point2) -> Option<f64> {
         self.weights(target).map(|weights| weighted_sum(&weights, values))
     }
+}
+
+/// Of all triangles that contain the target, one that does not depend on the walk.
+fn canonical(mesh: &Triangulation, number: u32, signs: [Sign; 3]) -> u32 {
+    let triangle = &mesh.triangles.triangles()[number as usize];
+    if let Some(corner) = corner_at(signs) {
+        return mesh.triangles.triangle_of_vertex[triangle.vertices[corner] as usize];
+    }
+    let edge = signs.iter().position(|&sign| sign == Sign::Zero);
+    let across = edge.and_then(|side| triangle.neighbour(side));
+    across.map_or(number, |across| number.min(across.triangle))
 }
 
 /// Barycentric coordinates of a target in a closed counterclockwise triangle.

@@ -4,8 +4,8 @@ use super::cavity::Cavity;
 use super::stolen_areas::StolenAreas;
 use super::{exact_areas, weighted_sum};
 use crate::delaunay2::Triangulation;
-use crate::delaunay2::walk::{Arrival, corner_at};
-use crate::predicates::{BoundedFloatPredicates, Extent, FiniteFloatPredicates, Point2, Sign, is_bounded};
+use crate::delaunay2::walk::{Arrival, Walker, corner_at};
+use crate::predicates::{BoundedFloatPredicates, Extent, Point2, Sign, is_bounded};
 
 /// Weights of natural neighbours: Sibson's coordinates.
 ///
@@ -17,11 +17,9 @@ use crate::predicates::{BoundedFloatPredicates, Extent, FiniteFloatPredicates, P
 /// area is infinite, the weights are their limit: linear between the two ends of the edge.
 #[derive(Debug)]
 pub struct NaturalNeighbours<'m> {
-    mesh: &'m Triangulation,
-    last: u32,
+    walker: Walker<'m>,
     /// Whether plain arithmetic neither overflows nor underflows for any vertex.
     is_bounded: bool,
-    predicates: FiniteFloatPredicates,
     cavity: Cavity,
     areas: StolenAreas,
     weights: Vec<(u32, f64)>,
@@ -31,10 +29,8 @@ impl<'m> NaturalNeighbours<'m> {
     /// The natural neighbours in `mesh`. Cost: one pass over its points.
     pub fn new(mesh: &'m Triangulation) -> NaturalNeighbours<'m> {
         NaturalNeighbours {
-            mesh,
-            last: 0,
+            walker: Walker::new(mesh),
             is_bounded: BoundedFloatPredicates::covers(&Extent::of(mesh.points())),
-            predicates: FiniteFloatPredicates::default(),
             cavity: Cavity::default(),
             areas: StolenAreas::default(),
             weights: Vec::new(),
@@ -49,23 +45,15 @@ impl<'m> NaturalNeighbours<'m> {
     /// rounding. So the mean of the neighbours in these weights is the target up to 1e-12 times the sum of
     /// their distances from it. The weights do not depend on the targets before.
     ///
-    /// Cost: a walk from the triangle of the last target, and the triangles whose circles contain the target,
+    /// Cost: a walk from the triangle of the last target or from one of [`Triangulation::starts`], and the triangles whose circles contain the target,
     /// about four. Plain arithmetic with a bound of its error; integers of arbitrary size where that does not
     /// suffice, most of all in flat triangles at the hull.
     pub fn weights(&mut self, target: Point2) -> Option<&[(u32, f64)]> {
-        let mesh = self.mesh;
         self.weights.clear();
-        let arrival = mesh.walk(target, self.last, &mut self.predicates);
-        match arrival {
-            Some(Arrival::Inside(number, signs)) => {
-                self.last = number;
-                self.weigh(target, number, signs);
-            }
-            Some(Arrival::Outside(number)) => {
-                self.last = number;
-                return None;
-            }
-            None => self.weights.push((mesh.vertex_on_line(target)?, 1.0)),
+        match self.walker.walk(target) {
+            Some(Arrival::Inside(number, signs)) => self.weigh(target, number, signs),
+            Some(_) => return None,
+            None => self.weights.push((self.walker.mesh.vertex_on_line(target)?, 1.0)),
         }
         Some(&self.weights)
     }
@@ -96,7 +84,7 @@ impl<'m> NaturalNeighbours<'m> {
         gradients: &[[f64; 2]],
         target: Point2,
     ) -> Option<f64> {
-        let points = self.mesh.points();
+        let points = self.walker.mesh.points();
         let weights = self.weights(target)?;
         if let &[(vertex, _)] = weights {
             return Some(values[vertex as usize]);
@@ -120,7 +108,7 @@ impl<'m> NaturalNeighbours<'m> {
 
     /// Fills the weights of a target in a closed triangle.
     fn weigh(&mut self, target: Point2, number: u32, signs: [Sign; 3]) {
-        let mesh = self.mesh;
+        let mesh = self.walker.mesh;
         let triangle = &mesh.triangles.triangles()[number as usize];
         if let Some(corner) = corner_at(signs) {
             self.weights.push((triangle.vertices[corner], 1.0));
@@ -133,7 +121,7 @@ impl<'m> NaturalNeighbours<'m> {
             self.weights.extend([(a, 1.0 - part), (b, part)]);
             return;
         }
-        self.cavity.find(mesh, number, target, &mut self.predicates);
+        self.cavity.find(mesh, number, target, &mut self.walker.predicates);
         let is_good = self.is_bounded
             && is_bounded(&target)
             && self.areas.write(&mesh.points, &self.cavity, target, &mut self.weights);
