@@ -42,7 +42,11 @@ fn centres_are_as_far_from_all_corners() {
             family if family < DEGENERATE_FAMILIES => degenerate(&mut random, family, 40),
             _ => uniform(&mut random, 40, 1 << 40),
         };
-        let points: Vec<[f64; 2]> = as_floats(&integers).iter().map(|p| p.map(|c| c * scale)).collect();
+        let mut points: Vec<[f64; 2]> = as_floats(&integers).iter().map(|p| p.map(|c| c * scale)).collect();
+        if round % 12 == 11 {
+            // Triangles so flat that rounding leaves little of their areas.
+            points.iter_mut().for_each(|p| p[1] = p[0] / 3.0 + 1e-13 * p[1]);
+        }
         let mesh = delaunay2::triangulate(&points).expect("finite points");
         for (number, corners) in (0..).zip(mesh.simplices()) {
             let centre = mesh.circumcentre(number).expect("no overflow");
