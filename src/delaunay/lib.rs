@@ -1,5 +1,6 @@
 //! Exact predicates, orders of insertion, and the Delaunay kernels of the plane and of space.
 
+pub mod batch;
 mod bits;
 pub mod cell_lists;
 pub mod cell_tree;
@@ -9,6 +10,7 @@ pub mod delaunay2;
 pub mod delaunay3;
 mod error;
 mod location;
+mod nearest;
 pub mod network;
 pub mod noding;
 pub mod order;
@@ -21,10 +23,12 @@ mod prefetch;
 pub mod processor;
 mod random;
 pub mod simplex;
+mod starts;
 pub mod vector;
 mod walk;
 mod watch;
 
 pub use error::{Error, Result};
 pub use location::Location;
+pub use starts::Starts;
 pub use watch::Watch;

@@ -4,18 +4,21 @@
 //! a regular one, it meets no simplex twice (Edelsbrunner, "An acyclicity theorem for cell complexes in d
 //! dimensions", 1990). All decisions are exact.
 
-use crate::order::{Curve, SpatialOrder};
-use crate::parallel;
-use crate::predicates::{Extent, Sign};
+use crate::batch;
+use crate::predicates::Sign;
+use crate::starts::Starts;
 use std::num::NonZeroUsize;
 
-/// Targets that are put in order at once: with their order they fit into the second cache.
-const BLOCK: usize = 1 << 20;
+/// Steps from the last simplex after which a [`Walker`] jumps. A jump costs about as much.
+const STEPS_TO_NEXT: usize = 16;
 
 /// Simplices of `N` corners in `D` dimensions, with their neighbours.
 pub(crate) trait Walkable<const D: usize, const N: usize>: Sync {
     /// What decides sides; made once for many targets.
     type Predicates: Default;
+
+    /// Number of simplices.
+    fn simplices_len(&self) -> usize;
 
     /// On which side of the facet opposite to corner `corner` of a simplex the target lies: positive on that of
     /// the corner.
@@ -23,29 +26,65 @@ pub(crate) trait Walkable<const D: usize, const N: usize>: Sync {
 
     /// The simplex across the facet opposite to a corner; `None` at the hull.
     fn across(&self, simplex: u32, corner: usize) -> Option<u32>;
+
+    /// Simplices to begin at.
+    fn starts(&self) -> Starts<D>;
 }
 
-/// Where a walk ended.
+/// Where a walk ends.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct End<const N: usize> {
-    /// The last simplex.
-    pub(crate) simplex: u32,
-    /// The sides of the target at its facets, if it contains the target; else the target is outside of the
-    /// hull, beyond one of them.
-    pub(crate) sides: Option<[Sign; N]>,
+pub(crate) enum Arrival<const N: usize> {
+    /// In this simplex, closed: the sides of the target at the facets opposite to the corners, none of them
+    /// negative.
+    Inside(u32, [Sign; N]),
+    /// At the hull: the target lies strictly beyond a facet of this simplex.
+    Outside(u32),
 }
 
-/// Walks from `start` to a simplex that contains a target with finite coordinates.
+impl<const N: usize> Arrival<N> {
+    /// The last simplex.
+    pub(crate) fn simplex(&self) -> u32 {
+        let (Arrival::Inside(simplex, _) | Arrival::Outside(simplex)) = *self;
+        simplex
+    }
+}
+
+/// Walks from simplex `start`, or from the last one if there are fewer, to the simplex that contains a target.
+/// `None` if there are no simplices or the target is not finite.
 #[inline]
 pub(crate) fn walk<const D: usize, const N: usize, M: Walkable<D, N>>(
     mesh: &M,
     start: u32,
     target: [f64; D],
     predicates: &mut M::Predicates,
-) -> End<N> {
+) -> Option<Arrival<N>> {
+    let start = first(mesh, start, target)?;
+    walk_steps(mesh, start, target, usize::MAX, predicates).ok()
+}
+
+/// Where a walk to this target may begin.
+fn first<const D: usize, const N: usize, M: Walkable<D, N>>(
+    mesh: &M,
+    start: u32,
+    target: [f64; D],
+) -> Option<u32> {
+    let last = mesh.simplices_len().checked_sub(1)? as u32;
+    target.iter().all(|coordinate| coordinate.is_finite()).then_some(start.min(last))
+}
+
+/// # Errors
+/// The simplex where it is after as many steps as are allowed.
+#[inline]
+fn walk_steps<const D: usize, const N: usize, M: Walkable<D, N>>(
+    mesh: &M,
+    start: u32,
+    target: [f64; D],
+    steps_max: usize,
+    predicates: &mut M::Predicates,
+) -> Result<Arrival<N>, u32> {
     let mut simplex = start;
     let mut before = None;
-    'simplices: loop {
+    'simplices: for _ in 0..steps_max {
         let mut sides = [Sign::Positive; N];
         for (corner, side) in sides.iter_mut().enumerate() {
             let across = mesh.across(simplex, corner);
@@ -55,18 +94,59 @@ pub(crate) fn walk<const D: usize, const N: usize, M: Walkable<D, N>>(
             }
             *side = mesh.side(simplex, corner, target, predicates);
             if *side == Sign::Negative {
-                let Some(next) = across else { return End { simplex, sides: None } };
+                let Some(next) = across else { return Ok(Arrival::Outside(simplex)) };
                 before = Some(simplex);
                 simplex = next;
                 continue 'simplices;
             }
         }
-        return End { simplex, sides: Some(sides) };
+        return Ok(Arrival::Inside(simplex, sides));
+    }
+    Err(simplex)
+}
+
+/// Walks from target to target. Where it arrives does not depend on the targets before, but for the choice among
+/// simplices that all contain a target.
+#[derive(Debug)]
+pub(crate) struct Walker<'m, M: Walkable<D, N>, const D: usize, const N: usize> {
+    pub(crate) mesh: &'m M,
+    pub(crate) predicates: M::Predicates,
+    last: u32,
+    /// Found when they are needed first: targets that follow each other need none.
+    starts: Option<Starts<D>>,
+}
+
+impl<'m, M: Walkable<D, N>, const D: usize, const N: usize> Walker<'m, M, D, N> {
+    pub(crate) fn new(mesh: &'m M) -> Self {
+        Walker { mesh, predicates: M::Predicates::default(), last: 0, starts: None }
+    }
+
+    /// Walks to a target, from the last one if it is near. `None` if there are no simplices or the target is not
+    /// finite.
+    pub(crate) fn walk(&mut self, target: [f64; D]) -> Option<Arrival<N>> {
+        let start = first(self.mesh, self.last, target)?;
+        let arrival = walk_steps(self.mesh, start, target, STEPS_TO_NEXT, &mut self.predicates);
+        let arrival = arrival.ok().or_else(|| {
+            let start = self.starts.get_or_insert_with(|| self.mesh.starts()).near(target);
+            walk(self.mesh, start, target, &mut self.predicates)
+        })?;
+        self.last = arrival.simplex();
+        Some(arrival)
+    }
+
+    /// On which side of a facet of a simplex the target lies, as of [`Walkable::side`].
+    pub(crate) fn side(&mut self, simplex: u32, corner: usize, target: [f64; D]) -> Sign {
+        self.mesh.side(simplex, corner, target, &mut self.predicates)
+    }
+
+    /// The least of the simplices that contain the target, of which this one is found.
+    pub(crate) fn least(&mut self, found: u32, sides: [Sign; N], target: [f64; D]) -> u32 {
+        least(self.mesh, found, sides, target, &mut self.predicates)
     }
 }
 
 /// The least of the simplices that contain a target in common, one of which a walk has found.
-pub(crate) fn least<const D: usize, const N: usize, M: Walkable<D, N>>(
+fn least<const D: usize, const N: usize, M: Walkable<D, N>>(
     mesh: &M,
     found: u32,
     sides: [Sign; N],
@@ -101,37 +181,12 @@ pub(crate) fn find_all<const D: usize, const N: usize, M: Walkable<D, N>>(
 ) -> Vec<u32> {
     let mut found = vec![none; targets.len()];
     let begin = || (0, M::Predicates::default());
-    in_order(threads, targets, &mut found, begin, |(start, predicates), target| {
-        let end = walk(mesh, *start, target, predicates);
-        *start = end.simplex;
-        end.sides.map_or(none, |sides| least(mesh, end.simplex, sides, target, predicates))
-    });
-    found
-}
-
-/// Asks for each target, in an order in which the next one is near, and writes the answers to the places of the
-/// targets. Those of targets that are not finite stay as they are. What `begin` makes goes from target to target,
-/// in blocks; an answer must not depend on it.
-pub(crate) fn in_order<const D: usize, A: Send, S>(
-    threads: NonZeroUsize,
-    targets: &[[f64; D]],
-    answers: &mut [A],
-    begin: impl Fn() -> S + Sync,
-    ask: impl Fn(&mut S, [f64; D]) -> A + Sync,
-) {
-    let blocks = targets.chunks(BLOCK).zip(answers.chunks_mut(BLOCK));
-    parallel::for_each(threads, blocks, |(targets, answers)| {
-        let is_finite = |target: &[f64; D]| target.iter().all(|coordinate| coordinate.is_finite());
-        // What is not finite has no place in an order: it takes that of the origin.
-        let finite: Vec<[f64; D]> =
-            targets.iter().map(|target| if is_finite(target) { *target } else { [0.0; D] }).collect();
-        let mut order = SpatialOrder::default();
-        let mut state = begin();
-        for index in order.sort(&finite, &Extent::of(&finite), Curve::Hilbert) {
-            let target = targets[index as usize];
-            if is_finite(&target) {
-                answers[index as usize] = ask(&mut state, target);
-            }
+    batch::answer(threads, targets, &mut found, 1, begin, |(start, predicates), target, found| {
+        let Some(arrival) = walk(mesh, *start, target, predicates) else { return };
+        *start = arrival.simplex();
+        if let Arrival::Inside(simplex, sides) = arrival {
+            found[0] = least(mesh, simplex, sides, target, predicates);
         }
     });
+    found
 }

@@ -9,6 +9,7 @@ pub mod exact3;
 pub mod exhaustive;
 pub mod incremental;
 pub mod laplace;
+pub mod natural;
 pub mod noding;
 pub mod peer;
 pub mod segments;

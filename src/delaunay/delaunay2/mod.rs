@@ -11,11 +11,15 @@ mod extract;
 mod grid;
 mod half_edge;
 mod insertion;
+pub mod interpolation;
 mod line;
 mod locate;
 mod mesh;
+mod nearest;
+mod star;
 mod triangles;
 mod triangulation;
+mod voronoi;
 
 pub use distinct::distinct;
 pub use half_edge::NONE;

@@ -19,11 +19,14 @@ mod extract;
 mod insertion;
 mod insphere3;
 mod lanes;
+mod linear;
 mod locate;
+mod nearest;
 mod parts;
 mod search;
 mod sorted;
 mod star;
+mod stars;
 mod stats;
 #[cfg(test)]
 mod tests;
@@ -35,6 +38,8 @@ mod words;
 
 pub use corners::{CornerParts, Corners, turned};
 pub use edges::{EDGES, Ring};
+pub use linear::Linear;
+pub use stars::Stars;
 pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
 

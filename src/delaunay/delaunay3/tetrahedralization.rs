@@ -4,7 +4,8 @@ use super::stats::Stats;
 use crate::location::Location;
 use crate::predicates::{FiniteFloatPredicates3, Point3, Predicates3, Sign};
 use crate::simplex::TETRAHEDRON_FACETS;
-use crate::walk::{self, End, Walkable};
+use crate::starts::Starts;
+use crate::walk::{self, Arrival, Walkable};
 use bytemuck::{Pod, Zeroable};
 use std::num::NonZeroUsize;
 
@@ -202,21 +203,21 @@ impl Tetrahedralization {
         self.locate_from(target, 0)
     }
 
-    /// [`Tetrahedralization::locate`] by a walk that begins at tetrahedron `start`: short, if that is near.
-    ///
-    /// # Panics
-    /// If there are tetrahedra, but none of this number.
+    /// [`Tetrahedralization::locate`] by a walk that begins at tetrahedron `start`: short, if that is near, such as
+    /// the one that [`Starts`] find. Any number will do.
     pub fn locate_from(&self, target: Point3, start: u32) -> Location {
-        if !target.iter().all(|coordinate| coordinate.is_finite()) {
-            return Location::Outside;
+        match walk::walk(self, start, target, &mut FiniteFloatPredicates3::default()) {
+            Some(Arrival::Inside(number, sides)) => {
+                let vertices = self.input_indices(self.tetrahedra[number as usize].vertices);
+                Location::in_simplex(number, vertices, sides)
+            }
+            Some(Arrival::Outside(_)) => Location::Outside,
+            None => {
+                let is_there = |vertex: &&Vertex| self.tetrahedra.is_empty() && vertex.at == target;
+                let found = self.vertices.iter().find(is_there);
+                found.map_or(Location::Outside, |vertex| Location::Vertex(vertex.index))
+            }
         }
-        if self.tetrahedra.is_empty() {
-            let found = self.vertices.iter().find(|vertex| vertex.at == target);
-            return found.map_or(Location::Outside, |vertex| Location::Vertex(vertex.index));
-        }
-        let End { simplex, sides } = walk::walk(self, start, target, &mut FiniteFloatPredicates3::default());
-        let vertices = self.input_indices(self.tetrahedra[simplex as usize].vertices);
-        sides.map_or(Location::Outside, |sides| Location::in_simplex(simplex, vertices, sides))
     }
 
     /// For each target the number of the tetrahedron that contains it, its border included: the least, if there
@@ -227,15 +228,20 @@ impl Tetrahedralization {
     ///
     /// Cost: O(log m) for each of m targets that are spread as the points are, to put it in order.
     pub fn locate_all(&self, targets: &[Point3], threads: NonZeroUsize) -> Vec<u32> {
-        if self.tetrahedra.is_empty() {
-            return vec![NONE; targets.len()];
-        }
         walk::find_all(self, targets, threads, NONE)
     }
 }
 
 impl Walkable<3, 4> for Tetrahedralization {
     type Predicates = FiniteFloatPredicates3;
+
+    fn simplices_len(&self) -> usize {
+        self.tetrahedra.len()
+    }
+
+    fn starts(&self) -> Starts<3> {
+        Tetrahedralization::starts(self)
+    }
 
     #[inline]
     fn side(

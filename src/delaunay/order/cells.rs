@@ -7,8 +7,8 @@ const TINY: f64 = f64::from_bits((1023 - 500) << 52);
 
 /// `2^bits` cells on each of `D` axes around an extent, of the same size on all axes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Cells<const D: usize> {
-    pub(super) bits: u32,
+pub(crate) struct Cells<const D: usize> {
+    pub(crate) bits: u32,
     lower: [f64; D],
     /// A power of two that coordinates are multiplied by first, where their differences or the scale would
     /// overflow.
@@ -26,7 +26,7 @@ impl<const D: usize> Cells<D> {
     const CELLS_PER_POINT: f64 = if D == 2 { 8.0 } else { 64.0 };
 
     /// Cells for `count` points within `extent`, which has at least two different points.
-    pub(super) fn of(extent: &Extent<D>, count: usize) -> Cells<D> {
+    pub(crate) fn of(extent: &Extent<D>, count: usize) -> Cells<D> {
         let difference = extent.max_difference();
         let unit = if !difference.is_finite() {
             0.5
@@ -49,7 +49,7 @@ impl<const D: usize> Cells<D> {
     /// In a tiny extent, coordinates of another axis may overflow if they are all the same: their difference
     /// is a NaN then, which converts to 0.
     #[inline(always)]
-    pub(super) fn of_point(&self, point: [f64; D]) -> [u32; D] {
+    pub(crate) fn of_point(&self, point: [f64; D]) -> [u32; D] {
         let last = (1 << self.bits) - 1;
         let number = |axis| ((point[axis] * self.unit - self.lower[axis]) * self.scale) as u32;
         std::array::from_fn(|axis| last.min(number(axis)))

@@ -19,7 +19,7 @@ pub use sequence::{Insertions, Sequence};
 
 use crate::parallel;
 use crate::predicates::{Extent, lexicographic};
-use cells::Cells;
+pub(crate) use cells::Cells;
 use radix::Keyed;
 use std::num::NonZeroUsize;
 

@@ -87,7 +87,7 @@ impl BoundedFloatPredicates {
             && extent.greatest_magnitude() <= Self::GREATEST_MAGNITUDE
     }
 
-    fn covers_point(point: &Point2) -> bool {
+    pub(super) fn covers_point(point: &Point2) -> bool {
         point.iter().all(|coordinate| {
             *coordinate == 0.0
                 || (Self::LEAST_MAGNITUDE..=Self::GREATEST_MAGNITUDE).contains(&coordinate.abs())
@@ -139,7 +139,7 @@ impl FiniteFloatPredicates {
     const LEAST_DIFFERENCE: f64 = f64::from_bits((1023 - 200) << 52);
     const GREATEST_DIFFERENCE: f64 = f64::from_bits((1023 + 240) << 52);
 
-    fn trusts(difference: &Point2) -> bool {
+    pub(super) fn trusts<const D: usize>(difference: &[f64; D]) -> bool {
         difference.iter().all(|value| {
             *value == 0.0 || (Self::LEAST_DIFFERENCE..=Self::GREATEST_DIFFERENCE).contains(&value.abs())
         })

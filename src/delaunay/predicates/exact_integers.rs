@@ -2,6 +2,7 @@
 //! of all of them.
 
 use num_bigint::BigInt;
+use num_traits::ToPrimitive;
 
 /// Significand and exponent: `value == significand * 2^exponent`.
 ///
@@ -60,4 +61,26 @@ pub fn integers_in<const D: usize>(point: [f64; D], unit: i32) -> [BigInt; D] {
         0 => BigInt::ZERO,
         _ => BigInt::from(significand) << (exponent - unit) as usize,
     })
+}
+
+/// The quotient of two integers times two to the power of `exponent`, to one unit in the last place; infinite
+/// if it overflows.
+///
+/// Domain: the denominator is not zero.
+pub fn quotient(numerator: &BigInt, denominator: &BigInt, exponent: i32) -> f64 {
+    let shift = 64 + denominator.bits() as i64 - numerator.bits() as i64;
+    let shifted = if shift >= 0 {
+        (numerator << shift as usize) / denominator
+    } else {
+        numerator / (denominator << shift.unsigned_abs() as usize)
+    };
+    let mut value = shifted.to_f64().expect("65 bits");
+    // In steps, as the power itself may overflow where the result does not.
+    let mut left = i64::from(exponent) - shift;
+    while left != 0 && value != 0.0 && value.is_finite() {
+        let step = left.clamp(-1000, 1000);
+        value *= 2f64.powi(step as i32);
+        left -= step;
+    }
+    value
 }

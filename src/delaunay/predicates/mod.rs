@@ -30,8 +30,10 @@ macro_rules! counting {
 mod adaptive;
 mod area;
 mod big;
+mod centre;
 pub mod circle;
 mod counts;
+mod distance;
 // Hidden: for the kernels of other crates of the workspace.
 #[doc(hidden)]
 pub mod exact;
@@ -50,7 +52,9 @@ pub mod sphere;
 pub(crate) use adaptive::INCIRCLE_BOUND;
 pub use adaptive::{BoundedFloatPredicates, FiniteFloatPredicates};
 pub use area::{area, exact_area};
+pub(crate) use centre::{Centre2, circumcentre2, circumcentre3, is_bounded, numerators2};
 pub use counts::PredicateCounts;
+pub(crate) use distance::nearer;
 pub use extent::Extent;
 pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredicates, Width};
 pub use perturbation::lexicographic;

@@ -19,6 +19,18 @@ pub(crate) fn rows<'a, T: Element, const D: usize>(
     Ok(Some(numbers.as_chunks().0))
 }
 
+/// An array of rows of so many numbers, without a copy.
+pub(crate) fn array_of_rows<T: Element>(
+    py: Python<'_>,
+    numbers: Vec<T>,
+    width: usize,
+) -> PyResult<Bound<'_, PyArray2<T>>> {
+    let shape = (numbers.len().checked_div(width).unwrap_or(0), width);
+    let rows =
+        Array2::from_shape_vec(shape, numbers).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok(rows.into_pyarray(py))
+}
+
 /// An array of these rows, without a copy.
 pub(crate) fn array_of<T: Element, const D: usize>(
     py: Python<'_>,

@@ -2,6 +2,7 @@
 //! arguments and documents them; nothing here is for users.
 
 mod arrays;
+mod interpolation;
 mod mesh;
 mod waiting;
 

@@ -15,11 +15,11 @@ const TARGETS: usize = 1 << 22;
 /// A triangulation.
 #[pyclass(frozen, module = "spmesh._native")]
 pub(crate) struct Mesh {
-    dimensions: Dimensions,
-    threads: NonZeroUsize,
+    pub(crate) dimensions: Dimensions,
+    pub(crate) threads: NonZeroUsize,
 }
 
-enum Dimensions {
+pub(crate) enum Dimensions {
     Two(delaunay2::Triangulation),
     Three(delaunay3::Tetrahedralization),
 }
@@ -142,7 +142,7 @@ impl Mesh {
 }
 
 /// Gives `work` all targets in pieces, without the lock of the interpreter, and looks for signals in between.
-fn in_pieces<const D: usize>(
+pub(crate) fn in_pieces<const D: usize>(
     py: Python<'_>,
     targets: &PyReadonlyArray2<'_, f64>,
     mut work: impl FnMut(&[[f64; D]]) + Send,

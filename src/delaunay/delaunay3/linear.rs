@@ -1,0 +1,95 @@
+//! Linear interpolation in the tetrahedron that contains the target.
+
+use super::tetrahedralization::Tetrahedralization;
+use crate::predicates::exact_integers::{integers, quotient};
+use crate::predicates::forms::{Form, Orient3d};
+use crate::predicates::{Point3, Sign};
+use crate::simplex::{TETRAHEDRON_FACETS, weighted_sum};
+use crate::vector::difference;
+use crate::walk::{Arrival, Walker};
+use num_bigint::BigInt;
+
+/// The error of a determinant in plain arithmetic in parts of the sum of the magnitudes of its six products: each
+/// product has three rounded factors and is rounded twice, and sums are rounded, less than ten roundings in all.
+const DETERMINANT_ERROR: f64 = 10.0 * f64::EPSILON / 2.0;
+
+/// Greatest error of a weight.
+const WEIGHT_ERROR: f64 = 1e-13;
+
+/// From this volume on, what underflows in products is far below the error.
+const LEAST_VOLUME: f64 = 1e-250;
+
+/// Interpolates linearly in each tetrahedron. It remembers the tetrahedron of its last target.
+#[derive(Debug)]
+pub struct Linear<'m> {
+    walker: Walker<'m, Tetrahedralization, 3, 4>,
+}
+
+impl<'m> Linear<'m> {
+    /// An interpolator of values at the vertices of `mesh`.
+    pub fn new(mesh: &'m Tetrahedralization) -> Linear<'m> {
+        Linear { walker: Walker::new(mesh) }
+    }
+
+    /// The corners of a tetrahedron that contains the target, with its barycentric coordinates; the least
+    /// tetrahedron, if there are several. `None` outside of the hull, without tetrahedra, and if the target is not
+    /// finite.
+    ///
+    /// Each weight is off by less than 1e-13; it is zero exactly where the target is on the opposite facet, and one
+    /// at the corner.
+    ///
+    /// Cost: a walk from the tetrahedron of the last target, or from one of [`Tetrahedralization::starts`].
+    pub fn weights(&mut self, target: Point3) -> Option<[(u32, f64); 4]> {
+        let Arrival::Inside(found, sides) = self.walker.walk(target)? else { return None };
+        let (mesh, number) = (self.walker.mesh, self.walker.least(found, sides, target));
+        let vertices = mesh.tetrahedra[number as usize].vertices.map(|v| mesh.vertices[v as usize]);
+        let mut weights = barycentric(vertices.map(|vertex| vertex.at), target);
+        if sides.contains(&Sign::Zero) {
+            for (corner, weight) in weights.iter_mut().enumerate() {
+                if self.walker.side(number, corner, target) == Sign::Zero {
+                    *weight = 0.0;
+                }
+            }
+            // The others still have the sum that they had.
+            let total: f64 = weights.iter().sum();
+            weights = weights.map(|weight| weight / total);
+        }
+        Some([0, 1, 2, 3].map(|corner| (vertices[corner].index, weights[corner])))
+    }
+
+    /// The value at the target, for values at the input points; that at a vertex is exactly its own. `None` where
+    /// there are no weights. Values of duplicates do not count.
+    ///
+    /// # Panics
+    /// If there are fewer values than points.
+    pub fn interpolate(&mut self, values: &[f64], target: Point3) -> Option<f64> {
+        self.weights(target).map(|weights| weighted_sum(&weights, values))
+    }
+}
+
+/// Barycentric coordinates of a target in a closed tetrahedron.
+fn barycentric(corners: [Point3; 4], target: Point3) -> [f64; 4] {
+    let to = corners.map(|corner| difference(corner, target));
+    let volumes = TETRAHEDRON_FACETS.map(|[i, j, k]| determinant(to[i], to[j], to[k]));
+    let total: f64 = volumes.iter().map(|[volume, _]| volume).sum();
+    let magnitude: f64 = volumes.iter().map(|[_, magnitude]| magnitude).sum();
+    // Written so that it fails for numbers that are none.
+    if total >= LEAST_VOLUME && 4.0 * DETERMINANT_ERROR * magnitude <= WEIGHT_ERROR * total {
+        return volumes.map(|[volume, _]| volume.max(0.0) / total);
+    }
+    let [a, b, c, d, target] = integers([corners[0], corners[1], corners[2], corners[3], target]);
+    let to = [a, b, c, d].map(|corner| [0, 1, 2].map(|axis| &corner[axis] - &target[axis]));
+    let volumes =
+        TETRAHEDRON_FACETS.map(|facet| Orient3d::value(&facet.map(|i| to[i].clone()), |_| BigInt::ZERO));
+    let total = volumes.iter().sum();
+    volumes.map(|volume| quotient(&volume, &total, 0))
+}
+
+/// The determinant of three vectors, and the sum of the magnitudes of its products.
+fn determinant(p: Point3, q: Point3, r: Point3) -> [f64; 2] {
+    let minor = |i: usize, j: usize| [q[i] * r[j], q[j] * r[i]];
+    let minors = [minor(1, 2), minor(2, 0), minor(0, 1)];
+    let value = (0..3).map(|axis| p[axis] * (minors[axis][0] - minors[axis][1])).sum();
+    let magnitude = (0..3).map(|axis| p[axis].abs() * (minors[axis][0].abs() + minors[axis][1].abs())).sum();
+    [value, magnitude]
+}
