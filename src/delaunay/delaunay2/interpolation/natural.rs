@@ -134,8 +134,7 @@ impl<'m> NaturalNeighbours<'m> {
 
 /// Which part of the way from a to b the target on it is, off by four roundings.
 fn part_of_edge(a: Point2, b: Point2, target: Point2) -> f64 {
-    // Halves do not overflow. Where they lose a digit the edge is about the least number long: quarters would
-    // not matter.
+    // Halves do not overflow. They only choose the longer axis, for which a lost digit does not matter.
     let half = |axis: usize| (0.5 * b[axis] - 0.5 * a[axis]).abs();
     let axis = usize::from(half(1) > half(0));
     let difference = b[axis] - a[axis];
