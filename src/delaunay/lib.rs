@@ -20,6 +20,7 @@ mod prefetch;
 #[doc(hidden)]
 pub mod processor;
 mod random;
+mod samples;
 pub mod simplex;
 pub mod vector;
 

@@ -5,6 +5,7 @@ mod circle;
 mod constrained;
 mod curves;
 mod grids;
+mod insertion;
 mod kernel;
 mod kernel3;
 mod kernel_predicates;

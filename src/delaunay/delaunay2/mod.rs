@@ -10,10 +10,12 @@ mod distinct;
 mod extract;
 mod grid;
 mod half_edge;
+mod insert;
 mod insertion;
 mod line;
 mod locate;
 mod mesh;
+mod star;
 mod triangles;
 mod triangulation;
 

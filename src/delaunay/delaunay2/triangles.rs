@@ -20,7 +20,7 @@ pub struct Triangle {
     pub vertices: [u32; 3],
     unused: u32,
     /// The neighbouring half-edges of the edges opposite to the vertices.
-    neighbours: [HalfEdge; 3],
+    pub(super) neighbours: [HalfEdge; 3],
     unused_too: u32,
 }
 
@@ -30,6 +30,10 @@ unsafe impl Zeroable for Triangle {}
 unsafe impl Pod for Triangle {}
 
 impl Triangle {
+    pub(super) fn new(vertices: [u32; 3], neighbours: [HalfEdge; 3]) -> Triangle {
+        Triangle { vertices, neighbours, ..Triangle::zeroed() }
+    }
+
     /// The neighbour across the edge opposite to corner `side`, as its corner opposite to that edge; `None`
     /// at the hull.
     ///
@@ -125,5 +129,19 @@ impl TriangleMemory {
     /// Makes the first `count` triangles of that memory those of the triangulation.
     pub(super) fn set_count(&mut self, count: usize) {
         self.count = count;
+    }
+    /// Keeps the triangles, and makes their number `count`. Those that are new have arbitrary content.
+    ///
+    /// Cost: amortised, the number of new triangles.
+    pub(super) fn resize(&mut self, count: usize) -> &mut [Triangle] {
+        if self.words.len() < (count + 1) * WORDS {
+            // A vector that grew by itself could move to another alignment. This has room for twice as many.
+            let mut larger = TriangleMemory::default();
+            let old = &bytemuck::pod_align_to::<u32, Triangle>(&self.words).1[..self.count];
+            larger.allocate(count)[..old.len() * WORDS].copy_from_slice(bytemuck::cast_slice(old));
+            self.words = larger.words;
+        }
+        self.count = count;
+        &mut bytemuck::pod_align_to_mut::<u32, Triangle>(&mut self.words).1[..count]
     }
 }

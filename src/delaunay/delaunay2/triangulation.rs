@@ -11,8 +11,8 @@ use std::ops::Deref;
 /// the kernel are at hand too, by way of [`Deref`].
 #[derive(Debug, Default)]
 pub struct Triangulation {
-    points: Vec<Point2>,
-    triangles: Triangles,
+    pub(super) points: Vec<Point2>,
+    pub(super) triangles: Triangles,
 }
 
 impl Deref for Triangulation {
