@@ -3,6 +3,7 @@
 mod arrays;
 mod circle;
 mod constrained;
+mod constrained_triangulation;
 mod curves;
 mod grids;
 mod insertion;
