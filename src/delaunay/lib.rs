@@ -1,4 +1,4 @@
-//! Exact predicates, orders of insertion, and the Delaunay kernels of the plane and of space.
+#![doc = include_str!("README.md")]
 
 mod bits;
 pub mod cell_lists;
@@ -21,6 +21,8 @@ mod prefetch;
 pub mod processor;
 mod random;
 mod samples;
+#[cfg(feature = "serde")]
+mod serialization;
 pub mod simplex;
 pub mod vector;
 

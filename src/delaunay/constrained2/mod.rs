@@ -25,7 +25,7 @@ pub use triangulation::ConstrainedTriangulation;
 pub use vertex::Host;
 
 /// A part of a triangulation that is triangulated anew.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Region {
     mesh: Mesh,
     /// The triangle that the last vertex was inserted in, by its number at the start, and that vertex.
@@ -42,6 +42,7 @@ pub struct BorderSide {
 
 /// A triangle of the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Piece {
     /// Numbers of its points, counterclockwise.
     pub points: [u32; 3],

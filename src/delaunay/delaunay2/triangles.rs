@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable};
 
 /// A corner of a triangle; it stands for the edge opposite to it, too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Corner {
     /// Index of the triangle.
     pub triangle: u32,
@@ -48,7 +49,7 @@ impl Triangle {
 
 /// The arrays of a Delaunay triangulation, which a [`Kernel`](super::Kernel) fills again and again. Vertices
 /// are indices of input points; the points themselves are not kept.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Triangles {
     pub(super) memory: TriangleMemory,
     /// For each input point a triangle at it, from which a counterclockwise turn meets all others before the
@@ -135,13 +136,25 @@ impl TriangleMemory {
     /// Cost: amortised, the number of new triangles.
     pub(super) fn resize(&mut self, count: usize) -> &mut [Triangle] {
         if self.words.len() < (count + 1) * WORDS {
-            // A vector that grew by itself could move to another alignment. This has room for twice as many.
-            let mut larger = TriangleMemory::default();
-            let old = &bytemuck::pod_align_to::<u32, Triangle>(&self.words).1[..self.count];
-            larger.allocate(count)[..old.len() * WORDS].copy_from_slice(bytemuck::cast_slice(old));
-            self.words = larger.words;
+            // Twice as many, so that each is moved a few times at most.
+            self.words = self.copy(count).words;
         }
         self.count = count;
         &mut bytemuck::pod_align_to_mut::<u32, Triangle>(&mut self.words).1[..count]
+    }
+    /// The triangles in memory of their own, for the triangles of `vertices` vertices. A vector of words alone
+    /// could have another alignment there.
+    fn copy(&self, vertices: usize) -> TriangleMemory {
+        let mut copy = TriangleMemory::default();
+        let triangles = &bytemuck::pod_align_to::<u32, Triangle>(&self.words).1[..self.count];
+        copy.allocate(vertices)[..self.count * WORDS].copy_from_slice(bytemuck::cast_slice(triangles));
+        copy.count = self.count;
+        copy
+    }
+}
+
+impl Clone for TriangleMemory {
+    fn clone(&self) -> TriangleMemory {
+        self.copy(self.count.div_ceil(2))
     }
 }

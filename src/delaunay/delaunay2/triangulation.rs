@@ -9,7 +9,7 @@ use std::ops::Deref;
 ///
 /// [`Tetrahedralization`](crate::delaunay3::Tetrahedralization) has the same methods in space. The arrays of
 /// the kernel are at hand too, by way of [`Deref`].
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Triangulation {
     pub(super) points: Vec<Point2>,
     pub(super) triangles: Triangles,

@@ -83,7 +83,7 @@ impl Tetrahedron {
 /// [`Tetrahedralization::tetrahedra`] and [`Tetrahedralization::vertices`] are the arrays of the kernel, in
 /// which a tetrahedron names its vertices by their places in the array of vertices. All other methods speak
 /// of indices of input points, like those of [`Triangulation`](crate::delaunay2::Triangulation).
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Tetrahedralization {
     pub(super) vertices: Vec<Vertex>,
