@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
 use crate::samples::nearest_of_samples;
 
-/// Steps of a walk from the vertex before, after which a nearer start is looked for.
+/// Steps of a walk from a vertex that is probably near, after which a nearer start is looked for.
 const NEAR_STEPS: usize = 16;
 
 /// Where a walk to a point ends.
@@ -31,9 +31,9 @@ impl Triangulation {
     /// # Errors
     /// If a coordinate is not finite, or there are [`MAX_POINTS`] points already. Nothing is changed then.
     ///
-    /// Cost: for points that are spread evenly, O(1) triangles are replaced. The walk starts at the point
-    /// inserted last, or else at one of O(log n) samples, which is near while most triangles are in the order
-    /// of the kernel. A point beyond the hull, or on it, costs O(h) more for h vertices of the hull; one on
+    /// Cost: O(1) for points that are spread evenly, amortised. The walk starts at the point inserted last, or
+    /// else at one of O(log n) samples; after some such walks at a vertex of the same cell of a grid, of 4
+    /// bytes per point. A point beyond the hull, or on it, costs O(h) more for h vertices of the hull; one on
     /// the line of all others, O(n).
     ///
     /// ```
@@ -45,7 +45,8 @@ impl Triangulation {
     /// # Ok::<(), spmesh_delaunay::Error>(())
     /// ```
     pub fn insert(&mut self, point: Point2) -> Result<u32> {
-        self.insert_near(point, self.points.len().saturating_sub(1) as u32)
+        let last = self.points.len().saturating_sub(1) as u32;
+        self.insert_near(point, self.nearby.vertex(point).unwrap_or(last))
     }
 
     /// Inserts a point as [`Triangulation::insert`] does; the walk to it starts at point `near`, which is
@@ -107,6 +108,7 @@ impl Triangulation {
         };
         let cavity = Cavity::open(triangles, &self.points, at, inside, edges, predicates);
         self.push(at);
+        self.nearby.note(at, q);
         cavity.fill(&mut self.triangles, q, replaced.is_none());
         if let Some([first, count]) = replaced {
             self.replace_on_hull(first, count, q);
@@ -139,18 +141,20 @@ impl Triangulation {
     }
 
     /// Finds the place of a point, from a triangle at point `near`, or a nearer one.
-    fn find(&self, at: Point2, near: u32, predicates: &mut FiniteFloatPredicates) -> Found {
-        let triangles = self.triangles.triangles();
+    fn find(&mut self, at: Point2, near: u32, predicates: &mut FiniteFloatPredicates) -> Found {
         let first = self.triangles.triangle_of_vertex.get(near as usize).copied().unwrap_or(NONE);
         // A duplicate has no triangle.
-        let found = (first != NONE).then(|| self.walk(first, at, NEAR_STEPS, predicates)).flatten();
-        found.unwrap_or_else(|| {
-            let start = nearest_of_samples(triangles.len(), |number| {
-                let [x, y] = self.points[triangles[number].vertices[0] as usize];
-                (x - at[0]).powi(2) + (y - at[1]).powi(2)
-            });
-            self.walk(start as u32, at, usize::MAX, predicates).expect("a walk without a limit ends")
-        })
+        if let Some(found) = (first != NONE).then(|| self.walk(first, at, NEAR_STEPS, predicates)).flatten() {
+            return found;
+        }
+        let is_vertex = |point: usize| self.triangles.triangle_of_vertex[point] != NONE;
+        self.nearby.count_walk(&self.points, is_vertex);
+        let triangles = self.triangles.triangles();
+        let start = nearest_of_samples(triangles.len(), |number| {
+            let [x, y] = self.points[triangles[number].vertices[0] as usize];
+            (x - at[0]).powi(2) + (y - at[1]).powi(2)
+        });
+        self.walk(start as u32, at, usize::MAX, predicates).expect("a walk without a limit ends")
     }
 
     /// Walks to a point; `None` after too many steps. In a Delaunay triangulation this walk meets no triangle

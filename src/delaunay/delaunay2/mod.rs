@@ -15,6 +15,7 @@ mod insertion;
 mod line;
 mod locate;
 mod mesh;
+mod nearby;
 mod star;
 mod triangles;
 mod triangulation;

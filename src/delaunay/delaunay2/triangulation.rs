@@ -1,5 +1,6 @@
 //! A triangulation that answers questions.
 
+use super::nearby::Nearby;
 use super::triangles::{Corner, Triangles};
 use crate::location::Location;
 use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
@@ -13,6 +14,8 @@ use std::ops::Deref;
 pub struct Triangulation {
     pub(super) points: Vec<Point2>,
     pub(super) triangles: Triangles,
+    /// For insertion alone.
+    pub(super) nearby: Nearby,
 }
 
 impl Deref for Triangulation {
@@ -26,7 +29,7 @@ impl Deref for Triangulation {
 impl Triangulation {
     /// The `triangles` of `points`.
     pub(super) fn new(points: Vec<Point2>, triangles: Triangles) -> Triangulation {
-        Triangulation { points, triangles }
+        Triangulation { points, triangles, nearby: Nearby::default() }
     }
 
     /// The input points, duplicates included.
