@@ -10,6 +10,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// Why points or lines could not be computed with. The output is as it was, or
 /// empty where the work had begun.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum Error {
     /// There are more points than the kernel can number.
@@ -44,6 +45,13 @@ pub enum Error {
         /// How many may be.
         most: usize,
     },
+    /// A segment has an end that is no point.
+    NoSuchPoint {
+        /// Index of the segment.
+        segment: usize,
+        /// The indices that its ends name.
+        ends: [u32; 2],
+    },
     /// Two segments cross between their ends; one of them is this one.
     Crossing([Point2; 2]),
 }
@@ -69,6 +77,9 @@ impl fmt::Display for Error {
             }
             Error::TooManyOfLines { what, most } => {
                 write!(f, "the lines have more than {most} {what}: divide them, or leave lines out")
+            }
+            Error::NoSuchPoint { segment, ends } => {
+                write!(f, "segment {segment} is between points {ends:?}, of which one is missing")
             }
             Error::Crossing([[x, y], [u, v]]) => write!(f, "segments cross between {x}, {y} and {u}, {v}"),
         }

@@ -1,4 +1,4 @@
-//! Exact predicates, orders of insertion, and the Delaunay kernels of the plane and of space.
+#![doc = include_str!("README.md")]
 
 pub mod batch;
 mod bits;
@@ -22,6 +22,8 @@ mod prefetch;
 #[doc(hidden)]
 pub mod processor;
 mod random;
+#[cfg(feature = "serde")]
+mod serialization;
 pub mod simplex;
 mod starts;
 pub mod vector;

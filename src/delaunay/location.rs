@@ -5,6 +5,7 @@ use crate::predicates::Sign;
 /// Where a point lies: in the interior of exactly one simplex of some dimension, or outside. Vertices are
 /// indices of input points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Location {
     /// At this vertex.

@@ -8,6 +8,7 @@ use crate::points::Point2;
 /// The same set of lines gives the same network, whatever their order and directions, up to the numbers of
 /// lines.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Network {
     /// In lexicographic order of their places.
     pub vertices: Vec<NetworkVertex>,
@@ -19,6 +20,7 @@ pub struct Network {
 
 /// A place that lines share or bend at.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NetworkVertex {
     /// Stored coordinates of the stream that the lines are for.
     pub place: Point2,
@@ -28,6 +30,7 @@ pub struct NetworkVertex {
 
 /// A straight part of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NetworkSegment {
     /// Numbers of its vertices, the lesser one first.
     pub ends: [u32; 2],

@@ -17,7 +17,7 @@ const SIMPLICES_PER_START: usize = 8;
 /// assert_eq!(mesh.nearest_from([3.0, 1.0], starts.near([3.0, 1.0])), Some(1));
 /// # Ok::<(), spmesh_delaunay::Error>(())
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Starts<const D: usize> {
     /// `None` without simplices.
     cells: Option<Cells<D>>,

@@ -10,7 +10,7 @@ use crate::starts::Starts;
 use std::num::NonZeroUsize;
 
 /// Steps from the last simplex after which a [`Walker`] jumps. A jump costs about as much.
-const STEPS_TO_NEXT: usize = 16;
+pub(crate) const STEPS_TO_NEXT: usize = 16;
 
 /// Simplices of `N` corners in `D` dimensions, with their neighbours.
 pub(crate) trait Walkable<const D: usize, const N: usize>: Sync {
@@ -37,14 +37,14 @@ pub(crate) enum Arrival<const N: usize> {
     /// In this simplex, closed: the sides of the target at the facets opposite to the corners, none of them
     /// negative.
     Inside(u32, [Sign; N]),
-    /// At the hull: the target lies strictly beyond a facet of this simplex.
-    Outside(u32),
+    /// At the hull: the target lies strictly beyond the facet of this simplex opposite to this corner.
+    Outside(u32, usize),
 }
 
 impl<const N: usize> Arrival<N> {
     /// The last simplex.
     pub(crate) fn simplex(&self) -> u32 {
-        let (Arrival::Inside(simplex, _) | Arrival::Outside(simplex)) = *self;
+        let (Arrival::Inside(simplex, _) | Arrival::Outside(simplex, _)) = *self;
         simplex
     }
 }
@@ -72,10 +72,12 @@ fn first<const D: usize, const N: usize, M: Walkable<D, N>>(
     target.iter().all(|coordinate| coordinate.is_finite()).then_some(start.min(last))
 }
 
+/// Walks from a simplex that is there, at most so many steps.
+///
 /// # Errors
 /// The simplex where it is after as many steps as are allowed.
 #[inline]
-fn walk_steps<const D: usize, const N: usize, M: Walkable<D, N>>(
+pub(crate) fn walk_steps<const D: usize, const N: usize, M: Walkable<D, N>>(
     mesh: &M,
     start: u32,
     target: [f64; D],
@@ -94,7 +96,7 @@ fn walk_steps<const D: usize, const N: usize, M: Walkable<D, N>>(
             }
             *side = mesh.side(simplex, corner, target, predicates);
             if *side == Sign::Negative {
-                let Some(next) = across else { return Ok(Arrival::Outside(simplex)) };
+                let Some(next) = across else { return Ok(Arrival::Outside(simplex, corner)) };
                 before = Some(simplex);
                 simplex = next;
                 continue 'simplices;

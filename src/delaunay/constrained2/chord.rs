@@ -41,6 +41,25 @@ pub(super) fn insert(
     Ok(false)
 }
 
+/// Makes a segment between two vertices of a convex region edges, divided at the vertices that it passes
+/// through.
+pub(super) fn insert_whole(
+    mesh: &mut Mesh,
+    [mut vertex, last]: [u32; 2],
+    segment: u32,
+    predicates: &mut impl Predicates2,
+) -> Result<()> {
+    let to = mesh.place(last);
+    while vertex != last {
+        insert(mesh, vertex, to, segment, predicates)?;
+        let End::Vertex(next) = walk(mesh, vertex, to, predicates).1 else {
+            unreachable!("the part is an edge now");
+        };
+        vertex = next;
+    }
+    Ok(())
+}
+
 /// A side of the cavity that stays, by the direction in which it runs in the cavity.
 #[derive(Debug, Clone, Copy)]
 struct Outer {

@@ -34,7 +34,7 @@ pub(super) struct Side {
 }
 
 /// Triangles of a region with a border.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Mesh {
     pub(super) vertices: Vec<Vertex>,
     pub(super) triangles: Vec<Triangle>,

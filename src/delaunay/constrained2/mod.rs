@@ -6,21 +6,26 @@
 //! ties on circles are broken by the perturbation of [`Predicates2::incircle_perturbed`]. So the order of
 //! insertion does not matter.
 //!
+//! A [`ConstrainedTriangulation`] is that of a whole set of points and segments.
+//!
 //! Source: Chew, "Constrained Delaunay triangulations", 1989; Anglada, "An improved incremental algorithm for
 //! constructing restricted Delaunay triangulations", 1997, for the insertion of a segment.
 
 mod chord;
+mod depths;
 mod mesh;
+mod triangulation;
 mod vertex;
 mod walk;
 
 use crate::error::Result;
 use crate::predicates::{Point2, Predicates2};
 use mesh::{Mesh, NONE, Side};
+pub use triangulation::ConstrainedTriangulation;
 pub use vertex::Host;
 
 /// A part of a triangulation that is triangulated anew.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Region {
     mesh: Mesh,
     /// The triangle that the last vertex was inserted in, by its number at the start, and that vertex.
@@ -37,6 +42,7 @@ pub struct BorderSide {
 
 /// A triangle of the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Piece {
     /// Numbers of its points, counterclockwise.
     pub points: [u32; 3],

@@ -15,8 +15,10 @@ pub enum Host {
     Triangle([u32; 3]),
 }
 
+const IN_REGION: &str = "the place is in a triangle of the region";
+
 /// Where a place lies in the mesh.
-enum At {
+pub(super) enum At {
     Vertex(u32),
     On(Side),
     Inside(u32),
@@ -25,7 +27,7 @@ enum At {
 /// Where a place lies to which a straight walk from a vertex stays in the region.
 pub(super) fn host(mesh: &Mesh, from: u32, place: Point2, predicates: &mut impl Predicates2) -> Host {
     let point = |vertex: u32| mesh.vertices[vertex as usize].point;
-    match locate(mesh, from, place, predicates) {
+    match locate(mesh, from, place, predicates).expect(IN_REGION) {
         At::Vertex(vertex) => Host::Point(point(vertex)),
         At::Inside(triangle) => Host::Triangle(mesh.triangle(triangle).vertices.map(point)),
         At::On(side) => {
@@ -44,7 +46,7 @@ pub(super) fn insert(
     place: Point2,
     predicates: &mut impl Predicates2,
 ) -> Option<u32> {
-    let at = locate(mesh, from, place, predicates);
+    let at = locate(mesh, from, place, predicates).expect(IN_REGION);
     if matches!(at, At::Vertex(_)) {
         return None;
     }
@@ -61,24 +63,30 @@ pub(super) fn insert(
     Some(vertex)
 }
 
-fn locate(mesh: &Mesh, mut from: u32, place: Point2, predicates: &mut impl Predicates2) -> At {
+/// Finds a place by a straight walk from vertex `from`; `None` if the walk leaves the region.
+pub(super) fn locate(
+    mesh: &Mesh,
+    mut from: u32,
+    place: Point2,
+    predicates: &mut impl Predicates2,
+) -> Option<At> {
     loop {
         if mesh.place(from) == place {
-            return At::Vertex(from);
+            return Some(At::Vertex(from));
         }
         match walk(mesh, from, place, predicates).1 {
-            End::Inside(triangle) => return At::Inside(triangle),
-            End::On(side) => return At::On(side),
+            End::Inside(triangle) => return Some(At::Inside(triangle)),
+            End::On(side) => return Some(At::On(side)),
             End::Vertex(vertex) => {
                 // The walk went along an edge, or met a vertex. The place may be before it, on the edge.
                 let passed =
                     lexicographic(mesh.place(from), place) == lexicographic(place, mesh.place(vertex));
                 if passed && mesh.place(vertex) != place {
-                    return At::On(edge(mesh, from, vertex).expect("the walk went along an edge"));
+                    return edge(mesh, from, vertex).map(At::On);
                 }
                 from = vertex;
             }
-            End::Border(_) => unreachable!("the place is in a triangle of the region"),
+            End::Border(_) => return None,
         }
     }
 }

@@ -10,6 +10,7 @@ mod distinct;
 mod extract;
 mod grid;
 mod half_edge;
+mod insert;
 mod insertion;
 pub mod interpolation;
 mod line;

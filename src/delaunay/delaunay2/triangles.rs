@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable};
 
 /// A corner of a triangle; it stands for the edge opposite to it, too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Corner {
     /// Index of the triangle.
     pub triangle: u32,
@@ -20,7 +21,7 @@ pub struct Triangle {
     pub vertices: [u32; 3],
     unused: u32,
     /// The neighbouring half-edges of the edges opposite to the vertices.
-    neighbours: [HalfEdge; 3],
+    pub(super) neighbours: [HalfEdge; 3],
     unused_too: u32,
 }
 
@@ -30,6 +31,10 @@ unsafe impl Zeroable for Triangle {}
 unsafe impl Pod for Triangle {}
 
 impl Triangle {
+    pub(super) fn new(vertices: [u32; 3], neighbours: [HalfEdge; 3]) -> Triangle {
+        Triangle { vertices, neighbours, ..Triangle::zeroed() }
+    }
+
     /// The neighbour across the edge opposite to corner `side`, as its corner opposite to that edge; `None`
     /// at the hull.
     ///
@@ -44,7 +49,7 @@ impl Triangle {
 
 /// The arrays of a Delaunay triangulation, which a [`Kernel`](super::Kernel) fills again and again. Vertices
 /// are indices of input points; the points themselves are not kept.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Triangles {
     pub(super) memory: TriangleMemory,
     /// For each input point a triangle at it, from which a counterclockwise turn meets all others before the
@@ -125,5 +130,31 @@ impl TriangleMemory {
     /// Makes the first `count` triangles of that memory those of the triangulation.
     pub(super) fn set_count(&mut self, count: usize) {
         self.count = count;
+    }
+    /// Keeps the triangles, and makes their number `count`. Those that are new have arbitrary content.
+    ///
+    /// Cost: amortised, the number of new triangles.
+    pub(super) fn resize(&mut self, count: usize) -> &mut [Triangle] {
+        if self.words.len() < (count + 1) * WORDS {
+            // Twice as many, so that each is moved a few times at most.
+            self.words = self.copy(count).words;
+        }
+        self.count = count;
+        &mut bytemuck::pod_align_to_mut::<u32, Triangle>(&mut self.words).1[..count]
+    }
+    /// The triangles in memory of their own, for the triangles of `vertices` vertices. A vector of words alone
+    /// could have another alignment there.
+    fn copy(&self, vertices: usize) -> TriangleMemory {
+        let mut copy = TriangleMemory::default();
+        let triangles = &bytemuck::pod_align_to::<u32, Triangle>(&self.words).1[..self.count];
+        copy.allocate(vertices)[..self.count * WORDS].copy_from_slice(bytemuck::cast_slice(triangles));
+        copy.count = self.count;
+        copy
+    }
+}
+
+impl Clone for TriangleMemory {
+    fn clone(&self) -> TriangleMemory {
+        self.copy(self.count.div_ceil(2))
     }
 }

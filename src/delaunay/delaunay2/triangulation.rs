@@ -2,6 +2,7 @@
 
 use super::Kernel;
 use super::half_edge::NONE;
+use super::insert::FarStarts;
 use super::triangles::{Triangle, Triangles};
 use crate::error::Result;
 use crate::location::Location;
@@ -13,10 +14,11 @@ use std::num::NonZeroUsize;
 /// A Delaunay triangulation with its points. All vertices are indices of the input points.
 ///
 /// [`Tetrahedralization`](crate::delaunay3::Tetrahedralization) has the same methods in space.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Triangulation {
     pub(super) points: Vec<Point2>,
     pub(super) triangles: Triangles,
+    pub(super) far_starts: FarStarts,
 }
 
 impl Triangulation {
@@ -27,7 +29,7 @@ impl Triangulation {
     pub fn by(kernel: &mut Kernel, points: Vec<Point2>) -> Result<Triangulation> {
         let mut triangles = Triangles::default();
         kernel.triangulate(&points, &mut triangles)?;
-        Ok(Triangulation { points, triangles })
+        Ok(Triangulation { points, triangles, far_starts: FarStarts::default() })
     }
 
     /// The input points, duplicates included.
@@ -111,7 +113,7 @@ impl Triangulation {
             Some(Arrival::Inside(number, sides)) => {
                 Location::in_simplex(number, self.triangles()[number as usize].vertices, sides)
             }
-            Some(Arrival::Outside(_)) => Location::Outside,
+            Some(Arrival::Outside(..)) => Location::Outside,
             None => self.vertex_on_line(target).map_or(Location::Outside, Location::Vertex),
         }
     }

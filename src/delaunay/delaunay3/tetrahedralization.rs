@@ -86,7 +86,7 @@ impl Tetrahedron {
 /// [`Tetrahedralization::tetrahedra`] and [`Tetrahedralization::vertices`] are the arrays of the kernel, in
 /// which a tetrahedron names its vertices by their places in the array of vertices. All other methods speak
 /// of indices of input points, like those of [`Triangulation`](crate::delaunay2::Triangulation).
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Tetrahedralization {
     pub(super) vertices: Vec<Vertex>,
@@ -211,7 +211,7 @@ impl Tetrahedralization {
                 let vertices = self.input_indices(self.tetrahedra[number as usize].vertices);
                 Location::in_simplex(number, vertices, sides)
             }
-            Some(Arrival::Outside(_)) => Location::Outside,
+            Some(Arrival::Outside(..)) => Location::Outside,
             None => {
                 let is_there = |vertex: &&Vertex| self.tetrahedra.is_empty() && vertex.at == target;
                 let found = self.vertices.iter().find(is_there);

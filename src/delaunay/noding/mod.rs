@@ -33,6 +33,7 @@ use nodes::{Parts, Places};
 
 /// A vertex of a polyline.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LineVertex {
     /// Coordinates on the grid, of at most [`COORDINATE_MAX`] in magnitude.
     pub place: [i64; 2],
@@ -42,6 +43,7 @@ pub struct LineVertex {
 
 /// What noding changes about lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum NodingChange {
     /// A new vertex where lines cross.
     Crossing,
@@ -61,6 +63,7 @@ pub enum NodingChange {
 
 /// Lines after noding.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Noded {
     /// In lexicographic order of their places, which are all different.
     pub vertices: Vec<LineVertex>,

@@ -70,7 +70,7 @@ pub(super) fn difference<const D: usize>(p: [f64; D], q: [f64; D]) -> [f64; D] {
 ///   2^-98, is a normal number.
 /// * Overflow. Differences are below 2^241, sums of magnitudes below 12 * 2^964 < 2^968; splitting a factor
 ///   multiplies it by 2^27 + 1, and the result stays below 2^996.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct BoundedFloatPredicates {
     counts: PredicateCounts,
 }
@@ -130,7 +130,7 @@ impl Predicates2 for BoundedFloatPredicates {
 /// is then at least 2^-400, a difference of two such products zero or at least 2^-504, and its product with a
 /// lift at least 2^-904; the largest sum is below 2^968. Pairs of `f64` are used in the domain of
 /// [`BoundedFloatPredicates`].
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct FiniteFloatPredicates {
     counts: PredicateCounts,
 }

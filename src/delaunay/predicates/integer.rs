@@ -19,7 +19,7 @@ pub(super) const EXACT_F64: f64 = 9_007_199_254_740_992.0;
 /// Plain `f64`, no error bound.
 ///
 /// Domain: integers with differences of at most 5,234, since 12 * 5,234^4 = 9,005,671,875,594,432 <= 2^53.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct SmallIntegerPredicates {
     counts: PredicateCounts,
 }
@@ -58,11 +58,11 @@ pub trait Width: Default {
 }
 
 /// `i64`. Domain: differences of at most 29,609, since 12 * 29,609^4 < 2^63.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Int64;
 
 /// `i128`. Domain: differences of at most 1.9e9, since 12 * (1.9e9)^4 < 1.57e38 < 2^127.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Int128;
 
 /// Two `i128`. Domain: differences of at most 2^41 (the full range of an `i32` is below 2^32).
@@ -70,7 +70,7 @@ pub struct Int128;
 /// A lift is at most 2^83. Written as `high * 2^42 + low` with `low < 2^42` it has `high <= 2^41`; a cross
 /// product is at most 2^83; so the sums of three products `high * cross` and `low * cross` stay below 3 *
 /// 2^125 < 2^127.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct IntPair;
 
 macro_rules! native_width {
@@ -127,7 +127,7 @@ impl Width for IntPair {
 /// The sum of magnitudes that the filter needs anyway is a sum of non-negative integers; if it comes out
 /// below 2^53 no intermediate of it, and so none of the determinant, was rounded: the value is exact, zero
 /// included. This decides nearly all tests between neighbours, however wide the chunk is.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct IntegerPredicates<W> {
     counts: PredicateCounts,
     width: PhantomData<W>,

@@ -71,6 +71,7 @@ pub use crate::points::{Point2, Point3};
 
 /// Sign of an exactly evaluated expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Sign {
     /// Below zero.
     Negative = -1,

@@ -25,7 +25,7 @@ pub(super) fn differences_from<const N: usize>(a: Point3, others: [Point3; N]) -
 /// * Overflow. Differences are below 2^201. The sum of magnitudes of `insphere` is at most 4 * 3 * 6 = 72
 ///   products of five of them, below 2^1012. Only differences and sums of products of at most three are split,
 ///   which multiplies them by 2^27 + 1: the results stay below 2^640.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct BoundedFloatPredicates3 {
     counts: PredicateCounts,
 }
@@ -83,7 +83,7 @@ impl Predicates3 for BoundedFloatPredicates3 {
 ///
 /// The filters are those in terms of lengths, which hold for all of them. Pairs of `f64` are used in the
 /// domain of [`BoundedFloatPredicates3`].
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct FiniteFloatPredicates3 {
     counts: PredicateCounts,
 }

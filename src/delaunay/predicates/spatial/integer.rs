@@ -22,7 +22,7 @@ use std::marker::PhantomData;
 /// Plain `f64`, no error bound.
 ///
 /// Domain: integers with differences of at most 822, since 24 * 822^5 = 9,006,796,065,063,168 <= 2^53.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct SmallIntegerPredicates3 {
     counts: PredicateCounts,
 }
@@ -103,7 +103,7 @@ native_width!(Int128, i64, i128, 2.34e7);
 /// The sum of magnitudes that the filter needs anyway is a sum of products of non-negative integers; if it
 /// comes out below 2^53 no intermediate of it was rounded, but for factors of zero, and so none of the
 /// determinant: the value is exact, zero included.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct IntegerPredicates3<W> {
     counts: PredicateCounts,
     width: PhantomData<W>,
