@@ -31,11 +31,14 @@ from .blocks import (
     Simplices4,
     Walls,
 )
+from .arguments import attributes_of
+from .attributes import Attribute
 from .errors import MalformedError, SpmeshError, TooNewError, UpstreamError
-from .header import Attribute, Header, Tree
+from .header import Header, Tree
+from .meshes import write_points, write_tetrahedra, write_triangles
 from .reader import Reader
 from .reader import Reader as open  # noqa: A004
-from .whole import Stream, attributes_of, read, write_points, write_triangles
+from .whole import Stream, read
 from .writer import Writer
 
 __version__ = "0.1.0"
@@ -44,5 +47,5 @@ __all__ = [
     "Attribute", "attributes_of", "Cells", "Cells4", "Coefficients", "Configurations", "End", "FARAWAY",
     "Function", "Functions", "Header", "Labels", "MalformedError", "NOT_A_VERTEX", "open", "OpenSegments",
     "Patch", "Points", "Points4", "read", "Reader", "Region", "ResidualPoints", "Segments", "Simplices4", "SpmeshError",
-    "Stream", "TooNewError", "Tree", "UpstreamError", "Walls", "write_points", "write_triangles", "Writer",
+    "Stream", "TooNewError", "Tree", "UpstreamError", "Walls", "write_points", "write_tetrahedra", "write_triangles", "Writer",
 ]
