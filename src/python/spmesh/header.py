@@ -135,6 +135,16 @@ class Header:
         low, high = (self.world(np.array(side[: self.axes])).tolist() for side in (self.stored_bounds[:3], self.stored_bounds[3:]))
         return (*low, *flat, *high, *flat)
 
+    @property
+    def crs(self) -> str | None:
+        """The coordinate reference system as text that pyproj takes: WKT, "EPSG:..." of GeoTIFF keys, or None."""
+        if self.wkt or self.geokeys is None:
+            return self.wkt or None
+        keys = np.frombuffer(self.geokeys[0][: len(self.geokeys[0]) // 8 * 8], "<u2").reshape(-1, 4)[1:]
+        stated = {int(key): int(value) for key, place, _, value in keys if place == 0 and 1024 <= value < 32767}
+        plane, heights = stated.get(3072, stated.get(2048)), stated.get(4096)
+        return None if plane is None else f"EPSG:{plane}" + (f"+{heights}" if heights else "")
+
     def world(self, stored: np.ndarray) -> Floats:
         """World coordinates (n, axes) of stored points (n, axes)."""
         if self.scale is None or self.offset is None:

@@ -22,3 +22,5 @@ ArrayLike = npt.ArrayLike
 Box = Sequence[float]
 # Attributes of points: columns (n,) or (n, components) by name, or one structured array (n,).
 Columns = Union[Mapping[str, Any], npt.NDArray[np.void]]
+# Paths of files, or an array.
+Files = Union[FilePath, Sequence[FilePath], ArrayLike]
