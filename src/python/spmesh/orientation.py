@@ -26,8 +26,8 @@ def orientations(points: Floats, simplices: npt.NDArray[np.integer]) -> npt.NDAr
     dims = points.shape[1]
     corners = np.ascontiguousarray(simplices.T, np.intp)
     columns = [np.ascontiguousarray(points[:, axis]).take(corners) for axis in range(dims)]
-    edges = [column[1:] - column[0] for column in columns]
     with np.errstate(all="ignore"):
+        edges = [column[1:] - column[0] for column in columns]
         determinant, permanent = _determinant(*edges) if dims == 2 else _determinant3(*edges)
         bound = ERROR[dims] * permanent
         signs = (determinant > bound).astype(np.int8) - (determinant < -bound)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import struct
-from typing import Any, BinaryIO, Callable, Iterator
+from typing import BinaryIO, Callable, Iterator
 
 import numpy as np
 
@@ -17,9 +17,9 @@ from .header import CODES, KINDS, NUMBER_BITS, UNKNOWN, Header, check_tag
 from .parts import check_shared, shared_of
 from .regions import Regions, region_of
 from .rules import Chunks, FinalCells, LiveVertices
+from .splines_reader import Splines, records_of
 from .types import Buffer, File
 
-KNOTS_OF = (("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4))
 UNKNOWN_VALUE = np.uint64(0x7FF8000000000000)
 
 
@@ -50,11 +50,7 @@ class Reader:
         self._live = LiveVertices(header) if memory and header.has_patches else None
         self._words: np.ndarray = np.empty(0, "<u4")
         self._neighbour, self._last = -1, np.empty((0, 4))
-        self._degree: tuple[int, int] | None = None
-        self._group: tuple[int, ...] | None = None
-        self._boundary: tuple[int, ...] | None = None
-        self._function: tuple[int, tuple[int, ...]] | None = None
-        self._has_pairs = False
+        self._splines = Splines(header.kind, self.totals)
         self._point_size = header.axes * header.dtype.itemsize
         # What blocks before the next patch say about it, by their tags.
         self._constraints, self._more = Constraints(header), dict[bytes, np.ndarray]()
@@ -210,7 +206,7 @@ class Reader:
     def _tags(self, payload: bytes) -> b.Cells:
         if self.header.tree is None:
             raise MalformedError("cell tag in a stream without a finalization tree")
-        codes = _records(payload, "<u8")
+        codes = records_of(payload, "<u8")
         levels = FinalCells(self.header.tree)
         for code in codes.tolist():
             if self._cells:
@@ -257,14 +253,14 @@ class Reader:
         return patch
 
     def _label(self, payload: bytes) -> b.Labels:
-        labels = _records(payload, "<u8")
+        labels = records_of(payload, "<u8")
         self._labels += len(labels)
         require(self._labels <= self.totals["vertices"], f"{self._labels} labels after {self.totals['vertices']} vertices")
         return b.Labels(labels)
 
     def _residual(self, payload: bytes) -> b.ResidualPoints:
         header = self.header
-        records = _records(payload, np.dtype([("id", "<u8"), ("xyz", header.dtype, (header.axes,))]))
+        records = records_of(payload, np.dtype([("id", "<u8"), ("xyz", header.dtype, (header.axes,))]))
         ids = np.ascontiguousarray(records["id"])
         xyz = self._xyz(np.ascontiguousarray(records["xyz"]).tobytes())
         named = ids[ids != np.uint64(b.NOT_A_VERTEX)]
@@ -282,7 +278,7 @@ class Reader:
 
     def _walls(self, payload: bytes) -> b.Walls:
         dims = self.header.dims
-        walls = _records(payload, np.dtype(("<u4", (dims,)))).reshape(-1, dims)
+        walls = records_of(payload, np.dtype(("<u4", (dims,)))).reshape(-1, dims)
         require(not len(walls) or walls.max() < self.totals["residual"], "wall between no residual points")
         ordered = np.sort(walls, axis=1)
         require((ordered[:, 1:] != ordered[:, :-1]).all(), "wall with a corner twice")
@@ -293,7 +289,7 @@ class Reader:
 
     def _points4(self, payload: bytes) -> b.Points4:
         header = self.header
-        records = _records(payload, np.dtype(("<f8", (header.axes,)))).reshape(-1, header.axes)
+        records = records_of(payload, np.dtype(("<f8", (header.axes,)))).reshape(-1, header.axes)
         xyzt, values = records[:, :4], records[:, 4] if header.has_elevation else None
         require(np.isfinite(xyzt).all(), "coordinate is not finite")
         if values is not None:
@@ -312,7 +308,7 @@ class Reader:
         return b.Points4(xyzt, values)
 
     def _cells4(self, payload: bytes) -> b.Cells4:
-        words = np.concatenate([self._words, _records(payload, "<u4")])
+        words = np.concatenate([self._words, records_of(payload, "<u4")])
         points, at = self.totals["vertices"], 0
         marks, corner_lists, neighbour_lists = list[bool](), list[np.ndarray](), list[np.ndarray]()
         while at < len(words):
@@ -340,97 +336,12 @@ class Reader:
         return b.Cells4(np.array(marks, bool), corner_lists, neighbour_lists)
 
     def _simplices4(self, payload: bytes) -> b.Simplices4:
-        corners = _records(payload, np.dtype(("<u4", (5,)))).reshape(-1, 5)
+        corners = records_of(payload, np.dtype(("<u4", (5,)))).reshape(-1, 5)
         require(not len(corners) or corners.max() < self.totals["vertices"], "simplex of no points")
         ordered = np.sort(corners, axis=1)
         require((ordered[:, 1:] != ordered[:, :-1]).all(), "simplex uses a vertex twice")
         self.totals["simplices"] += len(corners)
         return b.Simplices4(corners)
-
-    # --- Configurations and splines
-
-    def _configurations(self, payload: bytes) -> b.Configurations:
-        require(len(payload) >= 12, f"configurations in {len(payload)} bytes")
-        degree, standing, groups = struct.unpack_from("<3I", payload)
-        require(degree <= 4096 and standing < 3, f"configurations of degree {degree} and standing {standing}")
-        start = 12 + groups * (degree + 1) * 4
-        require(start <= len(payload), "the counts of the configurations do not add up")
-        interiors = np.frombuffer(payload, "<u4", groups * degree, 12).reshape(groups, degree)
-        counts = np.frombuffer(payload, "<u4", groups, 12 + groups * degree * 4)
-        require(start + int(counts.sum(dtype=np.uint64)) * 12 == len(payload), "the counts of the configurations do not add up")
-        boundaries = np.frombuffer(payload, "<u4", -1, start).reshape(-1, 3)
-        self._start_degree(degree, standing)
-        at = 0
-        for number, (interior, count) in enumerate(zip(interiors.tolist(), counts.tolist())):
-            self._start_group(tuple(interior), number == 0)
-            require(count > 0, "an interior set has no configuration")
-            for boundary in boundaries[at : at + count].tolist():
-                self._configuration(interior, tuple(boundary))
-            at += count
-        self.totals["simplices"] += len(boundaries)
-        return b.Configurations(degree, standing, interiors, counts, boundaries)
-
-    def _start_degree(self, degree: int, standing: int) -> None:
-        if self._degree:
-            last, known = self._degree
-            require(degree >= last, f"configurations of degree {degree} after those of {last}")
-            require(degree == last or self.header.kind != "splines", "splines have one degree")
-            require(degree > last or standing == known, f"the configurations of degree {degree} change their standing")
-        self._has_pairs |= degree == 1
-        if self._degree != (degree, standing):
-            self._degree, self._group = (degree, standing), None
-
-    def _start_group(self, interior: tuple[int, ...], is_first: bool) -> None:
-        if is_first and interior == self._group:
-            return
-        require(self._group is None or interior > self._group, "interior sets do not follow each other")
-        increasing = all(x < y for x, y in zip(interior, interior[1:]))
-        knots = self.totals["points"]
-        require(increasing and all(knot < knots for knot in interior), "an interior set is not of increasing knots")
-        self._group, self._boundary = interior, None
-
-    def _configuration(self, interior: list[int], boundary: tuple[int, ...]) -> None:
-        knots, infinite = self.totals["points"], boundary[2] == b.FARAWAY
-        ends = boundary[:2] if infinite else boundary
-        require(all(knot < knots and knot != b.FARAWAY for knot in ends), "a boundary is not of numbers of knots")
-        require(len(set(boundary)) == 3, "a boundary repeats a knot")
-        require(infinite or boundary[0] == min(boundary), "a boundary does not have its least knot first")
-        require(not set(ends) & set(interior), "a boundary has a knot of its interior set")
-        if self._boundary:
-            was = self._boundary[2] == b.FARAWAY
-            follows = infinite > was or infinite == was and (not interior or self._boundary < boundary)
-            require(follows, "a boundary does not follow the one before it in its group")
-        self._boundary = boundary
-
-    def _functions(self, payload: bytes) -> b.Functions:
-        require(self._has_pairs or not payload, "functions in a stream without configurations of degree 1")
-        at, found, knots = 0, [], self.totals["points"]
-        while at < len(payload):
-            require(at + 8 <= len(payload), "a function is cut off")
-            code, count = struct.unpack_from("<2I", payload, at)
-            require(code < len(KNOTS_OF), f"a function of kind {code}")
-            name, corners = KNOTS_OF[code]
-            end = at + 8 + 4 * corners + 16 * count
-            require(end <= len(payload), "a function is cut off")
-            kind = struct.unpack_from(f"<{corners}I", payload, at + 8)
-            terms = list(struct.iter_unpack("<2Id", payload[at + 8 + 4 * corners : end]))
-            require(max(kind) < knots and len(set(kind)) == corners, "a function of unknown or repeated knots")
-            require(self._function is None or self._function < (code, kind), "functions do not follow each other")
-            require(terms, "a function has no term")
-            pairs = [term[:2] for term in terms]
-            require(all(p < q < knots for p, q in pairs), "a term of no increasing numbers of knots")
-            require(all(np.isfinite(x) and x != 0 for _, _, x in terms), "a factor is not finite, or zero")
-            require(all(x < y for x, y in zip(pairs, pairs[1:])), "terms do not follow each other")
-            self._function, at = (code, kind), end
-            found.append(b.Function(name, kind, terms))
-        self.totals["vertices"] += len(found)
-        return b.Functions(found)
-
-    def _coefficients(self, payload: bytes) -> b.Coefficients:
-        values = _records(payload, "<f8")
-        require(np.isfinite(values).all(), "a coefficient is not finite")
-        self.totals["residual"] += len(values)
-        return b.Coefficients(values)
 
     # --- END
 
@@ -451,7 +362,7 @@ class Reader:
         if header.kind == "splines":
             functions, coefficients = counted["vertices"], counted["residual"]
             require(coefficients > 0 and functions in (0, coefficients), "END: one coefficient per function is needed")
-            require(self._degree is not None, "END: a spline without configurations")
+            require(self._splines.degree is not None, "END: a spline without configurations")
         require(not len(self._words), "END: the last cell is cut off")
         for name in b.TOTALS:
             require(stated[name] == counted[name], f"END states {stated[name]} {name}, but the stream holds {counted[name]}")
@@ -470,12 +381,6 @@ def _increases(values: np.ndarray) -> bool:
     return bool((values[1:] > values[:-1]).all())
 
 
-def _records(payload: bytes, dtype: Any) -> np.ndarray:
-    dtype = np.dtype(dtype)
-    require(len(payload) % dtype.itemsize == 0, f"{len(payload)} bytes are not a whole number of records")
-    return np.frombuffer(payload, dtype)
-
-
 _DECODERS: dict[bytes, Callable[[Reader, bytes], b.Block]] = {
     b"PNTS": Reader._points,
     b"CELL": Reader._tags,
@@ -489,8 +394,8 @@ _DECODERS: dict[bytes, Callable[[Reader, bytes], b.Block]] = {
     b"PNT4": Reader._points4,
     b"CEL4": Reader._cells4,
     b"SIM4": Reader._simplices4,
-    b"CONF": Reader._configurations,
-    b"FUNC": Reader._functions,
-    b"COEF": Reader._coefficients,
+    b"CONF": lambda reader, payload: reader._splines.configurations(payload),
+    b"FUNC": lambda reader, payload: reader._splines.functions(payload),
+    b"COEF": lambda reader, payload: reader._splines.coefficients(payload),
     b"END ": Reader._end,
 }

@@ -43,7 +43,7 @@ def fit(xyz: Files, weights: ArrayLike | None = None, *, output: FilePath | None
             if weights is not None:
                 options["weights"] = Path(folder, "weights.txt")
                 np.savetxt(options["weights"], np.asarray(weights, np.float64).reshape(-1), fmt="%.17g")
-            command = ["splinefit", "fit", *flags_of(options), "--", *paths]
+            command = ["splinefit", "fit", *flags_of(options), *map(programs.argument, paths)]
             programs.run(command, output=place.path)
     except BaseException:
         place.remove()

@@ -56,7 +56,7 @@ def tin(
     place = Place(output, "tin.spm")
     try:
         reduce = ["spdelaunay2d", *flags_of({"duplicates": duplicates})]
-        programs.run(["spfinalize", *flags_of(finalize), "--", *(paths or ["-"])], reduce, input=feed, output=place.path)
+        programs.run(["spfinalize", *flags_of(finalize), *(map(programs.argument, paths) if paths else ["-"])], reduce, input=feed, output=place.path)
     except BaseException:
         place.remove()
         raise
@@ -133,7 +133,7 @@ class Tin(Owner):
         if not np.isfinite(points).all():
             raise ValueError("xyz has a coordinate that is not finite")
         header = self.header
-        bounds = header.bounds or (0.0,) * 6
+        bounds = header.bounds or _box_of(self.read().xyz)
         is_flat = points.shape[1] == 2
         elevations = np.full(len(points), bounds[2]) if is_flat else points[:, 2]
         sites = np.column_stack([points[:, :2], elevations])
@@ -158,6 +158,10 @@ class Tin(Owner):
         """
         report: dict[str, Any] = json.loads(programs.run(["spinfo", "--json", "--audit", *flags_of({"points": points}), self.path]))
         return report
+
+
+def _box_of(xyz: Floats) -> list[float]:
+    return [*xyz.min(axis=0).tolist(), *xyz.max(axis=0).tolist()] if len(xyz) else [0.0] * 6
 
 
 def _is_las(path: str) -> bool:

@@ -14,8 +14,8 @@ from .constraints import Constraints, segment_dtype
 from .header import KINDS, CODES, Header
 from .output import OutputFile
 from .parts import check_shared, origins_of
-from .reader import KNOTS_OF
 from .regions import Regions, payload_of
+from .splines_reader import KNOTS_OF
 from .types import ArrayLike, Columns, File
 
 PAYLOAD_MAX = 2**20
