@@ -12,16 +12,19 @@ import tempfile
 import threading
 import warnings
 from pathlib import Path
-from typing import IO, BinaryIO, Callable, Sequence, Union, cast
+from typing import IO, TYPE_CHECKING, Any, BinaryIO, Callable, Sequence, Union, cast
 
 from .errors import SpmeshError
 from .output import OutputFile
 from .types import Buffer, FilePath
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
 # The program and its arguments. Paths (`pathlib.Path`) are names of files: those that start with "-" are no flags.
 Command = Sequence[Union[str, int, float, "os.PathLike[str]"]]
-# Bytes, or what writes them into an open file.
-Input = Union[Buffer, Callable[[BinaryIO], object]]
+# Bytes, what writes them into an open file, or an array of points (n, 2) or (n, 3).
+Input = Union[Buffer, Callable[[BinaryIO], object], "npt.NDArray[Any]"]
 
 # A program whose reader went away says so with one of these: it is never the cause of a failure.
 CLOSED = (141, -signal.SIGPIPE)
@@ -81,8 +84,8 @@ def run(*commands: Command, input: Input | None = None, output: FilePath | None 
     """Runs a program, or several in a pipe, and returns what the last one writes to stdout.
 
     Each command is a list: the program, and its arguments. `pathlib.Path`s are names of files, also if they start with "-".
-    `input` goes to stdin of the first: bytes, or a function that writes into the open file it is given, in a thread of its
-    own. With `output`, stdout goes to this file instead, which gets its name when all programs have succeeded.
+    `input` goes to stdin of the first: bytes, an array of points, which `spfinalize` reads, or a function that writes into the
+    open file it is given, in a thread of its own. With `output`, stdout goes to this file instead, which gets its name when all programs have succeeded.
 
     Raises ProgramError, ProgramNotFoundError, OSError, and what `input` raises. After any exception, KeyboardInterrupt
     included, no program runs on, and `output` is what it was. Notices of programs go to the logger "spmesh".
@@ -165,8 +168,12 @@ class Pipe:
         try:
             if callable(self._input):
                 self._input(stdin)
-            elif self._input is not None:
+            elif isinstance(self._input, (bytes, bytearray, memoryview)):
                 stdin.write(self._input)
+            else:
+                from .meshes import write_points
+
+                write_points(stdin, cast("npt.NDArray[Any]", self._input))
             stdin.close()
         except BrokenPipeError:
             # The program does not read on: its exit code says why.

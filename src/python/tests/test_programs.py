@@ -1,5 +1,6 @@
 """Programs in pipes: how they are found, what they get, and what a failure becomes. Programs of the test's own stand in."""
 
+import io
 import os
 import signal
 import subprocess
@@ -67,6 +68,8 @@ class Pipes(unittest.TestCase):
         data = os.urandom(3_000_000)
         self.assertEqual(programs.run(["pass"], ["pass"], ["pass"], input=data), data)
         self.assertEqual(programs.run(["pass"], ["count"], input=lambda file: file.write(data)).split(), [b"3000000"])
+        points = programs.run(["pass"], input=np.ones((5, 3)))
+        self.assertEqual(spmesh.read(io.BytesIO(points)).xyz.tolist(), [[1, 1, 1]] * 5)
         self.assertEqual(programs.run(["words", "a b", Path("-x"), "--flag", 3]), b"a b\n./-x\n--flag\n3\n")
 
     def test_the_first_failure_is_the_cause(self):
