@@ -5,17 +5,18 @@ from __future__ import annotations
 from typing import Any, Mapping
 
 import numpy as np
-import numpy.typing as npt
 
 from .attributes import TYPES, Attribute
-from .types import ArrayLike, Columns, Floats
+from .types import ArrayLike, Columns, Floats, Integers
 
 # Integers up to here are exact as float64.
 EXACT = 2**53
 
 
 def points_of(points: ArrayLike, name: str = "xyz", axes: tuple[int, ...] = (2, 3)) -> Floats:
-    """Points as float64 (n, axes). Raises ValueError for other shapes and types, and for integers that float64 rounds."""
+    """Points as float64 (n, axes). Raises ValueError for other shapes and types, and for integers that
+    float64 rounds.
+    """
     array = np.asarray(points)
     if array.ndim != 2 or array.shape[1] not in axes:
         expected = " or ".join(f"(n, {count})" for count in axes)
@@ -27,7 +28,7 @@ def points_of(points: ArrayLike, name: str = "xyz", axes: tuple[int, ...] = (2, 
     return array.astype(np.float64, copy=False)
 
 
-def indices_of(indices: ArrayLike, count: int, name: str, corners: tuple[int, ...]) -> npt.NDArray[np.signedinteger[Any]]:
+def indices_of(indices: ArrayLike, count: int, name: str, corners: tuple[int, ...]) -> Integers:
     """Simplices (m, corners) as indices below `count`; `corners` lists the allowed numbers of columns."""
     array = np.asarray(indices)
     if array.size == 0:
@@ -106,7 +107,9 @@ def rows_of(columns: Columns | None, attributes: list[Attribute], count: int) ->
 
 
 def _free_number(name: str, column: Any, dtype: np.dtype[Any]) -> bytes:
-    """The bytes of a number that is no value of the column: NaN, or the greatest or least integer that is free."""
+    """The bytes of a number that is no value of the column: NaN, or the greatest or least integer that is
+    free.
+    """
     if dtype.kind == "f":
         return np.array(np.nan, dtype.newbyteorder("<")).tobytes()
     values = np.unique(column.compressed())

@@ -1,4 +1,6 @@
-"""The checksum of blocks. Its package takes a tenth of a second to load, so that waits for the first block."""
+"""The checksum of blocks. Its package takes a tenth of a second to load, so that waits for the first
+block.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """Reads the GeoTIFF that the programs write: little-endian, classic or BigTIFF, one band in deflated tiles.
 
-Other GeoTIFFs are for rasterio and GDAL. Source: TIFF 6.0, sections 2 and 14; Adobe Photoshop TIFF technical note 3.
+Other GeoTIFFs are for rasterio and GDAL. Source: TIFF 6.0, sections 2 and 14; Adobe Photoshop TIFF technical
+note 3.
 """
 
 from __future__ import annotations
@@ -31,7 +32,8 @@ def read(path: FilePath) -> tuple[npt.NDArray[np.float32], tuple[float, float, f
         data = file.read()
     tags = _tags(data)
     needed = (WIDTH, HEIGHT, BITS, COMPRESSION, SAMPLES, PREDICTOR, TILE_WIDTH, TILE_HEIGHT)
-    width, height, bits, compression, samples, predictor, *shape = (int(tags[tag][0]) if tag in tags else 0 for tag in needed)
+    stated = [int(tags[tag][0]) if tag in tags else 0 for tag in needed]
+    width, height, bits, compression, samples, predictor, *shape = stated
     known = compression == DEFLATE and samples == 1 and (bits, predictor) in ((32, FLOATING_POINT), (8, HORIZONTAL))
     require(known, f"{path}: the layout is not that of this project")
     across, down = -(-width // shape[0]), -(-height // shape[1])

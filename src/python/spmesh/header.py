@@ -43,7 +43,9 @@ def _packed(values: Sequence[float]) -> bytes:
 
 @dataclass
 class Tree:
-    """The finalization tree: `depth` levels over the cube from `origin` with this `side`, in stored coordinates."""
+    """The finalization tree: `depth` levels over the cube from `origin` with this `side`, in stored
+    coordinates.
+    """
 
     depth: int
     origin: tuple[float, ...]
@@ -65,10 +67,11 @@ class Tree:
 
 @dataclass
 class Header:
-    """What a stream states about itself. Coordinates of boxes, tree and region are stored ones, but those of `bounds`.
+    """What a stream states about itself. Coordinates of boxes, tree and region are stored ones, but those of
+    `bounds`.
 
-    Without `scale` and `offset` (three numbers each), stored coordinates are float64 of the world; with them they
-    are int32 and world = stored * scale + offset.
+    Without `scale` and `offset` (three numbers each), stored coordinates are float64 of the world; with them
+    they are int32 and world = stored * scale + offset.
     """
 
     kind: str = "points"
@@ -132,12 +135,15 @@ class Header:
         if self.stored_bounds is None:
             return None
         flat = (0.0,) * (3 - self.axes)
-        low, high = (self.world(np.array(side[: self.axes])).tolist() for side in (self.stored_bounds[:3], self.stored_bounds[3:]))
+        sides = self.stored_bounds[:3], self.stored_bounds[3:]
+        low, high = (self.world(np.array(side[: self.axes])).tolist() for side in sides)
         return (*low, *flat, *high, *flat)
 
     @property
     def crs(self) -> str | None:
-        """The coordinate reference system as text that pyproj takes: WKT, "EPSG:..." of GeoTIFF keys, or None."""
+        """The coordinate reference system as text that pyproj takes: WKT, "EPSG:..." of GeoTIFF keys, or
+        None.
+        """
         if self.wkt or self.geokeys is None:
             return self.wkt or None
         keys = np.frombuffer(self.geokeys[0][: len(self.geokeys[0]) // 8 * 8], "<u2").reshape(-1, 4)[1:]

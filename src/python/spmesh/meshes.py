@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 
 from .arguments import attributes_of, columns_of, indices_of, points_of, rows_of, triple
 from .header import Header
 from .orientation import orientations
-from .types import ArrayLike, Columns, File
+from .types import ArrayLike, Columns, File, Integers
 from .writer import PAYLOAD_MAX, Writer
 
 # Simplices of a patch: their new vertices and their indices fit a block.
@@ -24,9 +21,10 @@ def write_points(
 ) -> None:
     """Writes points (n, 2) or (n, 3) of the world as a stream that `spfinalize` reads.
 
-    With `scale` (one number, or one per axis) they are rounded to a grid of 32-bit integers, which starts at `offset`. `dims` is
-    2 if z is an elevation, 3 if it is geometry. `attributes` are columns by name: arrays (n,) or (n, components). `wkt` is the
-    coordinate reference system. Raises ValueError, which names the argument, for arrays of other shapes and types.
+    With `scale` (one number, or one per axis) they are rounded to a grid of 32-bit integers, which starts at
+    `offset`. `dims` is 2 if z is an elevation, 3 if it is geometry. `attributes` are columns by name: arrays
+    (n,) or (n, components). `wkt` is the coordinate reference system. Raises ValueError, which names the
+    argument, for arrays of other shapes and types.
 
         spmesh.write_points("points.spm", xyz, {"intensity": intensity}, scale=0.001)
     """
@@ -39,17 +37,19 @@ def write_points(
 
 
 def write_triangles(
-    file: File, xyz: ArrayLike, triangles: ArrayLike, attributes: Columns | None = None, scale: float | ArrayLike | None = None,
-    offset: ArrayLike = (0.0, 0.0, 0.0), wkt: str | None = None, orient: bool = False,
+    file: File, xyz: ArrayLike, triangles: ArrayLike, attributes: Columns | None = None,
+    scale: float | ArrayLike | None = None, offset: ArrayLike = (0.0, 0.0, 0.0), wkt: str | None = None,
+    orient: bool = False,
 ) -> None:
-    """Writes a triangle mesh: vertices (n, 2) or (n, 3) of the world, and triangles (m, 3) as indices of vertices.
+    """Writes a triangle mesh: vertices (n, 2) or (n, 3) of the world, and triangles (m, 3) as indices of
+    vertices.
 
-    Triangles must be counterclockwise in x and y, and not flat, after the rounding to the grid of `scale`; an exact test refuses
-    others with a ValueError that names the first. `orient=True` turns clockwise ones. Four columns are tetrahedra, as in
-    `write_tetrahedra`. Other arguments and errors are those of `write_points`.
+    Triangles must be counterclockwise in x and y, and not flat, after the rounding to the grid of `scale`; an
+    exact test refuses others with a ValueError that names the first. `orient=True` turns clockwise ones. Four
+    columns are tetrahedra, as in `write_tetrahedra`. Other arguments and errors are those of `write_points`.
 
-    Vertices are written with their first triangle and finalized with their last, so triangles that are in a spatial
-    order make a stream that needs little memory.
+    Vertices are written with their first triangle and finalized with their last, so triangles that are in a
+    spatial order make a stream that needs little memory.
 
         spmesh.write_triangles("mesh.spm", xyz, scipy.spatial.Delaunay(xyz[:, :2]).simplices, orient=True)
     """
@@ -57,8 +57,9 @@ def write_triangles(
 
 
 def write_tetrahedra(
-    file: File, xyz: ArrayLike, tetrahedra: ArrayLike, attributes: Columns | None = None, scale: float | ArrayLike | None = None,
-    offset: ArrayLike = (0.0, 0.0, 0.0), wkt: str | None = None, orient: bool = False,
+    file: File, xyz: ArrayLike, tetrahedra: ArrayLike, attributes: Columns | None = None,
+    scale: float | ArrayLike | None = None, offset: ArrayLike = (0.0, 0.0, 0.0), wkt: str | None = None,
+    orient: bool = False,
 ) -> None:
     """Writes a tetrahedral mesh: vertices (n, 3), and tetrahedra (m, 4) with det(b - a, c - a, d - a) > 0.
 
@@ -87,7 +88,9 @@ def _write_mesh(
 def _prepare(
     header: Header, points: np.ndarray, attributes: Columns | None, scale: float | ArrayLike | None, offset: ArrayLike,
 ) -> np.ndarray:
-    """Completes the header: grid, attributes, and the box, so that programs need not be told where points are."""
+    """Completes the header: grid, attributes, and the box, so that programs need not be told where points
+    are.
+    """
     if scale is not None:
         header.scale, header.offset = triple(scale, "scale"), triple(offset, "offset")
     header.attributes = attributes_of(columns_of(attributes))
@@ -119,7 +122,7 @@ def _distinct(numbers: np.ndarray) -> np.ndarray:
 
 
 def _write_patches(
-    writer: Writer, stored: np.ndarray, simplices: npt.NDArray[np.signedinteger[Any]], rows: np.ndarray, orient: bool
+    writer: Writer, stored: np.ndarray, simplices: Integers, rows: np.ndarray, orient: bool
 ) -> None:
     count, corners = len(stored), simplices.shape[1]
     step = min(PATCH, PAYLOAD_MAX // (corners * max(rows.itemsize, 1)))

@@ -16,16 +16,19 @@ from .whole import Stream, read
 
 Table = dict[str, np.ndarray]
 
-# Columns of the tables of `tess3`, without the number of an atom in a pair; all others are numbers of 64-bit floating point.
+# Columns of the tables of `tess3`, without the number of an atom in a pair; all others are numbers of 64-bit
+# floating point.
 INTEGERS = {"model", "serial", "tetrahedra", "atoms", "contacts", "pocket", "mouth", "mouths"}
 TEXTS = {"kind", "atom", "residue", "chain", "molecule"}
 
 
 def molecule(structure: Any, **options: Any) -> Molecule:
-    """A molecule from a file in PDB, PQR, mmCIF or XYZ (also .gz), a gemmi.Structure, or an AtomArray of biotite.
+    """A molecule from a file in PDB, PQR, mmCIF or XYZ (also .gz), a gemmi.Structure, or an AtomArray of
+    biotite.
 
-    Options are flags of `tess3` that select atoms: `chain="A"`, `classes="polymer"` (without water, ions and ligands),
-    `atoms="heavy"`, `assembly="1"`, `altloc="best"`, `model="all"`; `radii="bondi"` names a table of radii.
+    Options are flags of `tess3` that select atoms: `chain="A"`, `classes="polymer"` (without water, ions and
+    ligands), `atoms="heavy"`, `assembly="1"`, `altloc="best"`, `model="all"`; `radii="bondi"` names a table
+    of radii.
 
         lysozyme = spmesh.molecule("1aki.cif", classes="polymer")
         areas = lysozyme.sasa(per="residue")["area"]
@@ -59,9 +62,10 @@ def _write(structure: Any, path: Path) -> None:
 class Molecule(Owner):
     """Atoms in a file, and the flags of `tess3` that select some of them.
 
-    Tables are dictionaries of arrays, one for each column: lengths in Å, areas in Å², volumes in Å³. Integers are int64, names
-    are text: atoms are named chain/residue/number/atom. With `as_frame=True` they are DataFrames of pandas. All methods raise
-    ProgramError, and pass further options to `tess3`, such as `radii="bondi"`.
+    Tables are dictionaries of arrays, one for each column: lengths in Å, areas in Å², volumes in Å³. Integers
+    are int64, names are text: atoms are named chain/residue/number/atom. With `as_frame=True` they are
+    DataFrames of pandas. All methods raise ProgramError, and pass further options to `tess3`, such as
+    `radii="bondi"`.
     """
 
     def __init__(self, path: FilePath | Place, **options: Any):
@@ -74,9 +78,11 @@ class Molecule(Owner):
     def sasa(self, per: str = ..., probe: float = ..., *, as_frame: Literal[True], **options: Any) -> Any: ...
 
     def sasa(self, per: str = "atom", probe: float = 1.4, as_frame: bool = False, **options: Any) -> Any:
-        """Areas of the surface that a probe of this radius (Å) reaches, of each "atom", "residue", "chain" or the "molecule".
+        """Areas of the surface that a probe of this radius (Å) reaches, of each "atom", "residue", "chain" or
+        the "molecule".
 
-        Columns: model, atom and serial (or residue and atoms, their number), area. `volumes=True` adds volume.
+        Columns: model, atom and serial (or residue and atoms, their number), area. `volumes=True` adds
+        volume.
 
             areas = molecule.sasa(per="residue")
             exposed = areas["residue"][areas["area"] > 60]
@@ -91,8 +97,9 @@ class Molecule(Owner):
     def contacts(self, per: str = "atom", probe: float = 1.4, as_frame: bool = False, **options: Any) -> Any:
         """Areas of contact between atoms, residues or chains: those of the faces between their cells.
 
-        Columns: model, atom1, atom2, serial1, serial2, distance, area; of residues model, residue1, residue2, contacts, area.
-        `between="chains"` leaves out contacts within a chain; `min_area` and `within` (Å) those that are small or far.
+        Columns: model, atom1, atom2, serial1, serial2, distance, area; of residues model, residue1, residue2,
+        contacts, area. `between="chains"` leaves out contacts within a chain; `min_area` and `within` (Å)
+        those that are small or far.
 
             interface = molecule.contacts(per="residue", between="chains")
         """
@@ -104,7 +111,8 @@ class Molecule(Owner):
     def neighbours(self, alpha: float | None = ..., *, as_frame: Literal[True], **options: Any) -> Any: ...
 
     def neighbours(self, alpha: float | None = None, as_frame: bool = False, **options: Any) -> Any:
-        """Edges of the Delaunay tetrahedralization of the centres, or of the alpha complex of the radius `alpha` (Å).
+        """Edges of the Delaunay tetrahedralization of the centres, or of the alpha complex of the radius
+        `alpha` (Å).
 
         Columns: model, atom1, atom2, serial1, serial2, distance, tetrahedra.
 
@@ -120,15 +128,16 @@ class Molecule(Owner):
     def pockets(self, probe: float = 1.4, as_frame: bool = False, **options: Any) -> Any:
         """Pockets and voids, the largest first.
 
-        Columns: model, pocket, kind ("pocket" or "void"), volume, area, mouths, mouth_area, depth, atoms, tetrahedra. With
-        `per="atom"` or "residue" those around each, with `mouths=True` the mouths.
+        Columns: model, pocket, kind ("pocket" or "void"), volume, area, mouths, mouth_area, depth, atoms,
+        tetrahedra. With `per="atom"` or "residue" those around each, with `mouths=True` the mouths.
 
             largest = molecule.pockets()["volume"][:1]
         """
         return self._table("pockets", as_frame, {"probe": probe, **options})
 
     def read(self, **options: Any) -> Stream:
-        """The Delaunay tetrahedralization of the atoms. `labels` of its vertices are the serial numbers of atoms.
+        """The Delaunay tetrahedralization of the atoms. `labels` of its vertices are the serial numbers of
+        atoms.
 
             tetrahedra = molecule.read().simplices
         """

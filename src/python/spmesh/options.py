@@ -15,8 +15,9 @@ from .types import FilePath
 
 
 def flags_of(options: Mapping[str, Any]) -> list[str]:
-    """Flags for options: `min_area=2` is `--min-area=2`, True a flag without value, a sequence its items with commas between
-    them; None and False leave the flag out. Values stand behind "=", so that negative numbers are no flags."""
+    """Flags for options: `min_area=2` is `--min-area=2`, True a flag without value, a sequence its items with
+    commas between them; None and False leave the flag out. Values stand behind "=", so that negative numbers
+    are no flags."""
     flags = []
     for name, value in options.items():
         flag = "--" + name.rstrip("_").replace("_", "-")
@@ -45,7 +46,9 @@ def paths_of(source: object) -> list[str] | None:
 
 
 class Place:
-    """A file for results: at `output`, or in a temporary folder that is removed with the object that owns it."""
+    """A file for results: at `output`, or in a temporary folder that is removed with the object that owns
+    it.
+    """
 
     def __init__(self, output: FilePath | None, name: str):
         self._remove: Callable[[], object] | None = None

@@ -9,19 +9,21 @@ import numpy.typing as npt
 
 from .types import Floats
 
-# Coordinates within these limits are multiples of 2^-292. So their differences are zero or between 2^-292 and 2^301, and a
-# product of three neither underflows nor overflows.
+# Coordinates within these limits are multiples of 2^-292. So their differences are zero or between 2^-292 and
+# 2^301, and a product of three neither underflows nor overflows.
 LEAST, GREATEST = 2.0**-240, 2.0**300
-# A determinant of rounded differences is off by at most (3 + 16 e) e times its permanent in the plane, (7 + 56 e) e times in
-# space, e = 2^-53 (Shewchuk 1997, "Adaptive precision floating-point arithmetic", section 4.3). One e more covers the second
-# order and the rounding of the permanent.
+# A determinant of rounded differences is off by at most (3 + 16 e) e times its permanent in the plane, (7 +
+# 56 e) e times in space, e = 2^-53 (Shewchuk 1997, "Adaptive precision floating-point arithmetic", section
+# 4.3). One e more covers the second order and the rounding of the permanent.
 ERROR = {2: 4 * 2.0**-53, 3: 8 * 2.0**-53}
 
 
 def orientations(points: Floats, simplices: npt.NDArray[np.integer]) -> npt.NDArray[np.int8]:
-    """Signs (m,) of simplices (m, d + 1) of finite points (n, d), d = 2 or 3: 1 if counterclockwise, -1 if clockwise, 0 if flat.
+    """Signs (m,) of simplices (m, d + 1) of finite points (n, d), d = 2 or 3: 1 if counterclockwise, -1 if
+    clockwise, 0 if flat.
 
-    In space, 1 stands for det(b - a, c - a, d - a) > 0. Cost: vectorized, but exact fractions for near-degenerate simplices.
+    In space, 1 stands for det(b - a, c - a, d - a) > 0. Cost: vectorized, but exact fractions for
+    near-degenerate simplices.
     """
     dims = points.shape[1]
     corners = np.ascontiguousarray(simplices.T, np.intp)

@@ -21,7 +21,8 @@ from .types import Buffer, FilePath
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-# The program and its arguments. Paths (`pathlib.Path`) are names of files: those that start with "-" are no flags.
+# The program and its arguments. Paths (`pathlib.Path`) are names of files: those that start with "-" are no
+# flags.
 Command = Sequence[Union[str, int, float, "os.PathLike[str]"]]
 # Bytes, what writes them into an open file, or an array of points (n, 2) or (n, 3).
 Input = Union[Buffer, Callable[[BinaryIO], object], "npt.NDArray[Any]"]
@@ -37,9 +38,11 @@ _log = logging.getLogger("spmesh")
 
 
 class ProgramError(RuntimeError):
-    """A program failed: `program` is its name, `code` its exit code (see README.md), `message` what it wrote to stderr.
+    """A program failed: `program` is its name, `code` its exit code (see README.md), `message` what it wrote
+    to stderr.
 
-    A negative code is the number of the signal that ended it. Of a pipe, it is the program that caused the failure.
+    A negative code is the number of the signal that ended it. Of a pipe, it is the program that caused the
+    failure.
     """
 
     def __init__(self, program: str, code: int, message: str):
@@ -83,12 +86,14 @@ def argument(name: FilePath) -> str:
 def run(*commands: Command, input: Input | None = None, output: FilePath | None = None) -> bytes:
     """Runs a program, or several in a pipe, and returns what the last one writes to stdout.
 
-    Each command is a list: the program, and its arguments. `pathlib.Path`s are names of files, also if they start with "-".
-    `input` goes to stdin of the first: bytes, an array of points, which `spfinalize` reads, or a function that writes into the
-    open file it is given, in a thread of its own. With `output`, stdout goes to this file instead, which gets its name when all programs have succeeded.
+    Each command is a list: the program, and its arguments. `pathlib.Path`s are names of files, also if they
+    start with "-". `input` goes to stdin of the first: bytes, an array of points, which `spfinalize` reads,
+    or a function that writes into the open file it is given, in a thread of its own. With `output`, stdout
+    goes to this file instead, which gets its name when all programs have succeeded.
 
-    Raises ProgramError, ProgramNotFoundError, OSError, and what `input` raises. After any exception, KeyboardInterrupt
-    included, no program runs on, and `output` is what it was. Notices of programs go to the logger "spmesh".
+    Raises ProgramError, ProgramNotFoundError, OSError, and what `input` raises. After any exception,
+    KeyboardInterrupt included, no program runs on, and `output` is what it was. Notices of programs go to the
+    logger "spmesh".
 
         spmesh.programs.run(["spfinalize", Path("tile.laz")], ["spdelaunay2d"], output="terrain.spm")
     """
@@ -108,9 +113,9 @@ def run(*commands: Command, input: Input | None = None, output: FilePath | None 
 class Pipe:
     """Programs that run in a pipe while the block of `with` reads `stdout`, an open binary file.
 
-    At the end of the block, all programs have ended. Its exceptions are those of `run`. If the block ends before the output
-    does, the programs are stopped without an error. If it fails on what it reads, and a program has failed, ProgramError is
-    raised, for that is the cause.
+    At the end of the block, all programs have ended. Its exceptions are those of `run`. If the block ends
+    before the output does, the programs are stopped without an error. If it fails on what it reads, and a
+    program has failed, ProgramError is raised, for that is the cause.
 
         with spmesh.programs.Pipe(["spfinalize", Path("tile.laz")], ["spdelaunay2d"]) as pipe:
             for block in spmesh.open(pipe.stdout):

@@ -19,9 +19,10 @@ Transform = tuple[float, float, float, float, float, float]
 class Raster(NamedTuple):
     """Cells, where they are, and the coordinate reference system.
 
-    `array` (rows, columns) float32, the first row in the north, NaN where there are no data. `transform` are six numbers in
-    rasterio's order: the corner of the cell at (row, column) is x = a * column + c, y = e * row + f, for a, b, c, d, e, f.
-    `crs` is text that rasterio and pyproj take: WKT, or "EPSG:..." if the source states only a code, or None.
+    `array` (rows, columns) float32, the first row in the north, NaN where there are no data. `transform` are
+    six numbers in rasterio's order: the corner of the cell at (row, column) is x = a * column + c, y = e *
+    row + f, for a, b, c, d, e, f. `crs` is text that rasterio and pyproj take: WKT, or "EPSG:..." if the
+    source states only a code, or None.
     """
 
     array: npt.NDArray[np.float32]
@@ -36,7 +37,8 @@ class Raster(NamedTuple):
         return left, top + e * rows, left + a * columns, top
 
     def to_xarray(self) -> Any:
-        """The raster as xarray.DataArray with coordinates x and y of the centres of cells. Raises ImportError without xarray.
+        """The raster as xarray.DataArray with coordinates x and y of the centres of cells. Raises ImportError
+        without xarray.
 
             tin.dem(step=1).to_xarray().plot()
         """
@@ -51,7 +53,8 @@ class Raster(NamedTuple):
 def drawn(command: Sequence[Any], kind: str, options: dict[str, Any], crs: str | None) -> Raster:
     """The raster that a command writes, given its flags but for the output."""
     if "output" in options or "tiles" in options or kind == "shaded-relief":
-        raise ValueError("several rasters, files and pictures in colour are no array: run spdem with spmesh.programs.run")
+        advice = "run spdem with spmesh.programs.run"
+        raise ValueError(f"several rasters, files and pictures in colour are no array: {advice}")
     # Hillshades are bytes, for which 0 stands for no data.
     no_data = {} if kind == "hillshade" else {"no_data": "nan"}
     with tempfile.TemporaryDirectory(prefix="spmesh-") as folder:

@@ -23,12 +23,13 @@ KINDS = {None: "value", 0: "value", 1: "gradient", 2: "hessian"}
 def fit(xyz: Files, weights: ArrayLike | None = None, *, output: FilePath | None = None, **options: Any) -> Fit:
     """A smooth spline of scattered points (n, 3), by `splinefit fit`: z as a function of x and y.
 
-    `xyz` may also be the path of a file with points, or several. `weights` (n,) are those of points. Options are flags of
-    `splinefit fit`: `step=2.0` places knots on a grid, `tol=0.1` where residuals are above it, `lambda_="gcv"` smooths (the
-    underscore is left out), `robust="tukey"` bears gross errors, `keep_class=2` selects points of files.
+    `xyz` may also be the path of a file with points, or several. `weights` (n,) are those of points. Options
+    are flags of `splinefit fit`: `step=2.0` places knots on a grid, `tol=0.1` where residuals are above it,
+    `lambda_="gcv"` smooths (the underscore is left out), `robust="tukey"` bears gross errors, `keep_class=2`
+    selects points of files.
 
-    The spline goes to `output`, or to a temporary file that the Fit owns. Raises ProgramError, ProgramNotFoundError, and
-    ValueError for arrays that do not fit.
+    The spline goes to `output`, or to a temporary file that the Fit owns. Raises ProgramError,
+    ProgramNotFoundError, and ValueError for arrays that do not fit.
 
         surface = spmesh.fit(xyz, step=2.0)
         z = surface.evaluate(xy)
@@ -61,8 +62,9 @@ class Fit(Owner):
     def evaluate(self, xy: ArrayLike, derivative: int | str | None = None) -> Floats:
         """The spline at sites (n, 2), NaN outside of its domain.
 
-        By default its values (n,). `derivative=1` gives gradients (n, 2), dx and dy; 2 gives Hessians (n, 3), dxx, dxy and dyy;
-        "slope", "aspect", "profile-curvature" and "tangential-curvature" numbers (n,). Raises ProgramError and ValueError.
+        By default its values (n,). `derivative=1` gives gradients (n, 2), dx and dy; 2 gives Hessians (n, 3),
+        dxx, dxy and dyy; "slope", "aspect", "profile-curvature" and "tangential-curvature" numbers (n,).
+        Raises ProgramError and ValueError.
 
             slopes = surface.evaluate(xy, derivative="slope")
         """
@@ -74,7 +76,8 @@ class Fit(Owner):
             columns = {"gradient": (2,), "hessian": (3,)}.get(kind, ())
             return np.empty((0, *columns))
         if not np.isfinite(sites).all():
-            raise ValueError(f"xy has a coordinate that is not finite, in row {int(np.argmin(np.isfinite(sites).all(axis=1)))}")
+            row = int(np.argmin(np.isfinite(sites).all(axis=1)))
+            raise ValueError(f"xy has a coordinate that is not finite, in row {row}")
         with tempfile.TemporaryDirectory(prefix="spmesh-") as folder:
             source, target = Path(folder, "sites.npy"), Path(folder, "values.npy")
             np.save(source, sites)
@@ -82,8 +85,11 @@ class Fit(Owner):
             values: Floats = np.load(target)
         return values
 
-    def dem(self, step: float = 1.0, kind: str = "value", bounds: Sequence[float] | None = None, **options: Any) -> Raster:
-        """A raster of the spline: cells at multiples of `step`. `kind` is "value", "slope", "aspect" or a curvature.
+    def dem(
+        self, step: float = 1.0, kind: str = "value", bounds: Sequence[float] | None = None, **options: Any
+    ) -> Raster:
+        """A raster of the spline: cells at multiples of `step`. `kind` is "value", "slope", "aspect" or a
+        curvature.
 
             surface.dem(step=0.5, kind="profile-curvature").array
         """

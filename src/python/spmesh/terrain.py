@@ -25,21 +25,23 @@ STEPS = 2.0**31 - 2
 
 
 def tin(
-    files: Files, keep_class: int | Sequence[int] | None = 2, crs: str | None = None, bounds: Sequence[float] | None = None,
-    memory: str | int | None = None, *, duplicates: str | None = None, attributes: Columns | str | Sequence[str] | None = None,
-    output: FilePath | None = None, **options: Any,
+    files: Files, keep_class: int | Sequence[int] | None = 2, crs: str | None = None,
+    bounds: Sequence[float] | None = None, memory: str | int | None = None, *, duplicates: str | None = None,
+    attributes: Columns | str | Sequence[str] | None = None, output: FilePath | None = None, **options: Any,
 ) -> Tin:
     """The Delaunay triangulation of terrain, made by `spfinalize` and `spdelaunay2d` in bounded memory.
 
-    `files` is the path of a file that `spfinalize` reads (LAS, LAZ, COPC, text and others), several paths, which make one mesh,
-    or an array (n, 3) of points. Points of LAS files count if they are of the class `keep_class`, ground by default; None takes
-    all. `crs` is the coordinate reference system, such as "EPSG:2154", if the files do not state it. `bounds` is a box of four
-    or six numbers. `memory` limits what points take, such as "512M". Of points that coincide in x and y, `duplicates` keeps the
-    "first", "lowest" or "highest". `attributes` are names, or "all"; of an array, columns by name. Other options are flags of
-    `spfinalize`: `scale=(0.01, 0.01, 0.01)` is `--scale 0.01,0.01,0.01`, and `first_only=True` is `--first-only`.
+    `files` is the path of a file that `spfinalize` reads (LAS, LAZ, COPC, text and others), several paths,
+    which make one mesh, or an array (n, 3) of points. Points of LAS files count if they are of the class
+    `keep_class`, ground by default; None takes all. `crs` is the coordinate reference system, such as
+    "EPSG:2154", if the files do not state it. `bounds` is a box of four or six numbers. `memory` limits what
+    points take, such as "512M". Of points that coincide in x and y, `duplicates` keeps the "first", "lowest"
+    or "highest". `attributes` are names, or "all"; of an array, columns by name. Other options are flags of
+    `spfinalize`: `scale=(0.01, 0.01, 0.01)` is `--scale 0.01,0.01,0.01`, and `first_only=True` is
+    `--first-only`.
 
-    The mesh goes to `output`, or to a temporary file that the Tin owns. Raises ProgramError, which has what the program says,
-    ProgramNotFoundError, and ValueError for arrays that do not fit.
+    The mesh goes to `output`, or to a temporary file that the Tin owns. Raises ProgramError, which has what
+    the program says, ProgramNotFoundError, and ValueError for arrays that do not fit.
 
         terrain = spmesh.tin(["a.laz", "b.laz"])
         elevations = terrain.dem(step=0.5).array
@@ -55,8 +57,9 @@ def tin(
         finalize["attributes"] = "all" if attributes is not None else None
     place = Place(output, "tin.spm")
     try:
+        inputs = map(programs.argument, paths) if paths else ["-"]
         reduce = ["spdelaunay2d", *flags_of({"duplicates": duplicates})]
-        programs.run(["spfinalize", *flags_of(finalize), *(map(programs.argument, paths) if paths else ["-"])], reduce, input=feed, output=place.path)
+        programs.run(["spfinalize", *flags_of(finalize), *inputs], reduce, input=feed, output=place.path)
     except BaseException:
         place.remove()
         raise
@@ -74,7 +77,9 @@ class Tin(Owner):
 
     @property
     def crs(self) -> str | None:
-        """The coordinate reference system as text: WKT, or "EPSG:..." if the mesh has only a code, or None."""
+        """The coordinate reference system as text: WKT, or "EPSG:..." if the mesh has only a code, or
+        None.
+        """
         return self.header.crs
 
     def read(self) -> Stream:
@@ -85,13 +90,15 @@ class Tin(Owner):
         """
         return read(self.path)
 
-    def dem(self, step: float | None = 1.0, kind: str = "elevation", bounds: Sequence[float] | None = None, **options: Any) -> Raster:
+    def dem(
+        self, step: float | None = 1.0, kind: str = "elevation", bounds: Sequence[float] | None = None, **options: Any
+    ) -> Raster:
         """A raster of the TIN, by `spdem`: the value of a cell is that at its centre.
 
-        `step` is the side of cells, in the unit of x and y; their corners are at its multiples. `kind` is "elevation", "slope"
-        and "aspect" (degrees), or "hillshade" (1 to 255). `bounds` are x0, y0, x1, y1: all by default. Options are flags of
-        `spdem`, such as `concave=30`, `fill=20`, `sample="mean"`, `attribute="intensity"` or, without a step, `columns=500`.
-        Raises ProgramError.
+        `step` is the side of cells, in the unit of x and y; their corners are at its multiples. `kind` is
+        "elevation", "slope" and "aspect" (degrees), or "hillshade" (1 to 255). `bounds` are x0, y0, x1, y1:
+        all by default. Options are flags of `spdem`, such as `concave=30`, `fill=20`, `sample="mean"`,
+        `attribute="intensity"` or, without a step, `columns=500`. Raises ProgramError.
 
             array, transform, crs = terrain.dem(step=0.5, kind="slope")
         """
@@ -103,8 +110,8 @@ class Tin(Owner):
     def contours(self, interval: float, **options: Any) -> list[tuple[float, Floats]]:
         """Contour lines at all multiples of `interval`, by `spdem`: pairs of an elevation and points (k, 2).
 
-        Higher ground is on the left. Closed lines end where they start. Options are flags of `spdem`, such as `smooth=True`,
-        `min_length=20` or `contour_base=0.5`. Raises ProgramError.
+        Higher ground is on the left. Closed lines end where they start. Options are flags of `spdem`, such as
+        `smooth=True`, `min_length=20` or `contour_base=0.5`. Raises ProgramError.
 
             for elevation, line in terrain.contours(5):
                 plt.plot(*line.T)
@@ -119,11 +126,12 @@ class Tin(Owner):
         return found
 
     def heights(self, xyz: ArrayLike, outside: str = "no-data") -> Floats:
-        """Heights (n,) of points (n, 3) above the TIN, by `spheight`; of points (n, 2), the elevations of the TIN there.
+        """Heights (n,) of points (n, 3) above the TIN, by `spheight`; of points (n, 2), the elevations of the
+        TIN there.
 
-        NaN outside of the mesh, or with `outside="nearest"` the height above its nearest place. Coordinates are rounded to the
-        grid of the mesh; if it has none, to 2^-32 of the extent or less. Raises ProgramError, and ValueError for points that
-        do not fit that grid or are not finite.
+        NaN outside of the mesh, or with `outside="nearest"` the height above its nearest place. Coordinates
+        are rounded to the grid of the mesh; if it has none, to 2^-32 of the extent or less. Raises
+        ProgramError, and ValueError for points that do not fit that grid or are not finite.
 
             above = terrain.heights(xyz)
         """
@@ -142,21 +150,24 @@ class Tin(Owner):
             source, target = Path(folder, "points.las"), Path(folder, "heights.las")
             stored = grid.stored(sites)
             las.write(source, stored, grid.scale or (), grid.offset or ())
-            programs.run(["spheight", "--ground", self.path, *flags_of({"outside": outside}), source, "--output", target])
+            flags = flags_of({"outside": outside})
+            programs.run(["spheight", "--ground", self.path, *flags, source, "--output", target])
             found = las.heights(target)
         # The program measured from the rounded elevation.
         rounded = grid.world(stored)[:, 2]
         return rounded - found if is_flat else found + (points[:, 2] - rounded)
 
     def audit(self, points: FilePath | None = None) -> dict[str, Any]:
-        """Proves with exact arithmetic that the mesh is the canonical Delaunay triangulation, by `spinfo --audit`.
+        """Proves with exact arithmetic that the mesh is the canonical Delaunay triangulation, by `spinfo
+        --audit`.
 
-        With `points`, a file, also that these are its points. Returns what the program reports, as a dictionary. Raises
-        ProgramError with code 4 and the first violation if the mesh is not that.
+        With `points`, a file, also that these are its points. Returns what the program reports, as a
+        dictionary. Raises ProgramError with code 4 and the first violation if the mesh is not that.
 
             terrain.audit()
         """
-        report: dict[str, Any] = json.loads(programs.run(["spinfo", "--json", "--audit", *flags_of({"points": points}), self.path]))
+        command: programs.Command = ["spinfo", "--json", "--audit", *flags_of({"points": points}), self.path]
+        report: dict[str, Any] = json.loads(programs.run(command))
         return report
 
 

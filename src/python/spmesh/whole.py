@@ -15,14 +15,15 @@ from .types import File, Integers, Floats, Masked
 
 @dataclass
 class Stream:
-    """All that a stream holds. Arrays that its kind does not have are empty (`simplices`, `rows`) or None (others).
+    """All that a stream holds. Arrays that its kind does not have are empty (`simplices`, `rows`) or None
+    (others).
 
-    `stored` (n, axes): points, vertices or knots in stored coordinates, `xyz` the same in the world. `simplices` (m,
-    corners): triangles or tetrahedra as indices of vertices, int32 if they fit, else int64. `rows` (n,): structured array
-    of attributes, without fields if there are none.
-    Of a constrained mesh: `segment_lines` (k,) and `segment_ends` (k, 2, 2), stored; `sides` (m, corners) int64: for each
-    triangle the segments opposite to its corners, or -1; `open_segments`, numbers of segments that leave the mesh.
-    Of points in regions: `regions`; points come region by region, those of several regions several times.
+    `stored` (n, axes): points, vertices or knots in stored coordinates, `xyz` the same in the world.
+    `simplices` (m, corners): triangles or tetrahedra as indices of vertices, int32 if they fit, else int64.
+    `rows` (n,): structured array of attributes, without fields if there are none. Of a constrained mesh:
+    `segment_lines` (k,) and `segment_ends` (k, 2, 2), stored; `sides` (m, corners) int64: for each triangle
+    the segments opposite to its corners, or -1; `open_segments`, numbers of segments that leave the mesh. Of
+    points in regions: `regions`; points come region by region, those of several regions several times.
     """
 
     header: Header
@@ -61,8 +62,9 @@ class Stream:
 def read(file: File, memory: bool = True) -> Stream:
     """Reads a whole stream from a path or a binary file, with all checks (see `Reader`).
 
-    The path may be that of the manifest of a mesh in parts: the result is then the joined mesh. Raises MalformedError,
-    TooNewError, UpstreamError if the program failed that writes the file, a pipe, and OSError.
+    The path may be that of the manifest of a mesh in parts: the result is then the joined mesh. Raises
+    MalformedError, TooNewError, UpstreamError if the program failed that writes the file, a pipe, and
+    OSError.
 
         mesh = spmesh.read("terrain.spm")
         corners = mesh.xyz[mesh.simplices]          # (m, 3, axes)
@@ -70,7 +72,8 @@ def read(file: File, memory: bool = True) -> Stream:
     if is_manifest(file):
         whole = Join(file).read(memory)
         rows = np.empty(len(whole.stored), []) if whole.rows is None else whole.rows
-        return Stream(whole.header, whole.stored, _indices(whole.simplices, len(whole.stored)), rows, totals=whole.totals)
+        simplices = _indices(whole.simplices, len(whole.stored))
+        return Stream(whole.header, whole.stored, simplices, rows, totals=whole.totals)
     with Reader(file, memory) as reader:
         parts = _Parts()
         for block in reader:
@@ -173,7 +176,9 @@ class _Parts:
 
 
 def _indices(simplices: np.ndarray, count: int) -> Integers:
-    """As int32 if the numbers of vertices fit, else as int64: numpy makes floats of sums of unsigned and signed integers."""
+    """As int32 if the numbers of vertices fit, else as int64: numpy makes floats of sums of unsigned and
+    signed integers.
+    """
     return simplices.astype(np.int32 if count <= 2**31 else np.int64, copy=False)
 
 
