@@ -12,15 +12,14 @@ def main(names: list[str]) -> int:
     for name in names:
         try:
             with spmesh.open(sys.stdin.buffer if name == "-" else name) as reader:
-                for block in reader:
-                    pass
+                totals = next((block.totals for block in reader if isinstance(block, spmesh.End)), {})
         except spmesh.SpmeshError as error:
             print(f"spmesh: {name}: {error}", file=sys.stderr)
             return 6 if isinstance(error, spmesh.TooNewError) else 3
         except (OSError, ImportError) as error:
             print(f"spmesh: {name}: {error}", file=sys.stderr)
             return 1
-        counts = ", ".join(f"{count} {total}" for total, count in block.totals.items() if count)
+        counts = ", ".join(f"{count} {total}" for total, count in totals.items() if count)
         attributes = ", ".join(attribute.name for attribute in reader.header.attributes)
         print(f"{name}: {reader.header.kind}: {counts or 'empty'}" + (f"; attributes {attributes}" if attributes else ""))
     return 0

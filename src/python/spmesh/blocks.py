@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Union
 
 import numpy as np
+import numpy.typing as npt
 
 NOT_A_VERTEX = 2**64 - 1
 FARAWAY = 2**32 - 1
@@ -63,15 +65,16 @@ class Patch:
     kept: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
 
     @property
-    def ids(self) -> np.ndarray:
-        """Ids (n,) uint64 of the local vertices."""
-        own = np.arange(self.first_id, self.first_id + len(self.new), dtype=np.uint64)
-        return np.concatenate([own, self.imported])
+    def ids(self) -> npt.NDArray[np.int64]:
+        """Ids (n,) int64 of the local vertices."""
+        own = np.arange(self.first_id, self.first_id + len(self.new), dtype=np.int64)
+        return np.concatenate([own, self.imported.astype(np.int64)])
 
     @property
-    def simplices_by_id(self) -> np.ndarray:
+    def simplices_by_id(self) -> npt.NDArray[np.int64]:
         """Simplices (m, corners) as ids of vertices of the whole stream."""
-        return self.ids[self.simplices]
+        simplices: npt.NDArray[np.int64] = self.ids[self.simplices]
+        return simplices
 
 
 @dataclass
@@ -174,3 +177,9 @@ class End:
     """Totals by name: points, cells, vertices, simplices, merged, residual, walls."""
 
     totals: dict[str, int] = field(default_factory=dict)
+
+
+Block = Union[
+    Points, Cells, Region, Patch, Segments, OpenSegments, Labels, ResidualPoints, Walls, Points4, Cells4, Simplices4,
+    Configurations, Functions, Coefficients, End,
+]

@@ -13,6 +13,7 @@ import numpy as np
 from .errors import MalformedError, require
 
 PAYLOAD_MAX = 2**20
+Triangle = tuple[int, int, int]
 
 
 def decompress(data: bytes) -> bytes:
@@ -37,7 +38,7 @@ def _frame_length(data: bytes) -> int:
     at = 5 + (1 - single)
     require(not any(data[at : at + dictionary]), "a zstd frame with a dictionary")
     at += dictionary + (single, 2, 4, 8)[descriptor >> 6]
-    last = False
+    last = 0
     while not last:
         require(at + 3 <= len(data), "a zstd frame is cut off")
         head = int.from_bytes(data[at : at + 3], "little")
@@ -118,7 +119,8 @@ class _Columns:
 
 
 def _bit_lengths(u: np.ndarray) -> np.ndarray:
-    return np.frexp(u.astype(float))[1]
+    exponents: np.ndarray = np.frexp(u.astype(float))[1]
+    return exponents
 
 
 # --- Methods
@@ -208,14 +210,18 @@ def _taken(operations: np.ndarray) -> list[int]:
     return [int((attached < 63).sum()), int((ways == 1).sum()), int((ways == 2).sum())]
 
 
-def _walk(operations, new, vertices, given):
+def _walk(
+    operations: list[int], new: int, vertices: int, given: list[list[int]]
+) -> tuple[list[Triangle], list[int]]:
     """The triangles of all operations, and the parents of new vertices."""
     distances, references, imports = (iter(column) for column in given)
-    leave, reach = [()] * vertices, [()] * vertices
+    leave: list[tuple[int, ...]] = [()] * vertices
+    reach: list[tuple[int, ...]] = [()] * vertices
     parents = [max(vertex - 1, 0) for vertex in range(new)]
-    triangles, following, last = [], 0, new
+    triangles: list[Triangle] = []
+    following, last = 0, new
 
-    def give(way):
+    def give(way: int) -> int:
         nonlocal following, last
         if way == 2:
             number = next(imports)
@@ -248,7 +254,7 @@ def _walk(operations, new, vertices, given):
                 require(age < len(edges), "an open edge that does not exist")
                 x = edges[age]
             entered = (p, q, x)
-            triangle = entered[3 - turn :] + entered[: 3 - turn]
+            triangle = (entered, (x, p, q), (q, x, p))[turn]
         a, b, c = entered
         require(a != b and b != c and c != a, "a triangle that uses a vertex twice")
         for a, b in ((a, b), (b, c), (c, a)):
@@ -262,7 +268,7 @@ def _walk(operations, new, vertices, given):
     return triangles, parents
 
 
-def _without(edges: tuple, vertex: int) -> tuple:
+def _without(edges: tuple[int, ...], vertex: int) -> tuple[int, ...]:
     if not edges or edges[0] == vertex:
         return edges[1:]
     return edges[:1] if edges[1:] == (vertex,) else edges

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import NoReturn
 
 
 class SpmeshError(ValueError):
@@ -37,10 +38,10 @@ def upstream_error(tail: bytes) -> UpstreamError | None:
     return error
 
 
-def require(holds, message: str) -> None:
+def require(holds: object, message: str) -> None:
     if not holds:
         raise MalformedError(message)
 
 
-def needs(part: str) -> None:
+def needs(part: str) -> NoReturn:
     raise TooNewError(f"the stream needs {part}, which this package does not know: a newer spmesh made it")

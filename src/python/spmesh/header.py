@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 import struct
 from dataclasses import dataclass, field
+from typing import Any, Callable, Sequence
 
 import numpy as np
-from crc32c import crc32c
 
+from .attributes import Attribute, attributes_of, text_of
+from .checksum import crc32c
 from .errors import MalformedError, TooNewError, needs, require
+from .types import Floats, Take
 
 MAGIC = b"\x89SPM\r\n\x1a\n"
 UNKNOWN = 2**64 - 1
@@ -32,104 +35,17 @@ KINDS = {
 }
 CODES = {name: code for code, (name, _, _) in KINDS.items()}
 PART_BITS, NUMBER_BITS = 22, 40
-TYPES = ("u1", "i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f4", "<f8")
 
 
-@dataclass
-class Attribute:
-    """What each point carries beside its coordinates.
-
-    `dtype` is that of the stored numbers; `scale` is a pair (scale, offset): value = stored * scale + offset;
-    `unknown` holds the bytes of the stored number that stands for an unknown value.
-    """
-
-    name: str
-    dtype: np.dtype
-    components: int = 1
-    unit: str = ""
-    las_name: str = ""
-    scale: tuple[float, float] | None = None
-    unknown: bytes | None = None
-
-    def __post_init__(self):
-        self.dtype = np.dtype(self.dtype).newbyteorder("<")
-
-    @property
-    def field(self) -> tuple:
-        """Its field in the structured dtype of a row."""
-        shape = () if self.components == 1 else (self.components,)
-        return (self.name, self.dtype, *([shape] if shape else []))
-
-    def check(self) -> None:
-        require(1 <= len(self.name.encode()) <= 255, "an attribute without a name, or with one above 255 bytes")
-        for text in (self.name, self.unit, self.las_name):
-            plain = len(text.encode()) <= 255 and all(ord(c) >= 32 and not 127 <= ord(c) < 160 for c in text)
-            require(plain, f"name, unit or LAS name of attribute {self.name!r} is too long or has control characters")
-        require(1 <= self.components <= 255, f"attribute {self.name!r} has {self.components} components")
-        if self.scale is not None:
-            scale, offset = self.scale
-            valid = math.isfinite(scale) and math.isfinite(offset) and scale != 0
-            require(valid, f"attribute {self.name!r} has the scale {scale} and the offset {offset}")
-
-    def is_weight(self) -> bool:
-        """Whether it can hold the weights of points."""
-        plain = self.components == 1 and self.scale is None and self.unknown is None
-        return self.name == "weight" and self.dtype == np.dtype("<f8") and plain
-
-    def encode(self) -> bytes:
-        code = [np.dtype(t) for t in TYPES].index(self.dtype) + 1
-        flags = (self.scale is not None) | (self.unknown is not None) << 1
-        texts = [text.encode() for text in (self.name, self.unit, self.las_name)]
-        data = bytes([code, self.components, flags]) + b"".join(bytes([len(t)]) + t for t in texts)
-        return data + (struct.pack("<2d", *self.scale) if self.scale is not None else b"") + (self.unknown or b"")
-
-    def values(self, stored: np.ndarray) -> np.ma.MaskedArray:
-        """The values of stored numbers, as float64 if there is a scale; unknown ones are masked."""
-        stored = np.asarray(stored)
-        mask = np.zeros(stored.shape, bool)
-        if self.unknown is not None:
-            plain = np.ascontiguousarray(stored, self.dtype)
-            raw = plain.view(f"V{self.dtype.itemsize}")
-            mask = (raw == np.frombuffer(self.unknown, raw.dtype)[0]).reshape(stored.shape)
-        if self.scale is not None:
-            scale, offset = self.scale
-            stored = stored.astype(float) * scale + offset
-        return np.ma.MaskedArray(stored, mask)
-
-
-def _attributes(data: bytes) -> list[Attribute]:
-    require(data, 'header record "attr": no attribute is listed')
-    at, found = 0, []
-
-    def take(size):
-        nonlocal at
-        require(at + size <= len(data), 'header record "attr": it ends within an attribute')
-        at += size
-        return data[at - size : at]
-
-    while at < len(data):
-        code, components, flags = take(3)
-        require(1 <= code <= 10, f"type {code} of an attribute, expected 1 to 10")
-        require(flags < 4, f"flags {flags} of an attribute, of which all bits but 0 and 1 must be 0")
-        require(components, "an attribute without components")
-        texts = [_text(take(take(1)[0]), "a text") for _ in range(3)]
-        scale = struct.unpack("<2d", take(16)) if flags & 1 else None
-        dtype = np.dtype(TYPES[code - 1])
-        unknown = take(dtype.itemsize) if flags & 2 else None
-        found.append(Attribute(texts[0], dtype, components, texts[1], texts[2], scale, unknown))
-    return found
-
-
-def _text(data: bytes, what: str) -> str:
-    try:
-        return data.decode()
-    except UnicodeDecodeError:
-        raise MalformedError(f"{what} is not UTF-8") from None
+def _packed(values: Sequence[float]) -> bytes:
+    return struct.pack(f"<{len(values)}d", *values)
 
 
 @dataclass
 class Tree:
-    """The finalization tree: `depth` levels over the cube from `origin` with this `side`, in stored coordinates."""
+    """The finalization tree: `depth` levels over the cube from `origin` with this `side`, in stored
+    coordinates.
+    """
 
     depth: int
     origin: tuple[float, ...]
@@ -145,16 +61,17 @@ class Tree:
             require(math.isfinite(steps) and steps.is_integer() and steps * unit == origin, wrong)
             require(abs(steps) + 2.0**31 < 2.0**53 and origin + self.side < math.inf, wrong)
 
-    def contains(self, low, high) -> bool:
+    def contains(self, low: Sequence[float], high: Sequence[float]) -> bool:
         return all(o <= a and b < o + self.side for o, a, b in zip(self.origin, low, high))
 
 
 @dataclass
 class Header:
-    """What a stream states about itself. Coordinates of boxes, tree and region are stored ones.
+    """What a stream states about itself. Coordinates of boxes, tree and region are stored ones, but those of
+    `bounds`.
 
-    Without `scale` and `offset` (three numbers each), stored coordinates are float64 of the world; with them they
-    are int32 and world = stored * scale + offset.
+    Without `scale` and `offset` (three numbers each), stored coordinates are float64 of the world; with them
+    they are int32 and world = stored * scale + offset.
     """
 
     kind: str = "points"
@@ -162,7 +79,7 @@ class Header:
     has_elevation: bool = False
     scale: tuple[float, ...] | None = None
     offset: tuple[float, ...] | None = None
-    bounds: tuple[float, ...] | None = None
+    stored_bounds: tuple[float, ...] | None = None
     points: int | None = None
     tree: Tree | None = None
     region: tuple[float, ...] | None = None
@@ -185,12 +102,12 @@ class Header:
         return self.dims + self.has_elevation
 
     @property
-    def dtype(self) -> np.dtype:
+    def dtype(self) -> np.dtype[Any]:
         """The type of stored coordinates."""
         return np.dtype("<f8" if self.scale is None else "<i4")
 
     @property
-    def row_dtype(self) -> np.dtype:
+    def row_dtype(self) -> np.dtype[Any]:
         """The structured type of a row of attributes."""
         return np.dtype([attribute.field for attribute in self.attributes])
 
@@ -209,23 +126,49 @@ class Header:
         """Whether the stream is a mesh in patches."""
         return self.kind.endswith("mesh") and not self.is_residual
 
-    def world(self, stored: np.ndarray) -> np.ndarray:
+    @property
+    def bounds(self) -> tuple[float, ...] | None:
+        """The box of all points in the world, as (x0, y0, z0, x1, y1, z1); None if it is not stated.
+
+        Without elevations, z0 and z1 are 0. `stored_bounds` has the same in stored coordinates.
+        """
+        if self.stored_bounds is None:
+            return None
+        flat = (0.0,) * (3 - self.axes)
+        sides = self.stored_bounds[:3], self.stored_bounds[3:]
+        low, high = (self.world(np.array(side[: self.axes])).tolist() for side in sides)
+        return (*low, *flat, *high, *flat)
+
+    @property
+    def crs(self) -> str | None:
+        """The coordinate reference system as text that pyproj takes: WKT, "EPSG:..." of GeoTIFF keys, or
+        None.
+        """
+        if self.wkt or self.geokeys is None:
+            return self.wkt or None
+        keys = np.frombuffer(self.geokeys[0][: len(self.geokeys[0]) // 8 * 8], "<u2").reshape(-1, 4)[1:]
+        stated = {int(key): int(value) for key, place, _, value in keys if place == 0 and 1024 <= value < 32767}
+        plane, heights = stated.get(3072, stated.get(2048)), stated.get(4096)
+        return None if plane is None else f"EPSG:{plane}" + (f"+{heights}" if heights else "")
+
+    def world(self, stored: np.ndarray) -> Floats:
         """World coordinates (n, axes) of stored points (n, axes)."""
-        if self.scale is None:
-            return np.asarray(stored, float)
+        if self.scale is None or self.offset is None:
+            return np.asarray(stored, np.float64)
         axes = np.shape(stored)[-1]
-        return np.asarray(stored, float) * self.scale[:axes] + self.offset[:axes]
+        world: Floats = np.asarray(stored, np.float64) * self.scale[:axes] + self.offset[:axes]
+        return world
 
     def stored(self, world: np.ndarray) -> np.ndarray:
         """Stored coordinates of world points (n, axes): on a grid, the nearest grid points.
 
         Raises ValueError if one does not fit the grid.
         """
-        world = np.asarray(world, float)
-        if self.scale is None:
+        world = np.asarray(world, np.float64)
+        if self.scale is None or self.offset is None:
             return np.ascontiguousarray(world, "<f8")
         axes = world.shape[-1]
-        steps = world - self.offset[:axes]
+        steps: np.ndarray = world - self.offset[:axes]
         steps /= self.scale[:axes]
         np.rint(steps, out=steps)
         if len(steps) and not (steps.min() >= -(2.0**31) and steps.max() < 2.0**31):
@@ -240,10 +183,10 @@ class Header:
         require(self.dims in (2, 3, 4) and not (self.dims == 3 and self.has_elevation), "these dimensions with an elevation")
         require(self.dims in dims, f"a {self.kind} in {self.dims} dimensions")
         require(not four or self.scale is None, f"integer coordinates in a stream of kind {self.kind}")
-        rest = self.bounds or self.region or self.chunked or self.tree
+        rest = self.stored_bounds or self.region or self.chunked or self.tree
         require(not four or not rest, f"a stream of kind {self.kind} has no box, tree or region, and is not chunked")
         require(len(self.producer.encode()) < 2**16, "the producer is longer than 2^16 - 1 bytes")
-        if self.scale is not None:
+        if self.scale is not None and self.offset is not None:
             for scale, offset in zip(self.scale, self.offset):
                 fits = scale > 0 and abs(offset) <= scale * 2.0**51 and scale * 2.0**51 < math.inf
                 require(fits, "scale is not positive, or scale and offset are too far apart")
@@ -297,12 +240,12 @@ class Header:
         require(sound.all(), f"a weight that is not finite, or above {self.weighted}")
 
     def _check_bounds(self) -> None:
-        if self.bounds is None:
+        if self.stored_bounds is None:
             return
-        low, high = self.bounds[:3], self.bounds[3:]
+        low, high = self.stored_bounds[:3], self.stored_bounds[3:]
         require(all(a <= b for a, b in zip(low, high)), "the bounding box is not ordered")
-        require(all(map(math.isfinite, self.bounds)), "the bounding box is not storable")
-        whole = all(v == int(v) and -(2**31) <= v < 2**31 for v in self.bounds)
+        require(all(map(math.isfinite, self.stored_bounds)), "the bounding box is not storable")
+        whole = all(v == int(v) and -(2**31) <= v < 2**31 for v in self.stored_bounds)
         require(self.scale is None or whole, "the bounding box is not storable")
         require(self.axes == 3 or low[2] == high[2] == 0, "the bounding box has a height, but the points have no z")
         inside = self.tree is None or self.tree.contains(low, high)
@@ -324,7 +267,7 @@ class Header:
     # --- Bytes
 
     @classmethod
-    def read(cls, take) -> "Header":
+    def read(cls, take: Take) -> "Header":
         """Reads a header; `take(n)` gives the next n bytes, fewer at the end of the input."""
         start = take(16)
         require(start, "the input is empty, expected a spmesh stream")
@@ -371,14 +314,13 @@ class Header:
             "<BBBBIQ", 1 if self.scale is None else 2, self.dims, self.has_elevation, self.chunked, 0,
             UNKNOWN if self.points is None else self.points,
         )
-        floats = lambda values: struct.pack(f"<{len(values)}d", *values)
-        tree = self.tree and floats((*self.tree.origin, self.tree.side)) + struct.pack("<I", self.tree.depth)
+        tree = self.tree and _packed((*self.tree.origin, self.tree.side)) + struct.pack("<I", self.tree.depth)
         crs = self.geokeys and b"".join(struct.pack("<I", len(part)) + part for part in self.geokeys)
         records = [
-            (b"GRID", self.scale is not None and floats((*self.scale, *self.offset))),
-            (b"BBOX", self.bounds is not None and floats(self.bounds)),
+            (b"GRID", self.scale is not None and self.offset is not None and _packed((*self.scale, *self.offset))),
+            (b"BBOX", self.stored_bounds is not None and _packed(self.stored_bounds)),
             (b"TREE", tree),
-            (b"REGN", self.region is not None and floats(self.region)),
+            (b"REGN", self.region is not None and _packed(self.region)),
             (b"cWKT", self.wkt is not None and self.wkt.encode()),
             (b"cGEO", crs),
             (b"attr", b"".join(attribute.encode() for attribute in self.attributes)),
@@ -401,7 +343,8 @@ def check_tag(tag: bytes, part: str) -> None:
 
 
 def _records(data: bytes) -> dict[bytes, bytes]:
-    records, at = {}, 0
+    records: dict[bytes, bytes] = {}
+    at = 0
     while at < len(data):
         require(at + 8 <= len(data), "bytes after the last header record")
         tag, length = data[at : at + 4], int.from_bytes(data[at + 4 : at + 8], "little")
@@ -421,18 +364,18 @@ def _floats(payload: bytes, count: int, extra: int = 0) -> tuple[float, ...]:
     return struct.unpack_from(f"<{count}d", payload)
 
 
-def _grid(header, payload):
+def _grid(header: Header, payload: bytes) -> None:
     numbers = _floats(payload, 6)
     header.scale, header.offset = numbers[:3], numbers[3:]
 
 
-def _tree(header, payload):
+def _tree(header: Header, payload: bytes) -> None:
     require(header.dims < 4, "no finalization tree in 4 dimensions")
     numbers = _floats(payload, header.dims + 1, 4)
     header.tree = Tree(int.from_bytes(payload[-4:], "little"), numbers[:-1], numbers[-1])
 
 
-def _geokeys(header, payload):
+def _geokeys(header: Header, payload: bytes) -> None:
     parts = []
     for _ in range(3):
         size = int.from_bytes(payload[:4], "little")
@@ -440,32 +383,32 @@ def _geokeys(header, payload):
         parts.append(payload[4 : 4 + size])
         payload = payload[4 + size :]
     require(not payload, "GeoKey records do not fit the CRS")
-    header.geokeys = tuple(parts)
+    header.geokeys = parts[0], parts[1], parts[2]
 
 
-def _constrained(header, payload):
+def _constrained(header: Header, payload: bytes) -> None:
     (kill,) = _floats(payload[1:], 1)
     require(payload[0] < 2, f"flags {payload[0]}, of which all bits but bit 0 must be 0")
     header.constrained = bool(payload[0]), kill
 
 
-def _part(header, payload):
+def _part(header: Header, payload: bytes) -> None:
     require(len(payload) == 12, f'header record "part" of {len(payload)} bytes, expected 12')
     header.part = struct.unpack("<QI", payload)
 
 
-def _producer(header, payload):
-    header.producer = _text(payload, "producer")
+def _producer(header: Header, payload: bytes) -> None:
+    header.producer = text_of(payload, "producer")
 
 
-_RECORDS = {
+_RECORDS: dict[bytes, Callable[[Header, bytes], None]] = {
     b"GRID": _grid,
-    b"BBOX": lambda header, payload: setattr(header, "bounds", _floats(payload, 6)),
+    b"BBOX": lambda header, payload: setattr(header, "stored_bounds", _floats(payload, 6)),
     b"TREE": _tree,
     b"REGN": lambda header, payload: setattr(header, "region", _floats(payload, 2 * header.dims)),
-    b"cWKT": lambda header, payload: setattr(header, "wkt", _text(payload, "CRS")),
+    b"cWKT": lambda header, payload: setattr(header, "wkt", text_of(payload, "CRS")),
     b"cGEO": _geokeys,
-    b"attr": lambda header, payload: setattr(header, "attributes", _attributes(payload)),
+    b"attr": lambda header, payload: setattr(header, "attributes", attributes_of(payload)),
     b"cons": _constrained,
     b"wght": lambda header, payload: setattr(header, "weighted", _floats(payload, 1)[0]),
     b"part": _part,

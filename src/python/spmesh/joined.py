@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass, replace
+from typing import Any, Mapping, TypeGuard
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from .blocks import End, Patch
 from .errors import MalformedError, TooNewError, require
 from .header import NUMBER_BITS, Header
 from .reader import Reader
+from .types import FilePath
 
 MANIFEST_MAX = 2**28
 NONE = "this is JSON, but no manifest of a mesh in parts"
@@ -19,7 +21,7 @@ FIELDS = {"format": str, "version": int, "plan": str, "bounds": (list, type(None
 PART_FIELDS = {"number": int, "file": str, "bytes": int, "vertices": int, "simplices": int}
 
 
-def is_manifest(file) -> bool:
+def is_manifest(file: object) -> TypeGuard[FilePath]:
     """Whether `file` is the path of a manifest."""
     if not isinstance(file, (str, os.PathLike)) or not os.path.isfile(file):
         return False
@@ -39,21 +41,30 @@ class Whole:
 
 
 class Join:
-    def __init__(self, path):
+    def __init__(self, path: FilePath):
         manifest = _manifest(path)
         self.folder, self.plan = os.path.dirname(os.fspath(path)), int(manifest["plan"], 16)
         self.parts, self.manifest = manifest["parts"], manifest
-        self.first, self.size, vertices = {}, {}, 0
+        self.first, self.size, vertices = dict[int, int](), dict[int, int](), 0
         for part in self.parts:
             number = part["number"]
             twice = f"part {number} of {len(self.parts)} comes twice, or is none"
             require(number < len(self.parts) and number not in self.first, twice)
             self.first[number], self.size[number] = vertices, part["vertices"]
             vertices += part["vertices"]
-        self.header, self.merged, self.done = None, 0, set()
+        self._header: Header | None = None
+        self.merged, self.done = 0, set[int]()
         # Ids of vertices that a part before has kept, and no part has finalized since.
         self.shared: set[int] = set()
-        self.stored, self.simplices, self.rows = [], [], []
+        self.stored: list[np.ndarray] = []
+        self.simplices: list[np.ndarray] = []
+        self.rows: list[np.ndarray] = []
+
+    @property
+    def header(self) -> Header:
+        """That of the joined mesh, once a part was read."""
+        assert self._header is not None, "a manifest has a part"
+        return self._header
 
     def read(self, memory: bool) -> Whole:
         for part in self.parts:
@@ -69,9 +80,9 @@ class Join:
         require(not self.shared, f"{len(self.shared)} vertices are kept for parts that do not come")
         stored, simplices = np.concatenate(self.stored), np.concatenate(self.simplices)
         header = self.header
-        if header.bounds is not None and len(stored):
+        if header.stored_bounds is not None and len(stored):
             low, high = stored.min(axis=0), stored.max(axis=0)
-            inside = (low >= header.bounds[: header.axes]).all() and (high <= header.bounds[3 : 3 + header.axes]).all()
+            inside = (low >= header.stored_bounds[: header.axes]).all() and (high <= header.stored_bounds[3 : 3 + header.axes]).all()
             require(inside, "a point lies outside of the header's bounding box")
         totals = dict(
             points=len(stored) + self.merged, cells=0, vertices=len(stored), simplices=len(simplices), merged=self.merged,
@@ -84,42 +95,42 @@ class Join:
     def _check_header(self, header: Header, number: int) -> None:
         is_it = header.part == (self.plan, number) and header.has_patches
         require(is_it, f"this is not part {number} of the plan")
-        if self.header is None:
+        if self._header is None:
             bounds = self.manifest["bounds"]
             bounds = None if bounds is None else tuple(map(float, bounds[0] + bounds[1]))
-            self.header = replace(header, part=None, points=None, tree=None, bounds=bounds)
-            self.header.check()
-        common = lambda it: (it.kind, it.scale, it.offset, it.has_elevation, it.attributes)
-        same = common(header) == common(self.header)
+            self._header = replace(header, part=None, points=None, tree=None, stored_bounds=bounds)
+            self._header.check()
+        same = _common(header) == _common(self._header)
         require(same, "its grid or its attributes are not those of the other parts")
 
-    def _part(self, reader: Reader, part: dict) -> None:
+    def _part(self, reader: Reader, part: dict[str, Any]) -> None:
         start = own = self.first[part["number"]]
-        table, kept, simplices = [np.empty(0, np.uint64)], [np.empty(0, np.uint64)], []
+        tables, kept = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
+        simplices: list[np.ndarray] = [np.empty((0, self.header.corners), np.int64)]
         for block in reader:
             if isinstance(block, End):
                 self.merged += block.totals["merged"]
             elif isinstance(block, Patch):
                 is_own = np.ones(len(block.new), bool)
                 is_own[block.origins["local"]] = False
-                ids = np.empty(len(block.new), np.uint64)
-                ids[is_own] = np.arange(own, own + is_own.sum(), dtype=np.uint64)
+                ids = np.empty(len(block.new), np.int64)
+                ids[is_own] = np.arange(own, own + is_own.sum(), dtype=np.int64)
                 ids[~is_own] = self._ids_of(block.origins["id"])
                 own += int(is_own.sum())
                 self.stored.append(block.new[is_own])
                 if block.rows is not None:
                     self.rows.append(block.rows[is_own])
-                table.append(ids)
+                tables.append(ids)
                 kept.append(block.ids[block.kept])
                 simplices.append(block.simplices_by_id)
         require(own - start == part["vertices"], f"{own - start} vertices of its own, expected {part['vertices']}")
         if not self.rows and self.header.attributes:
             self.rows.append(np.empty(0, self.header.row_dtype))
         self.stored.append(np.empty((0, self.header.axes), self.header.dtype))
-        table = np.concatenate(table)
+        table = np.concatenate(tables)
         self.shared.difference_update(table.tolist())
         self.shared.update(table[np.concatenate(kept)].tolist())
-        self.simplices += [table[np.concatenate([np.empty((0, self.header.corners), np.uint64), *simplices])]]
+        self.simplices.append(table[np.concatenate(simplices)])
         require(len(self.simplices[-1]) == part["simplices"], "another number of simplices than the manifest states")
         self.done.add(part["number"])
 
@@ -130,14 +141,19 @@ class Join:
             require(part in self.done and number < self.size[part], "a vertex of no part before this one")
             ids.append(self.first[part] + number)
         require(self.shared.issuperset(ids), "a vertex that no part before this one has kept")
-        return np.array(ids, np.uint64)
+        return np.array(ids, np.int64)
 
 
-def _manifest(path) -> dict:
+def _common(header: Header) -> tuple[object, ...]:
+    """What all parts have in common."""
+    return header.kind, header.scale, header.offset, header.has_elevation, header.attributes
+
+
+def _manifest(path: FilePath) -> dict[str, Any]:
     require(os.path.getsize(path) <= MANIFEST_MAX, f"a manifest of more than {MANIFEST_MAX} bytes")
     with open(path, "rb") as file:
         try:
-            found = json.load(file)
+            found: Any = json.load(file)
         except ValueError:
             raise MalformedError(NONE) from None
     if found.get("version") != 1:
@@ -152,10 +168,10 @@ def _manifest(path) -> dict:
         sides = [side for side in found["bounds"] if isinstance(side, list) and len(side) == 3]
         numbers = all(type(x) in (int, float) for side in sides for x in side)
         require(len(sides) == len(found["bounds"]) == 2 and numbers, NONE)
-    return found
+    return dict(found)
 
 
-def _check_fields(found, fields) -> None:
+def _check_fields(found: Any, fields: Mapping[str, Any]) -> None:
     require(isinstance(found, dict) and set(found) == set(fields), NONE)
     for name, types in fields.items():
         value = found[name]

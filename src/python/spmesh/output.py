@@ -6,9 +6,12 @@ import os
 import stat
 import tempfile
 import weakref
+from typing import BinaryIO
+
+from .types import Buffer, FilePath
 
 
-def _discard(file, name: str) -> None:
+def _discard(file: BinaryIO, name: str) -> None:
     file.close()
     if os.path.exists(name):
         os.unlink(name)
@@ -20,18 +23,23 @@ class OutputFile:
     A symbolic link stays: its target is replaced. What is no regular file, such as a pipe, is written in place.
     """
 
-    def __init__(self, path: str | os.PathLike):
+    def __init__(self, path: FilePath):
         self._path = os.path.realpath(path)
         self._permissions = _permissions_at(self._path)
+        self._file: BinaryIO
+        self._name: str | None = None
         if self._permissions is None:
-            self._file, self._name = open(self._path, "wb"), None
+            self._file = open(self._path, "wb")
             return
         number, self._name = tempfile.mkstemp(prefix=".spmesh-", dir=os.path.dirname(self._path))
         self._file = os.fdopen(number, "wb")
         self._finalizer = weakref.finalize(self, _discard, self._file, self._name)
 
-    def write(self, data) -> int:
+    def write(self, data: Buffer) -> int:
         return self._file.write(data)
+
+    def fileno(self) -> int:
+        return self._file.fileno()
 
     def flush(self) -> None:
         self._file.flush()
@@ -41,7 +49,7 @@ class OutputFile:
         if self._file.closed:
             return
         self._file.flush()
-        if self._name is not None:
+        if self._name is not None and self._permissions is not None:
             os.fchmod(self._file.fileno(), self._permissions)
             os.fsync(self._file.fileno())
             os.replace(self._name, self._path)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Iterable, Sequence
+
 import numpy as np
 
 from .blocks import ORIGIN, Patch
@@ -16,14 +18,14 @@ def shared_of(tag: bytes, payload: bytes) -> np.ndarray:
     return np.frombuffer(payload, dtype)
 
 
-def origins_of(origins) -> np.ndarray:
+def origins_of(origins: Iterable[Sequence[int]]) -> np.ndarray:
     """Pairs of local index and global id as an array."""
     return np.array([tuple(origin) for origin in origins], ORIGIN)
 
 
 def check_shared(header: Header, patch: Patch) -> None:
     """Checks what a patch of a part says about vertices of other parts."""
-    if len(patch.origins):
+    if len(patch.origins) and header.part is not None:
         local = patch.origins["local"].astype(np.int64)
         increasing = (np.diff(local) > 0).all() and local[-1] < len(patch.new)
         require(increasing, "vertices of other parts are not increasing numbers of new vertices")

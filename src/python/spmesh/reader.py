@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import os
 import struct
-from typing import BinaryIO, Iterator
+from typing import BinaryIO, Callable, Iterator
 
 import numpy as np
-from crc32c import crc32c
 
 from . import blocks as b
+from .checksum import crc32c
 from .compression import decompress
 from .constraints import Constraints, sides_of
-from .errors import SpmeshError, needs, require, upstream_error
+from .errors import MalformedError, SpmeshError, needs, require, upstream_error
 from .header import CODES, KINDS, NUMBER_BITS, UNKNOWN, Header, check_tag
 from .parts import check_shared, shared_of
 from .regions import Regions, region_of
 from .rules import Chunks, FinalCells, LiveVertices
+from .splines_reader import Splines, records_of
+from .types import Buffer, File
 
-KNOTS_OF = (("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4))
 UNKNOWN_VALUE = np.uint64(0x7FF8000000000000)
 
 
@@ -30,9 +31,9 @@ class Reader:
     Memory: one block, and with `memory` live vertices and final cells.
     """
 
-    def __init__(self, file: BinaryIO | str | os.PathLike, memory: bool = True):
+    def __init__(self, file: File, memory: bool = True):
         self._own = isinstance(file, (str, os.PathLike))
-        self._file = open(file, "rb") if self._own else file
+        self._file: BinaryIO = open(file, "rb") if isinstance(file, (str, os.PathLike)) else file
         self.place, self._offset, self._number, self._tail = "header at byte 0", 0, 0, b""
         try:
             self.header = Header.read(self._read)
@@ -45,14 +46,14 @@ class Reader:
         self.totals = dict.fromkeys(b.TOTALS, 0)
         self._finalized = self._named = self._labels = 0
         self._cells = FinalCells(header.tree) if header.tree and memory else None
-        self._chunks = Chunks(header.tree) if header.chunked else None
+        self._chunks = Chunks(header.tree) if header.tree and header.chunked else None
         self._live = LiveVertices(header) if memory and header.has_patches else None
-        self._words, self._neighbour, self._last = np.empty(0, "<u4"), -1, None
-        self._degree = self._group = self._boundary = self._function = None
-        self._has_pairs = False
+        self._words: np.ndarray = np.empty(0, "<u4")
+        self._neighbour, self._last = -1, np.empty((0, 4))
+        self._splines = Splines(header.kind, self.totals)
         self._point_size = header.axes * header.dtype.itemsize
         # What blocks before the next patch say about it, by their tags.
-        self._constraints, self._more = Constraints(header), {}
+        self._constraints, self._more = Constraints(header), dict[bytes, np.ndarray]()
         self._regions = Regions() if header.kind == "points in regions" else None
         self._row = header.row_dtype if header.attributes else None
 
@@ -64,10 +65,10 @@ class Reader:
     def __enter__(self) -> "Reader":
         return self
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
-    def __iter__(self) -> Iterator:
+    def __iter__(self) -> Iterator[b.Block]:
         while (block := self.next_block()) is not None:
             yield block
 
@@ -89,7 +90,7 @@ class Reader:
         require(len(data) == size, f"truncated: found {len(data)} of {size} bytes, without END")
         return data
 
-    def next_block(self):
+    def next_block(self) -> b.Block | None:
         """The next block; None after End."""
         if self._ended:
             return None
@@ -101,7 +102,7 @@ class Reader:
             place = self.place
             block = self._decode(tag, payload)
             points = self._points_of(block)
-            if self._row is not None and points:
+            if isinstance(block, (b.Points, b.ResidualPoints, b.Patch)) and self._row is not None and points:
                 tag, payload = self._known_block(True)
                 size = points * self._row.itemsize
                 require(len(payload) == size, f"{len(payload)} bytes of attributes, expected {size}")
@@ -114,7 +115,7 @@ class Reader:
             raise self._failure_of(error) from None
 
     @staticmethod
-    def _points_of(block) -> int:
+    def _points_of(block: b.Block) -> int:
         if isinstance(block, (b.Points, b.ResidualPoints)):
             return len(block.xyz)
         return len(block.new) if isinstance(block, b.Patch) else 0
@@ -155,16 +156,16 @@ class Reader:
             payload = decompress(payload)
         return tag, payload
 
-    def _decode(self, tag: bytes, payload: bytes):
+    def _decode(self, tag: bytes, payload: bytes) -> b.Block:
         return _DECODERS[tag](self, payload)
 
     # --- Points and cells
 
-    def _xyz(self, payload) -> np.ndarray:
+    def _xyz(self, payload: Buffer) -> np.ndarray:
         header = self.header
         require(len(payload) % self._point_size == 0, "not a whole number of points")
         xyz = np.frombuffer(payload, header.dtype).reshape(-1, header.axes)
-        self._box = None
+        self._box: tuple[list[float], list[float]] | None = None
         if not len(xyz):
             return xyz
         low, high = [list(map(float, side)) for side in (xyz.min(axis=0), xyz.max(axis=0))]
@@ -172,8 +173,8 @@ class Reader:
         require(np.isfinite(low + high).all(), "a coordinate is not finite")
         self._box = low, high
         box = [*low, *[0.0] * (3 - header.axes)], [*high, *[0.0] * (3 - header.axes)]
-        if header.bounds is not None:
-            inside = all(a <= c and d <= e for a, c, d, e in zip(header.bounds, *box, header.bounds[3:]))
+        if header.stored_bounds is not None:
+            inside = all(a <= c and d <= e for a, c, d, e in zip(header.stored_bounds, *box, header.stored_bounds[3:]))
             require(inside, "a point lies outside of the header's bounding box")
         if header.tree:
             require(header.tree.contains(low, high), "a point lies outside of the finalization tree")
@@ -183,7 +184,7 @@ class Reader:
             require(inside, "a point lies outside of the region")
         return xyz
 
-    def _points(self, payload):
+    def _points(self, payload: bytes) -> b.Points:
         xyz = self._xyz(payload)
         if self._cells:
             self._cells.check(xyz, *(self._box or ((), ())))
@@ -195,15 +196,17 @@ class Reader:
             self.totals["points"] += len(xyz)
         return b.Points(xyz)
 
-    def _region(self, payload):
+    def _region(self, payload: bytes) -> b.Region:
         region = region_of(payload)
+        assert self._regions, "only this kind has these blocks"
         self._regions.region(region)
         self.totals["points"] = self._regions.total
         return region
 
-    def _tags(self, payload):
-        require(self.header.tree, "cell tag in a stream without a finalization tree")
-        codes = _records(payload, "<u8")
+    def _tags(self, payload: bytes) -> b.Cells:
+        if self.header.tree is None:
+            raise MalformedError("cell tag in a stream without a finalization tree")
+        codes = records_of(payload, "<u8")
         levels = FinalCells(self.header.tree)
         for code in codes.tolist():
             if self._cells:
@@ -217,7 +220,7 @@ class Reader:
 
     # --- Meshes
 
-    def _patch(self, payload):
+    def _patch(self, payload: bytes) -> b.Patch:
         require(len(payload) >= 24, f"patch of {len(payload)} bytes, expected at least 24")
         first, n, m, s, f = struct.unpack_from("<QIIII", payload)
         corners = self.header.corners
@@ -249,19 +252,19 @@ class Reader:
         self._finalized += f
         return patch
 
-    def _label(self, payload):
-        labels = _records(payload, "<u8")
+    def _label(self, payload: bytes) -> b.Labels:
+        labels = records_of(payload, "<u8")
         self._labels += len(labels)
         require(self._labels <= self.totals["vertices"], f"{self._labels} labels after {self.totals['vertices']} vertices")
         return b.Labels(labels)
 
-    def _residual(self, payload):
+    def _residual(self, payload: bytes) -> b.ResidualPoints:
         header = self.header
-        records = _records(payload, np.dtype([("id", "<u8"), ("xyz", header.dtype, (header.axes,))]))
+        records = records_of(payload, np.dtype([("id", "<u8"), ("xyz", header.dtype, (header.axes,))]))
         ids = np.ascontiguousarray(records["id"])
         xyz = self._xyz(np.ascontiguousarray(records["xyz"]).tobytes())
         named = ids[ids != np.uint64(b.NOT_A_VERTEX)]
-        if header.is_residual:
+        if header.part is not None and header.is_residual:
             known = (named >> np.uint64(NUMBER_BITS)) <= header.part[1]
         else:
             known = named < self.totals["vertices"]
@@ -273,9 +276,9 @@ class Reader:
         self.totals["residual"] += len(ids)
         return points
 
-    def _walls(self, payload):
+    def _walls(self, payload: bytes) -> b.Walls:
         dims = self.header.dims
-        walls = _records(payload, np.dtype(("<u4", (dims,)))).reshape(-1, dims)
+        walls = records_of(payload, np.dtype(("<u4", (dims,)))).reshape(-1, dims)
         require(not len(walls) or walls.max() < self.totals["residual"], "wall between no residual points")
         ordered = np.sort(walls, axis=1)
         require((ordered[:, 1:] != ordered[:, :-1]).all(), "wall with a corner twice")
@@ -284,17 +287,17 @@ class Reader:
 
     # --- Four dimensions
 
-    def _points4(self, payload):
+    def _points4(self, payload: bytes) -> b.Points4:
         header = self.header
-        records = _records(payload, np.dtype(("<f8", (header.axes,)))).reshape(-1, header.axes)
+        records = records_of(payload, np.dtype(("<f8", (header.axes,)))).reshape(-1, header.axes)
         xyzt, values = records[:, :4], records[:, 4] if header.has_elevation else None
         require(np.isfinite(xyzt).all(), "coordinate is not finite")
         if values is not None:
             known = np.isfinite(values) | (np.ascontiguousarray(values).view("<u8") == UNKNOWN_VALUE)
             require(known.all(), "value is neither finite nor the NaN of what is not known")
         if header.kind == "cells in 4 dimensions" and len(xyzt):
-            before = xyzt[:-1] if self._last is None else np.vstack([self._last, xyzt[:-1]])
-            after = xyzt[1:] if self._last is None else xyzt
+            before = np.vstack([self._last, xyzt[:-1]])
+            after = xyzt[1 - len(self._last) :]
             less, equal = np.zeros(len(after), bool), np.ones(len(after), bool)
             for axis in range(4):
                 less |= equal & (before[:, axis] < after[:, axis])
@@ -304,9 +307,10 @@ class Reader:
         self.totals["points" if header.kind == "points in 4 dimensions" else "vertices"] += len(xyzt)
         return b.Points4(xyzt, values)
 
-    def _cells4(self, payload):
-        words = np.concatenate([self._words, _records(payload, "<u4")])
-        points, at, found = self.totals["vertices"], 0, ([], [], [])
+    def _cells4(self, payload: bytes) -> b.Cells4:
+        words = np.concatenate([self._words, records_of(payload, "<u4")])
+        points, at = self.totals["vertices"], 0
+        marks, corner_lists, neighbour_lists = list[bool](), list[np.ndarray](), list[np.ndarray]()
         while at < len(words):
             infinite, vertices = int(words[at]) >> 31, int(words[at]) & 0x7FFFFFFF
             require(vertices >= 5 - infinite, f"a cell of {vertices} vertices, expected at least {5 - infinite}")
@@ -323,109 +327,25 @@ class Reader:
             require(_increases(of) and of[-1] < points, "the vertices of a cell are not increasing numbers of points")
             require(_increases(beside), "the neighbours of a cell are not increasing")
             self._neighbour = max(self._neighbour, int(beside[-1]) if len(beside) else -1)
-            for list_, item in zip(found, (bool(infinite), of, beside)):
-                list_.append(item)
+            marks.append(bool(infinite))
+            corner_lists.append(of)
+            neighbour_lists.append(beside)
             at = end
         self._words = words[at:].copy()
-        self.totals["simplices"] += len(found[0])
-        return b.Cells4(np.array(found[0], bool), found[1], found[2])
+        self.totals["simplices"] += len(marks)
+        return b.Cells4(np.array(marks, bool), corner_lists, neighbour_lists)
 
-    def _simplices4(self, payload):
-        corners = _records(payload, np.dtype(("<u4", (5,)))).reshape(-1, 5)
+    def _simplices4(self, payload: bytes) -> b.Simplices4:
+        corners = records_of(payload, np.dtype(("<u4", (5,)))).reshape(-1, 5)
         require(not len(corners) or corners.max() < self.totals["vertices"], "simplex of no points")
         ordered = np.sort(corners, axis=1)
         require((ordered[:, 1:] != ordered[:, :-1]).all(), "simplex uses a vertex twice")
         self.totals["simplices"] += len(corners)
         return b.Simplices4(corners)
 
-    # --- Configurations and splines
-
-    def _configurations(self, payload):
-        require(len(payload) >= 12, f"configurations in {len(payload)} bytes")
-        degree, standing, groups = struct.unpack_from("<3I", payload)
-        require(degree <= 4096 and standing < 3, f"configurations of degree {degree} and standing {standing}")
-        start = 12 + groups * (degree + 1) * 4
-        require(start <= len(payload), "the counts of the configurations do not add up")
-        interiors = np.frombuffer(payload, "<u4", groups * degree, 12).reshape(groups, degree)
-        counts = np.frombuffer(payload, "<u4", groups, 12 + groups * degree * 4)
-        require(start + int(counts.sum(dtype=np.uint64)) * 12 == len(payload), "the counts of the configurations do not add up")
-        boundaries = np.frombuffer(payload, "<u4", -1, start).reshape(-1, 3)
-        self._start_degree(degree, standing)
-        at = 0
-        for number, (interior, count) in enumerate(zip(interiors.tolist(), counts.tolist())):
-            self._start_group(tuple(interior), number == 0)
-            require(count > 0, "an interior set has no configuration")
-            for boundary in boundaries[at : at + count].tolist():
-                self._configuration(interior, tuple(boundary))
-            at += count
-        self.totals["simplices"] += len(boundaries)
-        return b.Configurations(degree, standing, interiors, counts, boundaries)
-
-    def _start_degree(self, degree, standing):
-        if self._degree:
-            last, known = self._degree
-            require(degree >= last, f"configurations of degree {degree} after those of {last}")
-            require(degree == last or self.header.kind != "splines", "splines have one degree")
-            require(degree > last or standing == known, f"the configurations of degree {degree} change their standing")
-        self._has_pairs |= degree == 1
-        if self._degree != (degree, standing):
-            self._degree, self._group = (degree, standing), None
-
-    def _start_group(self, interior, is_first):
-        if is_first and interior == self._group:
-            return
-        require(self._group is None or interior > self._group, "interior sets do not follow each other")
-        increasing = all(x < y for x, y in zip(interior, interior[1:]))
-        knots = self.totals["points"]
-        require(increasing and all(knot < knots for knot in interior), "an interior set is not of increasing knots")
-        self._group, self._boundary = interior, None
-
-    def _configuration(self, interior, boundary):
-        knots, infinite = self.totals["points"], boundary[2] == b.FARAWAY
-        ends = boundary[:2] if infinite else boundary
-        require(all(knot < knots and knot != b.FARAWAY for knot in ends), "a boundary is not of numbers of knots")
-        require(len(set(boundary)) == 3, "a boundary repeats a knot")
-        require(infinite or boundary[0] == min(boundary), "a boundary does not have its least knot first")
-        require(not set(ends) & set(interior), "a boundary has a knot of its interior set")
-        if self._boundary:
-            was = self._boundary[2] == b.FARAWAY
-            follows = infinite > was or infinite == was and (not interior or self._boundary < boundary)
-            require(follows, "a boundary does not follow the one before it in its group")
-        self._boundary = boundary
-
-    def _functions(self, payload):
-        require(self._has_pairs or not payload, "functions in a stream without configurations of degree 1")
-        at, found, knots = 0, [], self.totals["points"]
-        while at < len(payload):
-            require(at + 8 <= len(payload), "a function is cut off")
-            code, count = struct.unpack_from("<2I", payload, at)
-            require(code < len(KNOTS_OF), f"a function of kind {code}")
-            name, corners = KNOTS_OF[code]
-            end = at + 8 + 4 * corners + 16 * count
-            require(end <= len(payload), "a function is cut off")
-            kind = struct.unpack_from(f"<{corners}I", payload, at + 8)
-            terms = list(struct.iter_unpack("<2Id", payload[at + 8 + 4 * corners : end]))
-            require(max(kind) < knots and len(set(kind)) == corners, "a function of unknown or repeated knots")
-            require(self._function is None or self._function < (code, kind), "functions do not follow each other")
-            require(terms, "a function has no term")
-            pairs = [term[:2] for term in terms]
-            require(all(p < q < knots for p, q in pairs), "a term of no increasing numbers of knots")
-            require(all(np.isfinite(x) and x != 0 for _, _, x in terms), "a factor is not finite, or zero")
-            require(all(x < y for x, y in zip(pairs, pairs[1:])), "terms do not follow each other")
-            self._function, at = (code, kind), end
-            found.append(b.Function(name, kind, terms))
-        self.totals["vertices"] += len(found)
-        return b.Functions(found)
-
-    def _coefficients(self, payload):
-        values = _records(payload, "<f8")
-        require(np.isfinite(values).all(), "a coefficient is not finite")
-        self.totals["residual"] += len(values)
-        return b.Coefficients(values)
-
     # --- END
 
-    def _end(self, payload):
+    def _end(self, payload: bytes) -> b.End:
         require(len(payload) == 56, f"END of {len(payload)} bytes, expected 56")
         stated = dict(zip(b.TOTALS, struct.unpack("<7Q", payload)))
         require(max(stated.values()) < UNKNOWN, "END: a total is beyond counting")
@@ -442,7 +362,7 @@ class Reader:
         if header.kind == "splines":
             functions, coefficients = counted["vertices"], counted["residual"]
             require(coefficients > 0 and functions in (0, coefficients), "END: one coefficient per function is needed")
-            require(self._degree is not None, "END: a spline without configurations")
+            require(self._splines.degree is not None, "END: a spline without configurations")
         require(not len(self._words), "END: the last cell is cut off")
         for name in b.TOTALS:
             require(stated[name] == counted[name], f"END states {stated[name]} {name}, but the stream holds {counted[name]}")
@@ -461,13 +381,7 @@ def _increases(values: np.ndarray) -> bool:
     return bool((values[1:] > values[:-1]).all())
 
 
-def _records(payload: bytes, dtype) -> np.ndarray:
-    dtype = np.dtype(dtype)
-    require(len(payload) % dtype.itemsize == 0, f"{len(payload)} bytes are not a whole number of records")
-    return np.frombuffer(payload, dtype)
-
-
-_DECODERS = {
+_DECODERS: dict[bytes, Callable[[Reader, bytes], b.Block]] = {
     b"PNTS": Reader._points,
     b"CELL": Reader._tags,
     b"REGN": Reader._region,
@@ -480,8 +394,8 @@ _DECODERS = {
     b"PNT4": Reader._points4,
     b"CEL4": Reader._cells4,
     b"SIM4": Reader._simplices4,
-    b"CONF": Reader._configurations,
-    b"FUNC": Reader._functions,
-    b"COEF": Reader._coefficients,
+    b"CONF": lambda reader, payload: reader._splines.configurations(payload),
+    b"FUNC": lambda reader, payload: reader._splines.functions(payload),
+    b"COEF": lambda reader, payload: reader._splines.coefficients(payload),
     b"END ": Reader._end,
 }

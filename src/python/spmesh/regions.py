@@ -11,7 +11,7 @@ LAYOUT = struct.Struct("<6d4Q")
 POINTS_MAX = 2**64 - 2
 
 
-def region_of(payload) -> Region:
+def region_of(payload: bytes) -> Region:
     require(len(payload) == LAYOUT.size, f"region of {len(payload)} bytes, expected {LAYOUT.size}")
     *bounds, own, first, again, last = LAYOUT.unpack(payload)
     return Region(tuple(bounds), own, first, again, last)
@@ -24,7 +24,7 @@ def payload_of(region: Region) -> bytes:
 class Regions:
     """Counts the points of regions. `total` counts each point once, `shared` those that a later region must have."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.number = self._stated = self._found = self.shared = self.total = 0
 
     def region(self, region: Region) -> None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Sequence
+
 import numpy as np
 
 from .blocks import NOT_A_VERTEX, Patch, ResidualPoints
-from .errors import require
+from .errors import MalformedError, require
 from .header import Header, Tree
+
+Point = Sequence[float]
 
 
 def codes_of(tree: Tree, level: int, xyz: np.ndarray) -> np.ndarray:
@@ -25,7 +29,7 @@ def codes_of(tree: Tree, level: int, xyz: np.ndarray) -> np.ndarray:
     return code
 
 
-def code_of(tree: Tree, level: int, point) -> int:
+def code_of(tree: Tree, level: int, point: Point) -> int:
     """As `codes_of`, of one point."""
     dims = len(tree.origin)
     low, side, code = list(tree.origin), tree.side, 1
@@ -63,7 +67,8 @@ class FinalCells:
 
     def tag(self, code: int) -> None:
         level = self.level(code)
-        require(level is not None, f"location code {code} is not a cell of the tree")
+        if level is None:
+            raise MalformedError(f"location code {code} is not a cell of the tree")
         require(not self.is_final(code), f"cell {code} is final already")
         self.deepest = max(self.deepest, level)
         above = code
@@ -80,7 +85,7 @@ class FinalCells:
             code >>= self.dims
             self.final.add(code)
 
-    def check(self, xyz: np.ndarray, low, high) -> None:
+    def check(self, xyz: np.ndarray, low: Point, high: Point) -> None:
         """Checks that no point lies in a final cell; `low` and `high` are the corners of their box."""
         if not self.final or not len(xyz):
             return
@@ -98,9 +103,10 @@ class Chunks:
     """Points between two runs of tags lie in one cell of the second run."""
 
     def __init__(self, tree: Tree):
-        self.tree, self.box, self.in_tags = tree, None, False
+        self.tree, self.in_tags = tree, False
+        self.box: tuple[Point, Point] | None = None
 
-    def points(self, low, high) -> None:
+    def points(self, low: Point, high: Point) -> None:
         """Takes points with these corners of their box."""
         if self.in_tags:
             self.end()

@@ -13,22 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import spmesh
-
-ROOT = Path(__file__).resolve().parents[3]
-VECTORS = ROOT / "formats" / "vectors"
-BIN = Path(os.environ.get("SPMESH_BIN", ROOT / "target" / "debug"))
-
-
-def run(name, *arguments, data=b""):
-    """The output of a program."""
-    done = subprocess.run([BIN / name, *map(str, arguments)], input=data, capture_output=True)
-    assert done.returncode == 0, (name, done.stderr.decode())
-    return done.stdout
-
-
-def cloud(count=5000, seed=1):
-    return np.random.default_rng(seed).uniform(-500, 500, (count, 3))
-
+from support import BIN, ROOT, VECTORS, cloud, run
 
 def written(header, *steps):
     """The bytes of a stream that `steps` write."""
