@@ -7,7 +7,7 @@ use spmesh_reference::sets::{self, Random};
 use spmesh_reference::{as_set, exhaustive, incremental};
 
 fn arrays(mesh: &Triangulation) -> &Triangles {
-    mesh
+    mesh.arrays()
 }
 
 /// Triangulates the first `bulk` points, inserts the others, and compares with `expected`. Checks all arrays

@@ -3,6 +3,7 @@
 use spmesh_delaunay::Location;
 use spmesh_delaunay::delaunay2::interpolation::{Linear, NaturalNeighbours};
 use spmesh_delaunay::delaunay2::{Triangulation, triangulate};
+use spmesh_delaunay::delaunay3;
 use spmesh_reference::natural::sibson;
 use spmesh_reference::sets::{DEGENERATE_FAMILIES, Random, as_floats, degenerate, uniform};
 
@@ -199,6 +200,57 @@ fn linear_weights_are_areas() {
                 if let Some(v) = vertex {
                     assert_eq!(linear.interpolate(&values, target.map(|c| c * scale)), Some(values[v]));
                 }
+            }
+        }
+    }
+}
+
+/// In space, against volumes in integers: random sets, lattices, and flat tetrahedra, of several scales.
+#[test]
+fn linear_weights_are_volumes() {
+    let mut random = Random::new(77);
+    for round in 0..120 {
+        let side = [3, 9, 1 << 20, 1 << 20][round % 4];
+        let flatness = [1, 1, 1, 1 << 18][round % 4];
+        let scale = 2f64.powi([0, -3, 300, -340, 900, -1000][round % 6]);
+        let count = 4 + random.integer(0, 10);
+        let corner = |random: &mut Random| [1, 1, flatness].map(|by| 2 * random.integer(0, side / by));
+        let places: Vec<[i64; 3]> = (0..count).map(|_| corner(&mut random)).collect();
+        let points: Vec<[f64; 3]> = places.iter().map(|p| p.map(|c| c as f64 * scale)).collect();
+        let mesh = delaunay3::triangulate(&points).expect("finite points");
+        let mut linear = delaunay3::Linear::new(&mesh);
+        for turn in 0..20 {
+            let [a, b] = [0, 1].map(|_| places[random.integer(0, count - 1) as usize]);
+            let target = match turn % 3 {
+                0 => a,
+                1 => [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2),
+                _ => corner(&mut random).map(|c| c + 1),
+            };
+            let at = target.map(|c| c as f64 * scale);
+            let Some(weights) = linear.weights(at) else {
+                assert_eq!(mesh.locate(at), Location::Outside, "{points:?} {at:?}");
+                continue;
+            };
+            let corners = weights.map(|(vertex, _)| places[vertex as usize]);
+            let volume = |corners: [[i64; 3]; 4]| -> i128 {
+                let [a, b, c] =
+                    [1, 2, 3].map(|i| [0, 1, 2].map(|k| i128::from(corners[i][k] - corners[0][k])));
+                let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
+                a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)
+            };
+            let total = volume(corners);
+            for (corner, (vertex, weight)) in weights.into_iter().enumerate() {
+                let mut part = corners;
+                part[corner] = target;
+                let part = volume(part);
+                assert!(part >= 0 && total > 0);
+                assert_eq!(
+                    part == 0,
+                    weight == 0.0,
+                    "{points:?} {at:?} {corner} {weights:?} {part} {total} {scale}"
+                );
+                assert!((weight - part as f64 / total as f64).abs() < 1e-13, "{points:?} {at:?} {vertex}");
+                assert!(part != total || weight == 1.0);
             }
         }
     }

@@ -74,7 +74,10 @@ fn barycentric(corners: [Point3; 4], target: Point3) -> [f64; 4] {
     let total: f64 = volumes.iter().map(|[volume, _]| volume).sum();
     let magnitude: f64 = volumes.iter().map(|[_, magnitude]| magnitude).sum();
     // Written so that it fails for numbers that are none.
-    if total >= LEAST_VOLUME && 4.0 * DETERMINANT_ERROR * magnitude <= WEIGHT_ERROR * total {
+    if total >= LEAST_VOLUME
+        && magnitude < f64::INFINITY
+        && 4.0 * DETERMINANT_ERROR * magnitude <= WEIGHT_ERROR * total
+    {
         return volumes.map(|[volume, _]| volume.max(0.0) / total);
     }
     let [a, b, c, d, target] = integers([corners[0], corners[1], corners[2], corners[3], target]);

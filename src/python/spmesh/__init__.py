@@ -1,6 +1,8 @@
-"""Triangulates points, and reads and writes spmesh streams as numpy arrays.
+"""Triangulates points, interpolates, and reads and writes spmesh streams as numpy arrays.
 
     import spmesh
+
+    spmesh.Delaunay(points).find_simplex(xi)    # as scipy.spatial.Delaunay, exact; points in numpy arrays
 
     mesh = spmesh.read("terrain.spm")           # everything: mesh.xyz, mesh.simplices, mesh.attribute("intensity")
     for block in spmesh.open("terrain.spm"):    # block by block, in bounded memory
@@ -23,8 +25,10 @@ if TYPE_CHECKING:
         FARAWAY, NOT_A_VERTEX, Block, Cells, Cells4, Coefficients, Configurations, End, Function, Functions,
         Labels, OpenSegments, Patch, Points, Points4, Region, ResidualPoints, Segments, Simplices4, Walls,
     )
+    from .delaunay import Delaunay
     from .errors import MalformedError, SpmeshError, TooNewError, UpstreamError
     from .header import Header, Tree
+    from .interpolation import LinearNDInterpolator, NaturalNeighborInterpolator
     from .meshes import write_points, write_tetrahedra, write_triangles
     from .molecules import Molecule, molecule
     from .programs import ProgramError, ProgramNotFoundError
@@ -39,9 +43,9 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
-    "Attribute", "attributes_of", "Block", "Cells", "Cells4", "Coefficients", "Configurations", "End", "FARAWAY",
-    "Fit", "fit", "Function", "Functions", "Header", "Labels", "MalformedError", "Molecule", "molecule",
-    "NOT_A_VERTEX", "open", "OpenSegments", "Patch", "Points", "Points4", "ProgramError", "ProgramNotFoundError",
+    "Attribute", "attributes_of", "Block", "Cells", "Cells4", "Coefficients", "Configurations", "Delaunay", "End", "FARAWAY",
+    "Fit", "fit", "Function", "Functions", "Header", "Labels", "LinearNDInterpolator", "MalformedError", "Molecule",
+    "molecule", "NaturalNeighborInterpolator", "NOT_A_VERTEX", "open", "OpenSegments", "Patch", "Points", "Points4", "ProgramError", "ProgramNotFoundError",
     "programs", "Raster", "read", "Reader", "Region", "ResidualPoints", "Segments", "Simplices4", "SpmeshError",
     "Stream", "Tin", "tin", "TooNewError", "Tree", "UpstreamError", "Walls", "write_points", "write_tetrahedra",
     "write_triangles", "Writer",
@@ -53,8 +57,10 @@ _MODULES = {
     "attributes": "Attribute",
     "blocks": "FARAWAY NOT_A_VERTEX Block Cells Cells4 Coefficients Configurations End Function Functions "
     "Labels OpenSegments Patch Points Points4 Region ResidualPoints Segments Simplices4 Walls",
+    "delaunay": "Delaunay",
     "errors": "MalformedError SpmeshError TooNewError UpstreamError",
     "header": "Header Tree",
+    "interpolation": "LinearNDInterpolator NaturalNeighborInterpolator",
     "meshes": "write_points write_tetrahedra write_triangles",
     "molecules": "Molecule molecule",
     "programs": "ProgramError ProgramNotFoundError",

@@ -285,7 +285,7 @@ class Delaunay:
     def to_scipy(self) -> Any:
         """A `scipy.spatial.Delaunay` with these simplices, for functions of scipy that ask for one, such as
         `scipy.interpolate.CloughTocher2DInterpolator`."""
-        from scipy.spatial import Delaunay as ScipyDelaunay
+        from scipy.spatial import Delaunay as ScipyDelaunay  # type: ignore[import-untyped, unused-ignore]
 
         other = ScipyDelaunay.__new__(ScipyDelaunay)
         other._qhull = None

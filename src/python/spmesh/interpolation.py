@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .delaunay import Delaunay, Floats, Ints, points_of
+
+Points: TypeAlias = "ArrayLike | Delaunay | tuple[ArrayLike, ...]"
 
 
 def _places(arguments: tuple[Any, ...], ndim: int) -> Floats:
@@ -28,7 +30,7 @@ class _Interpolator:
 
     def __init__(
         self,
-        points: ArrayLike | Delaunay | tuple[ArrayLike, ...],
+        points: Points,
         values: ArrayLike,
         fill_value: complex = np.nan,
         rescale: bool = False,
@@ -46,8 +48,10 @@ class _Interpolator:
         else:
             if hasattr(points, "simplices"):
                 raise TypeError("points: only a spmesh.Delaunay is taken as a triangulation: pass its points")
-            columns = points if isinstance(points, tuple) else None
-            array = points_of(points if columns is None else _places(columns, len(columns)).reshape(-1, len(columns)))
+            rows: Any = points
+            if isinstance(points, tuple):
+                rows = _places(points, len(points)).reshape(-1, len(points))
+            array = points_of(rows)
             if rescale and len(array):
                 self._offset = array.mean(axis=0)
                 spread = np.ptp(array, axis=0)
@@ -148,7 +152,7 @@ class NaturalNeighborInterpolator(_Interpolator):
 
     def __init__(
         self,
-        points: ArrayLike | Delaunay | tuple[ArrayLike, ...],
+        points: Points,
         values: ArrayLike,
         fill_value: complex = np.nan,
         rescale: bool = False,

@@ -153,7 +153,7 @@ class Tins(unittest.TestCase):
         corners = np.array([[0, 0, 0], [10, 0, 0], [10, 1, 0], [0, 1.5, 0]])
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "mesh.spm")
-            for triangles, is_wrong in (([[0, 1, 2], [0, 2, 3]], True), ([[0, 1, 3], [1, 2, 3]], False)):
+            for triangles, is_wrong in (([[0, 1, 2], [0, 2, 3]], False), ([[0, 1, 3], [1, 2, 3]], True)):
                 spmesh.write_triangles(path, corners, triangles)
                 try:
                     spmesh.Tin(path).audit()
