@@ -212,7 +212,7 @@ class Delaunay:
             inverse = _inverses(edges)
             sizes = [np.abs(matrices).sum(axis=1).max(axis=1) for matrices in (edges, inverse)]
             inverse[~(sizes[0] * sizes[1] * 1000 * _EPSILON < 1)] = np.nan
-        return np.concatenate([inverse, origin[:, None]], axis=1)
+        return np.ascontiguousarray(np.concatenate([inverse, origin[:, None]], axis=1))
 
     def find_simplex(self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None) -> Ints:
         """The simplices that contain points: exactly, borders included.
@@ -271,7 +271,7 @@ class Delaunay:
             normals = np.concatenate([slopes[:, :, 0], np.full((len(edges), 1), -1.0)], axis=1)
             normals /= np.linalg.norm(normals, axis=1)[:, None]
         offsets = -np.einsum("ij,ij->i", normals, lifted[:, -1])
-        return np.concatenate([normals, offsets[:, None]], axis=1)
+        return np.ascontiguousarray(np.concatenate([normals, offsets[:, None]], axis=1))
 
     def lift_points(self, x: ArrayLike) -> Floats:
         """(..., d + 1) points of the paraboloid above points (..., d)."""
