@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Crates of the workspace that each crate of `src` may use.
-const ARROWS: [(&str, &[&str]); 14] = [
+const ARROWS: [(&str, &[&str]); 15] = [
     // What other Rust programs depend on.
     ("delaunay", &[]),
     ("base", &[]),
@@ -23,6 +23,7 @@ const ARROWS: [(&str, &[&str]); 14] = [
     ("splines", &["configurations", "view", "delaunay", "formats", "shell", "stream", "base"]),
     ("view", &["configurations", "delaunay", "formats", "shell", "stream", "base"]),
     ("convert", &["formats", "shell", "stream", "base"]),
+    ("python", &["delaunay"]),
 ];
 
 /// Packages that only the shell and command lines may use, which are behind the feature `flags`.

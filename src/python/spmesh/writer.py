@@ -29,7 +29,8 @@ class Writer:
             writer.points(xyz)
 
     Leaving the block normally writes END, and gives a file its name; leaving it by an exception does neither, so that
-    what was written is never taken for a whole stream, and a file that was there before stays. Values that break a rule raise ValueError; whole meshes are not checked (`spinfo --audit` is).
+    what was written is never taken for a whole stream, and a file that was there before stays. Values that
+    break a rule raise ValueError; whole meshes are not checked (`spinfo --audit` is).
     """
 
     def __init__(self, file: File, header: Header):
@@ -137,7 +138,8 @@ class Writer:
     ) -> None:
         """New vertices (n, axes), ids (m,) of imported ones, simplices (s, corners) and finalized vertices as local
         indices, which count the new vertices first. Of a constrained mesh also `sides` (n, 3): triangle, the corner
-        opposite to the side, segment. Of a part of a mesh also `origins`, pairs of the local index of a new vertex that other
+        opposite to the side, segment. Of a part of a mesh also `origins`, pairs of the local index of a new vertex
+        that other
         parts have and its global id, and `kept`, finalized local indices that later parts may use."""
         points = self._stored(np.asarray(new).reshape(-1, self.header.axes), stored)
         imported = np.ascontiguousarray(imported, "<u8")

@@ -40,6 +40,16 @@ class Types(unittest.TestCase):
         done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
         self.assertEqual(done.stdout.strip(), "[]")
 
+    def test_the_reference_is_that_of_the_docstrings(self):
+        root = HERE.parents[2]
+        environment = {**os.environ, "PYTHONPATH": str(PACKAGE.parent)}
+        done = subprocess.run(
+            [sys.executable, root / "scripts" / "python_docs.py"], capture_output=True, text=True, env=environment, check=True
+        )
+        # Signatures are printed in the manner of this version.
+        if sys.version_info[:2] == (3, 11):
+            self.assertEqual(done.stdout, (root / "docs" / "python.md").read_text(), "run scripts/python_docs.py")
+
     def test_all_names_are_there(self):
         for name in spmesh.__all__:
             self.assertIs(getattr(spmesh, name), getattr(spmesh, name))
