@@ -23,7 +23,7 @@ const ARROWS: [(&str, &[&str]); 15] = [
     ("splines", &["configurations", "view", "delaunay", "formats", "shell", "stream", "base"]),
     ("view", &["configurations", "delaunay", "formats", "shell", "stream", "base"]),
     ("convert", &["formats", "shell", "stream", "base"]),
-    ("python", &["delaunay"]),
+    ("python", &["delaunay", "stream"]),
 ];
 
 /// Packages that only the shell and command lines may use, which are behind the feature `flags`.

@@ -99,6 +99,7 @@ mod writer;
 
 pub use ascending::{Ascending, Place};
 pub use cell_words::check_word_count;
+pub use compression::Decompressor;
 #[cfg(feature = "zstd")]
 pub use compression::zstd_frame;
 pub use configuration_set::{Collector, ConfigurationSet};

@@ -3,6 +3,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+class Payloads:
+    def __new__(cls) -> Payloads: ...
+    def decompress(self, compressed: bytes) -> bytes: ...
+
 class Mesh:
     def __new__(
         cls,

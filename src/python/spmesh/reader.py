@@ -10,7 +10,7 @@ import numpy as np
 
 from . import blocks as b
 from .checksum import crc32c
-from .compression import decompress
+from .compression import decompressor
 from .constraints import Constraints, sides_of
 from .errors import MalformedError, SpmeshError, needs, require, upstream_error
 from .header import CODES, KINDS, NUMBER_BITS, UNKNOWN, Header, check_tag
@@ -54,6 +54,7 @@ class Reader:
         self._point_size = header.axes * header.dtype.itemsize
         # What blocks before the next patch say about it, by their tags.
         self._constraints, self._more = Constraints(header), dict[bytes, np.ndarray]()
+        self._decompress = decompressor() if header.compressed else None
         self._regions = Regions() if header.kind == "points in regions" else None
         self._row = header.row_dtype if header.attributes else None
 
@@ -153,7 +154,8 @@ class Reader:
             require(part, f"block {tag!r} in a stream that is no part of a mesh")
         if compressed:
             require(tag != b"END ", "END is compressed")
-            payload = decompress(payload)
+            assert self._decompress is not None  # Only compressed streams have such blocks, as was required above.
+            payload = self._decompress(payload)
         return tag, payload
 
     def _decode(self, tag: bytes, payload: bytes) -> b.Block:

@@ -9,10 +9,12 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
 import spmesh
+from spmesh.compression import decompress, decompressor
 from support import BIN, ROOT, VECTORS, cloud, run
 
 def written(header, *steps):
@@ -170,6 +172,24 @@ class Programs(unittest.TestCase):
             one, other = spmesh.read(io.BytesIO(plain)), spmesh.read(io.BytesIO(packed))
             np.testing.assert_array_equal(one.stored, other.stored)
             np.testing.assert_array_equal(one.rows, other.rows)
+
+    def test_the_compiled_module_decompresses_as_python_does(self):
+        try:
+            from spmesh import _native  # noqa: F401
+        except ImportError:
+            self.skipTest("the compiled module is not there")
+        points = io.BytesIO()
+        spmesh.write_points(points, cloud(3000), {"t": np.arange(3000.0)}, scale=0.001, dims=2)
+        tagged = run("spfinalize", "--compress", "--attributes", "t", "-", data=points.getvalue())
+        for packed in (tagged, run("spdelaunay2d", "--compress", data=tagged)):
+            compiled = spmesh.read(io.BytesIO(packed))
+            with mock.patch("spmesh.reader.decompressor", lambda: decompress):
+                plain = spmesh.read(io.BytesIO(packed))
+            for name in ("stored", "simplices", "rows"):
+                np.testing.assert_array_equal(getattr(compiled, name), getattr(plain, name))
+        for damaged in (b"", bytes([9]), bytes(40), b"\x02" + bytes(60), b"\x03" + bytes(60)):
+            for decompressing in (decompress, decompressor()):
+                self.assertRaises(spmesh.MalformedError, decompressing, damaged)
 
 
 class Writers(unittest.TestCase):

@@ -93,14 +93,17 @@ impl Compressor {
 
 /// Decompresses payloads in buffers that are used again.
 #[derive(Default)]
-pub(super) struct Decompressor {
+pub struct Decompressor {
     unpacker: Unpacker,
 }
 
 impl Decompressor {
     /// Puts the payload that `compressed` stands for into `payload`, at most
     /// [`spmesh_base::limits::BLOCK_PAYLOAD_MAX`] bytes.
-    pub(super) fn decompress(&mut self, compressed: &[u8], payload: &mut Vec<u8>) -> Result<()> {
+    ///
+    /// # Errors
+    /// Malformed, with what is wrong.
+    pub fn decompress(&mut self, compressed: &[u8], payload: &mut Vec<u8>) -> Result<()> {
         payload.clear();
         let Some((&byte, body)) = compressed.split_first() else {
             return Err(Error::malformed("compressed payload: empty, expected a method"));
