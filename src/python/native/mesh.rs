@@ -5,12 +5,15 @@ use crate::waiting::wait_for;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyOverflowError, PyValueError};
 use pyo3::prelude::*;
-use spmesh_delaunay::{Error, delaunay2, delaunay3};
+use spmesh_delaunay::{Error, delaunay2, delaunay3, parallel};
 use std::borrow::Cow;
 use std::num::NonZeroUsize;
 
 /// Targets that are asked for between two looks at signals.
 const TARGETS: usize = 1 << 22;
+
+/// Rows that a thread writes in one go.
+const ROWS: usize = 1 << 16;
 
 /// A triangulation.
 #[pyclass(frozen, module = "spmesh._native")]
@@ -76,10 +79,13 @@ impl Mesh {
     fn simplices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
         match &self.dimensions {
             Two(mesh) => {
-                array_of(py, py.detach(|| mesh.simplices().map(|simplex| simplex.map(signed)).collect()))
+                let row = |number: usize| mesh.triangles()[number].vertices.map(signed);
+                self.rows_of(py, mesh.triangles().len(), row)
             }
             Three(mesh) => {
-                array_of(py, py.detach(|| mesh.simplices().map(|simplex| simplex.map(signed)).collect()))
+                let at = |vertex: u32| signed(mesh.vertices()[vertex as usize].index);
+                let row = |number: usize| mesh.tetrahedra()[number].vertices.map(at);
+                self.rows_of(py, mesh.tetrahedra().len(), row)
             }
         }
     }
@@ -89,18 +95,12 @@ impl Mesh {
         let or_none = |number: Option<u32>| number.map_or(-1, signed);
         match &self.dimensions {
             Two(mesh) => {
-                let count = mesh.simplices().len() as u32;
-                array_of(
-                    py,
-                    py.detach(|| (0..count).map(|number| mesh.neighbours(number).map(or_none)).collect()),
-                )
+                let row = |number: usize| mesh.neighbours(number as u32).map(or_none);
+                self.rows_of(py, mesh.triangles().len(), row)
             }
             Three(mesh) => {
-                let count = mesh.tetrahedra().len() as u32;
-                array_of(
-                    py,
-                    py.detach(|| (0..count).map(|number| mesh.neighbours(number).map(or_none)).collect()),
-                )
+                let row = |number: usize| mesh.neighbours(number as u32).map(or_none);
+                self.rows_of(py, mesh.tetrahedra().len(), row)
             }
         }
     }
@@ -138,6 +138,25 @@ impl Mesh {
             })?,
         }
         Ok(found.into_pyarray(py))
+    }
+}
+
+impl Mesh {
+    /// An array with a row for each simplex, made on all threads.
+    fn rows_of<'py, const N: usize>(
+        &self,
+        py: Python<'py>,
+        count: usize,
+        row: impl Fn(usize) -> [i32; N] + Sync,
+    ) -> Bound<'py, PyArray2<i32>> {
+        let mut rows = vec![[0; N]; count];
+        py.detach(|| {
+            let pieces = rows.chunks_mut(ROWS).enumerate();
+            parallel::for_each(self.threads, pieces, |(piece, rows)| {
+                rows.iter_mut().enumerate().for_each(|(place, to)| *to = row(piece * ROWS + place));
+            });
+        });
+        array_of(py, rows)
     }
 }
 

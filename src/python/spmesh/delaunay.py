@@ -64,7 +64,8 @@ class Delaunay:
     qhull_options : str
         Has no effect, with a warning.
     threads : int, optional
-        Number of threads; all processors by default. The result does not depend on it.
+        Number of threads; all processors by default. The result does not depend on it. One thread triangulates
+        points of the plane; all other steps use all.
     progress : callable, optional
         Called now and then with the share that is done, from 0 to 1, if there are 100,000 points or more. What it
         raises ends the work.
