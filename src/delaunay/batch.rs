@@ -5,15 +5,16 @@ use crate::parallel;
 use crate::predicates::Extent;
 use std::num::NonZeroUsize;
 
-/// Targets that are put in order at once. More are denser, so that the way from one to the next is shorter; their
-/// order takes 16 bytes each.
+/// Targets that are put in order at once. More are denser, so that the way from one to the next is shorter;
+/// their order takes 16 bytes each.
 const BLOCK: usize = 1 << 20;
 
-/// Lets `ask` write the answer about each target, `width` items of `answers` that are in the order of the targets.
-/// Answers about targets that are not finite stay as they are.
+/// Lets `ask` write the answer about each target, `width` items of `answers` that are in the order of the
+/// targets. Answers about targets that are not finite stay as they are.
 ///
-/// The targets are asked for along a curve, in blocks, on so many threads. What `begin` makes goes from target to
-/// target in a block, such as an interpolator that walks from the last target; an answer must not depend on it.
+/// The targets are asked for along a curve, in blocks, on so many threads. What `begin` makes goes from
+/// target to target in a block, such as an interpolator that walks from the last target; an answer must not
+/// depend on it.
 ///
 /// Cost: a sort of the targets. Memory: 32 to 40 bytes for each target of a block, for each thread.
 ///

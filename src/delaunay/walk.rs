@@ -1,7 +1,7 @@
 //! The simplex that contains a target, found by a walk from one to the next, in the plane and in space alike.
 //!
-//! From a simplex the walk goes on across a side that the target is beyond. In a Delaunay triangulation, and in
-//! a regular one, it meets no simplex twice (Edelsbrunner, "An acyclicity theorem for cell complexes in d
+//! From a simplex the walk goes on across a side that the target is beyond. In a Delaunay triangulation, and
+//! in a regular one, it meets no simplex twice (Edelsbrunner, "An acyclicity theorem for cell complexes in d
 //! dimensions", 1990). All decisions are exact.
 
 use crate::batch;
@@ -20,8 +20,8 @@ pub(crate) trait Walkable<const D: usize, const N: usize>: Sync {
     /// Number of simplices.
     fn simplices_len(&self) -> usize;
 
-    /// On which side of the facet opposite to corner `corner` of a simplex the target lies: positive on that of
-    /// the corner.
+    /// On which side of the facet opposite to corner `corner` of a simplex the target lies: positive on that
+    /// of the corner.
     fn side(&self, simplex: u32, corner: usize, target: [f64; D], predicates: &mut Self::Predicates) -> Sign;
 
     /// The simplex across the facet opposite to a corner; `None` at the hull.
@@ -49,8 +49,8 @@ impl<const N: usize> Arrival<N> {
     }
 }
 
-/// Walks from simplex `start`, or from the last one if there are fewer, to the simplex that contains a target.
-/// `None` if there are no simplices or the target is not finite.
+/// Walks from simplex `start`, or from the last one if there are fewer, to the simplex that contains a
+/// target. `None` if there are no simplices or the target is not finite.
 #[inline]
 pub(crate) fn walk<const D: usize, const N: usize, M: Walkable<D, N>>(
     mesh: &M,
@@ -107,8 +107,8 @@ pub(crate) fn walk_steps<const D: usize, const N: usize, M: Walkable<D, N>>(
     Err(simplex)
 }
 
-/// Walks from target to target. Where it arrives does not depend on the targets before, but for the choice among
-/// simplices that all contain a target.
+/// Walks from target to target. Where it arrives does not depend on the targets before, but for the choice
+/// among simplices that all contain a target.
 #[derive(Debug)]
 pub(crate) struct Walker<'m, M: Walkable<D, N>, const D: usize, const N: usize> {
     pub(crate) mesh: &'m M,
@@ -123,8 +123,8 @@ impl<'m, M: Walkable<D, N>, const D: usize, const N: usize> Walker<'m, M, D, N> 
         Walker { mesh, predicates: M::Predicates::default(), last: 0, starts: None }
     }
 
-    /// Walks to a target, from the last one if it is near. `None` if there are no simplices or the target is not
-    /// finite.
+    /// Walks to a target, from the last one if it is near. `None` if there are no simplices or the target is
+    /// not finite.
     pub(crate) fn walk(&mut self, target: [f64; D]) -> Option<Arrival<N>> {
         let start = first(self.mesh, self.last, target)?;
         let arrival = walk_steps(self.mesh, start, target, STEPS_TO_NEXT, &mut self.predicates);
@@ -174,7 +174,8 @@ fn least<const D: usize, const N: usize, M: Walkable<D, N>>(
     all.into_iter().min().unwrap_or(found)
 }
 
-/// For each target the least simplex that contains it, its border included, or `none`: outside, or not finite.
+/// For each target the least simplex that contains it, its border included, or `none`: outside, or not
+/// finite.
 pub(crate) fn find_all<const D: usize, const N: usize, M: Walkable<D, N>>(
     mesh: &M,
     targets: &[[f64; D]],

@@ -15,7 +15,8 @@ pub struct Watch {
 
 // Nothing else goes from thread to thread by these numbers, and they may be seen late.
 impl Watch {
-    /// Number of points inserted so far, to some thousands. Those that a kernel must insert twice count twice.
+    /// Number of points inserted so far, to some thousands. Those that a kernel must insert twice count
+    /// twice.
     pub fn inserted(&self) -> usize {
         self.inserted.load(Ordering::Relaxed)
     }

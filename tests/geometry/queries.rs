@@ -73,8 +73,8 @@ fn expected<const N: usize, const D: usize>(
     Location::Outside
 }
 
-/// Checks where many targets at once are found, some of them not finite or just outside: `found` for one and for three
-/// threads.
+/// Checks where many targets at once are found, some of them not finite or just outside: `found` for one and
+/// for three threads.
 fn check_all<const N: usize, const D: usize>(
     points: &[[f64; D]],
     simplices: &[[u32; N]],

@@ -6,8 +6,9 @@ use spmesh_reference::clouds::{FAMILIES, of};
 use spmesh_reference::exact::times_2_1074;
 use spmesh_reference::sets::{DEGENERATE_FAMILIES, Random, as_floats, degenerate, uniform};
 
-/// Checks that a centre lies where all bisectors of corners do. For corners p and q, the power of the bisector
-/// at the centre, (c - m) (q - p) with the point m midway, is at most the error times the distance of p and q.
+/// Checks that a centre lies where all bisectors of corners do. For corners p and q, the power of the
+/// bisector at the centre, (c - m) (q - p) with the point m midway, is at most the error times the distance
+/// of p and q.
 fn check_centre<const N: usize, const D: usize>(corners: [[f64; D]; N], centre: [f64; D]) {
     let exact = |point: [f64; D]| point.map(times_2_1074);
     let (centre_exact, corners_exact) = (exact(centre), corners.map(exact));

@@ -87,8 +87,8 @@ fn is_same(p: &HalfPlane, q: &HalfPlane) -> bool {
         && [0, 1].iter().all(|&i| &p[i] * &q[2] == &q[i] * &p[2])
 }
 
-/// Twice the area of a bounded intersection of half-planes: for each border the part of it, from one end to the
-/// other with the inside to the left, makes a triangle with the origin.
+/// Twice the area of a bounded intersection of half-planes: for each border the part of it, from one end to
+/// the other with the inside to the left, makes a triangle with the origin.
 fn doubled_area(planes: &[HalfPlane]) -> Rational {
     let mut area = Rational(BigInt::from(0), BigInt::from(1));
     for (place, plane) in planes.iter().enumerate() {

@@ -43,15 +43,16 @@ impl ConstrainedTriangulation {
     /// Triangulates points with fewer than 2^32 - 1 segments, each between two of them by their indices.
     ///
     /// A segment that passes through a point is divided there. Segments may meet at points and overlap; a
-    /// segment between equal points constrains nothing. If all points are on one line, there are no triangles.
+    /// segment between equal points constrains nothing. If all points are on one line, there are no
+    /// triangles.
     ///
     /// # Errors
     /// If segments cross where there is no point: [`Error::Crossing`] has the ends of an edge of one of them.
     /// [`ConstrainedTriangulation::noded`] divides such segments. If a segment has an end that is no point, a
     /// coordinate is not finite, or there are too many points.
     ///
-    /// Cost: that of [`triangulate`], and O(k log k) expected for a segment that crosses k triangles; about 150
-    /// bytes for each point.
+    /// Cost: that of [`triangulate`], and O(k log k) expected for a segment that crosses k triangles; about
+    /// 150 bytes for each point.
     pub fn new(points: &[Point2], segments: &[[u32; 2]]) -> Result<ConstrainedTriangulation> {
         let is_bad = |ends: &[u32; 2]| ends.iter().any(|&end| end as usize >= points.len());
         if let Some(segment) = segments.iter().position(is_bad) {
@@ -78,9 +79,9 @@ impl ConstrainedTriangulation {
     }
 
     /// Triangulates points of a grid of integers with segments that may cross. These are noded by snap
-    /// rounding ([`node_lines`]): crossings become the places of the grid that are nearest, and segments bend to
-    /// places that they pass within half a step of the grid. So coordinates are first scaled to a grid that is
-    /// as fine as crossings are to be.
+    /// rounding ([`node_lines`]): crossings become the places of the grid that are nearest, and segments bend
+    /// to places that they pass within half a step of the grid. So coordinates are first scaled to a grid
+    /// that is as fine as crossings are to be.
     ///
     /// The points of the result are the places and those of crossings, all different and in lexicographic
     /// order. Edges that several segments share are on the one of least index.
@@ -171,7 +172,8 @@ impl ConstrainedTriangulation {
     ///
     /// If there are no triangles, every target that is no vertex is outside.
     ///
-    /// Cost: a straight walk from the nearest of many vertices, which the first call sorts; without triangles, O(n).
+    /// Cost: a straight walk from the nearest of many vertices, which the first call sorts; without
+    /// triangles, O(n).
     pub fn locate(&self, target: Point2) -> Location {
         if !target.iter().all(|coordinate| coordinate.is_finite()) {
             return Location::Outside;

@@ -19,7 +19,8 @@ pub(super) struct Build<'s, 'a> {
 }
 
 impl<'s> WithPredicates2 for Build<'s, '_> {
-    /// The triangulation; `None` if all points are on one line. Of some of the points only, if the work is stopped.
+    /// The triangulation; `None` if all points are on one line. Of some of the points only, if the work is
+    /// stopped.
     type Output = Option<Mesh<'s>>;
 
     fn with(self, predicates: &mut impl Predicates2) -> Self::Output {

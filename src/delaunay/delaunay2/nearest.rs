@@ -43,7 +43,8 @@ impl Triangulation {
     /// The `count` vertices nearest to the target, or all if there are fewer: exactly, by distance, then by
     /// index. None if the target is not finite.
     ///
-    /// Cost: that of [`Triangulation::nearest`], and O(log k) for each of the k vertices and their neighbours.
+    /// Cost: that of [`Triangulation::nearest`], and O(log k) for each of the k vertices and their
+    /// neighbours.
     pub fn k_nearest(&self, target: Point2, count: usize) -> Vec<u32> {
         self.k_nearest_from(target, count, 0)
     }

@@ -142,8 +142,8 @@ impl TriangleMemory {
         self.count = count;
         &mut bytemuck::pod_align_to_mut::<u32, Triangle>(&mut self.words).1[..count]
     }
-    /// The triangles in memory of their own, for the triangles of `vertices` vertices. A vector of words alone
-    /// could have another alignment there.
+    /// The triangles in memory of their own, for the triangles of `vertices` vertices. A vector of words
+    /// alone could have another alignment there.
     fn copy(&self, vertices: usize) -> TriangleMemory {
         let mut copy = TriangleMemory::default();
         let triangles = &bytemuck::pod_align_to::<u32, Triangle>(&self.words).1[..self.count];

@@ -106,8 +106,8 @@ impl Triangulation {
         self.locate_from(target, 0)
     }
 
-    /// [`Triangulation::locate`] by a walk that begins at triangle `start`: short, if that is near, such as the one
-    /// that [`Starts`] find. Any number will do.
+    /// [`Triangulation::locate`] by a walk that begins at triangle `start`: short, if that is near, such as
+    /// the one that [`Starts`] find. Any number will do.
     pub fn locate_from(&self, target: Point2, start: u32) -> Location {
         match walk::walk(self, start, target, &mut FiniteFloatPredicates::default()) {
             Some(Arrival::Inside(number, sides)) => {
@@ -118,11 +118,11 @@ impl Triangulation {
         }
     }
 
-    /// For each target the number of the triangle that contains it, its border included: the least, if there are
-    /// several. [`NONE`] for targets that are outside, or not finite.
+    /// For each target the number of the triangle that contains it, its border included: the least, if there
+    /// are several. [`NONE`] for targets that are outside, or not finite.
     ///
-    /// The targets are asked for in order along a curve, in blocks, on so many threads; the answers do not depend
-    /// on them.
+    /// The targets are asked for in order along a curve, in blocks, on so many threads; the answers do not
+    /// depend on them.
     ///
     /// Cost: O(log m) for each of m targets that are spread as the points are, to put it in order.
     pub fn locate_all(&self, targets: &[Point2], threads: NonZeroUsize) -> Vec<u32> {
@@ -147,7 +147,8 @@ impl Triangulation {
         is_answer.then(|| self.place_on_line(target).ok()).flatten().map(|place| self.triangles.hull[place])
     }
 
-    /// The place of the vertex at `target` in the hull of a triangulation without triangles, or where it would be.
+    /// The place of the vertex at `target` in the hull of a triangulation without triangles, or where it
+    /// would be.
     pub(super) fn place_on_line(&self, target: Point2) -> std::result::Result<usize, usize> {
         self.triangles.hull.binary_search_by(|&v| lexicographic(self.points[v as usize], target))
     }

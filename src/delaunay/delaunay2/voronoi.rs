@@ -12,7 +12,8 @@ impl Triangulation {
     ///
     /// Domain: differences of coordinates, those of `bounds` included, do not overflow.
     ///
-    /// Cost: O(1) for each neighbour and corner of the polygon before; more for duplicates, which are located.
+    /// Cost: O(1) for each neighbour and corner of the polygon before; more for duplicates, which are
+    /// located.
     ///
     /// # Panics
     /// If there is no such point.

@@ -9,8 +9,9 @@ use crate::vector::difference;
 use crate::walk::{Arrival, Walker};
 use num_bigint::BigInt;
 
-/// The error of a determinant in plain arithmetic in parts of the sum of the magnitudes of its six products: each
-/// product has three rounded factors and is rounded twice, and sums are rounded, less than ten roundings in all.
+/// The error of a determinant in plain arithmetic in parts of the sum of the magnitudes of its six products:
+/// each product has three rounded factors and is rounded twice, and sums are rounded, less than ten roundings
+/// in all.
 const DETERMINANT_ERROR: f64 = 10.0 * f64::EPSILON / 2.0;
 
 /// Greatest error of a weight.
@@ -32,11 +33,11 @@ impl<'m> Linear<'m> {
     }
 
     /// The corners of a tetrahedron that contains the target, with its barycentric coordinates; the least
-    /// tetrahedron, if there are several. `None` outside of the hull, without tetrahedra, and if the target is not
-    /// finite.
+    /// tetrahedron, if there are several. `None` outside of the hull, without tetrahedra, and if the target
+    /// is not finite.
     ///
-    /// Each weight is off by less than 1e-13; it is zero exactly where the target is on the opposite facet, and one
-    /// at the corner.
+    /// Each weight is off by less than 1e-13; it is zero exactly where the target is on the opposite facet,
+    /// and one at the corner.
     ///
     /// Cost: a walk from the tetrahedron of the last target, or from one of [`Tetrahedralization::starts`].
     pub fn weights(&mut self, target: Point3) -> Option<[(u32, f64); 4]> {
@@ -57,8 +58,8 @@ impl<'m> Linear<'m> {
         Some([0, 1, 2, 3].map(|corner| (vertices[corner].index, weights[corner])))
     }
 
-    /// The value at the target, for values at the input points; that at a vertex is exactly its own. `None` where
-    /// there are no weights. Values of duplicates do not count.
+    /// The value at the target, for values at the input points; that at a vertex is exactly its own. `None`
+    /// where there are no weights. Values of duplicates do not count.
     ///
     /// # Panics
     /// If there are fewer values than points.

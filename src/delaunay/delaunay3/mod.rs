@@ -126,8 +126,8 @@ impl Kernel {
     ///
     /// # Errors
     /// Malformed, if a coordinate is not finite; usage, if there are too many points: `mesh` is unchanged
-    /// then. Stopped, by [`Kernel::watch`]. I/O, if there are more tetrahedra than [`Kernel::tetrahedra_max`], which even [`MAX_POINTS`]
-    /// points have only in rare configurations.
+    /// then. Stopped, by [`Kernel::watch`]. I/O, if there are more tetrahedra than
+    /// [`Kernel::tetrahedra_max`], which even [`MAX_POINTS`] points have only in rare configurations.
     ///
     /// Cost: O(n) for points that are spread evenly in space. Memory: about 250 bytes per point.
     pub fn triangulate(&mut self, points: Cow<[Point3]>, mesh: &mut Tetrahedralization) -> Result<()> {

@@ -47,8 +47,8 @@ impl Tetrahedralization {
         self.nearest_from(target, 0)
     }
 
-    /// The same, found from tetrahedron `start`: fast if it is near, such as the one that [`Starts`] find. Any
-    /// number will do.
+    /// The same, found from tetrahedron `start`: fast if it is near, such as the one that [`Starts`] find.
+    /// Any number will do.
     pub fn nearest_from(&self, target: Point3, start: u32) -> Option<u32> {
         match self.first_vertex(target, start) {
             Some(first) => Some(Search::new(&mut self.along_edges(), target).nearest(first)),

@@ -20,8 +20,8 @@ const TURNS: [[usize; 4]; 12] = [
 ];
 
 impl Tetrahedralization {
-    /// Puts the tetrahedra in order: by their vertices as the curve orders them, the least first in each. Before,
-    /// the order depends on the number of threads. They stay positively oriented.
+    /// Puts the tetrahedra in order: by their vertices as the curve orders them, the least first in each.
+    /// Before, the order depends on the number of threads. They stay positively oriented.
     ///
     /// Cost: O(n). Memory: for a second array of tetrahedra, while it works.
     pub fn sort(&mut self) {

@@ -203,8 +203,8 @@ impl Tetrahedralization {
         self.locate_from(target, 0)
     }
 
-    /// [`Tetrahedralization::locate`] by a walk that begins at tetrahedron `start`: short, if that is near, such as
-    /// the one that [`Starts`] find. Any number will do.
+    /// [`Tetrahedralization::locate`] by a walk that begins at tetrahedron `start`: short, if that is near,
+    /// such as the one that [`Starts`] find. Any number will do.
     pub fn locate_from(&self, target: Point3, start: u32) -> Location {
         match walk::walk(self, start, target, &mut FiniteFloatPredicates3::default()) {
             Some(Arrival::Inside(number, sides)) => {
@@ -220,11 +220,11 @@ impl Tetrahedralization {
         }
     }
 
-    /// For each target the number of the tetrahedron that contains it, its border included: the least, if there
-    /// are several. [`NONE`] for targets that are outside, or not finite.
+    /// For each target the number of the tetrahedron that contains it, its border included: the least, if
+    /// there are several. [`NONE`] for targets that are outside, or not finite.
     ///
-    /// The targets are asked for in order along a curve, in blocks, on so many threads; the answers do not depend
-    /// on them.
+    /// The targets are asked for in order along a curve, in blocks, on so many threads; the answers do not
+    /// depend on them.
     ///
     /// Cost: O(log m) for each of m targets that are spread as the points are, to put it in order.
     pub fn locate_all(&self, targets: &[Point3], threads: NonZeroUsize) -> Vec<u32> {

@@ -30,13 +30,13 @@ impl Centre2 {
     ///
     /// Domain: the points are not collinear, in the range of [`BoundedFloatPredicates`].
     ///
-    /// The origin is the point at the greatest angle, so that the sides e and f from there are at most as long
-    /// as e - f. The numerator m = |e|^2 f - |f|^2 e has length |e| |f| |e - f|, which is at least half of the
-    /// sum of the lengths of its two terms: nothing cancels. With u = 2^-53, a term has relative error 7 u (two
-    /// differences in the square, its products and sum, another difference, the product), which makes 14 u of
-    /// m, and its sum another u. The determinant d of e and f is off by 5 u of the sum of its products, which
-    /// is k |d|, or is exact up to 4 u; the quotient is rounded once. So the error is at most (16 + 5 k) u of
-    /// the radius. One u more covers terms of order u^2.
+    /// The origin is the point at the greatest angle, so that the sides e and f from there are at most as
+    /// long as e - f. The numerator m = |e|^2 f - |f|^2 e has length |e| |f| |e - f|, which is at least half
+    /// of the sum of the lengths of its two terms: nothing cancels. With u = 2^-53, a term has relative error
+    /// 7 u (two differences in the square, its products and sum, another difference, the product), which
+    /// makes 14 u of m, and its sum another u. The determinant d of e and f is off by 5 u of the sum of its
+    /// products, which is k |d|, or is exact up to 4 u; the quotient is rounded once. So the error is at most
+    /// (16 + 5 k) u of the radius. One u more covers terms of order u^2.
     pub(crate) fn of(a: Point2, b: Point2, c: Point2) -> Centre2 {
         let square = |p, q| lift(&difference(p, q));
         let (ab, bc, ca) = (square(a, b), square(b, c), square(c, a));
@@ -121,8 +121,8 @@ fn exact<const N: usize, const M: usize, const D: usize>(
     std::array::from_fn(|axis| quotient(&(&integers[0][axis] * &doubled + &numerators[axis]), &doubled, unit))
 }
 
-/// For the sides from one of three points to the others: numerators of the way from it to the centre, and half
-/// of their denominator.
+/// For the sides from one of three points to the others: numerators of the way from it to the centre, and
+/// half of their denominator.
 #[inline(always)]
 pub(crate) fn numerators2<T: Number>([e, f]: &[[T; 2]; 2]) -> ([T; 2], T) {
     let (ee, ff) = (lift(e), lift(f));

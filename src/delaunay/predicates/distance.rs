@@ -34,8 +34,8 @@ fn square<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
     (0..D).map(|axis| (p[axis] - q[axis]) * (p[axis] - q[axis])).sum()
 }
 
-/// The squared distance, if nothing is rounded: for ties on a grid. Differences of at most 24 digits in the range
-/// of `f32` have squares of at most 48 digits, far from underflow.
+/// The squared distance, if nothing is rounded: for ties on a grid. Differences of at most 24 digits in the
+/// range of `f32` have squares of at most 48 digits, far from underflow.
 fn exact_square<const D: usize>(p: [f64; D], q: [f64; D]) -> Option<f64> {
     let mut sum = 0.0;
     for axis in 0..D {

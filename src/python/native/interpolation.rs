@@ -56,7 +56,8 @@ impl Mesh {
         )
     }
 
-    /// The natural neighbours of targets with their weights: where those of each target start, points, weights.
+    /// The natural neighbours of targets with their weights: where those of each target start, points,
+    /// weights.
     fn natural_weights<'py>(
         &self,
         py: Python<'py>,
@@ -94,7 +95,8 @@ impl Mesh {
         }
     }
 
-    /// Sums of the values in the weights of each target. `weigh` gives the weights to the function that it gets.
+    /// Sums of the values in the weights of each target. `weigh` gives the weights to the function that it
+    /// gets.
     fn interpolate<'py, const D: usize, S>(
         &self,
         py: Python<'py>,

@@ -1,5 +1,5 @@
-//! `spmesh._native`: triangulations of arrays of numpy, and payloads of streams. Modules of Python give them their
-//! names, check arguments and document them; nothing here is for users.
+//! `spmesh._native`: triangulations of arrays of numpy, and payloads of streams. Modules of Python give them
+//! their names, check arguments and document them; nothing here is for users.
 
 mod arrays;
 mod compression;

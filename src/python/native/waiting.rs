@@ -13,8 +13,8 @@ const LONG: usize = 100_000;
 /// Time between two looks.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Does work on so many points, without the lock of the interpreter. `progress` is called with the share that is
-/// done, from 0 to 1; what it raises, or a signal does, stops the work.
+/// Does work on so many points, without the lock of the interpreter. `progress` is called with the share that
+/// is done, from 0 to 1; what it raises, or a signal does, stops the work.
 pub(crate) fn wait_for<T: Send>(
     py: Python<'_>,
     points: usize,

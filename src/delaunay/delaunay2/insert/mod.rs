@@ -11,12 +11,12 @@ use crate::starts::Starts;
 use crate::walk::{Arrival, STEPS_TO_NEXT, walk, walk_steps};
 use cavity::{Cavity, Edge};
 
-/// Starts are found after one far walk for so many points: that takes about as long as these walks did, and so pays
-/// for itself.
+/// Starts are found after one far walk for so many points: that takes about as long as these walks did, and
+/// so pays for itself.
 const POINTS_PER_WALK: usize = 4000;
 
-/// Triangles where far walks start. Triangles keep their numbers while points are inserted, and stay about where they
-/// are.
+/// Triangles where far walks start. Triangles keep their numbers while points are inserted, and stay about
+/// where they are.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FarStarts {
     starts: Option<Starts<2>>,
@@ -46,8 +46,9 @@ impl Triangulation {
     /// # Errors
     /// If a coordinate is not finite, or there are [`MAX_POINTS`] points already. Nothing is changed then.
     ///
-    /// Cost: O(1) for points that are spread evenly, amortised. The walk starts at the point inserted last, or,
-    /// if that is far, at the nearest of many triangles, of 2 bytes per point; the first far walks take O(sqrt n) steps. A point beyond the hull, or on it, costs O(h) more for h vertices of the hull; one on
+    /// Cost: O(1) for points that are spread evenly, amortised. The walk starts at the point inserted last,
+    /// or, if that is far, at the nearest of many triangles, of 2 bytes per point; the first far walks take
+    /// O(sqrt n) steps. A point beyond the hull, or on it, costs O(h) more for h vertices of the hull; one on
     /// the line of all others, O(n).
     ///
     /// ```
@@ -171,7 +172,8 @@ impl Triangulation {
         }
     }
 
-    /// A triangle where a far walk to a place goes on: `after`, until there were so many that it pays to find others.
+    /// A triangle where a far walk to a place goes on: `after`, until there were so many that it pays to find
+    /// others.
     fn far_start(&mut self, at: Point2, after: u32) -> u32 {
         self.far_starts.walks += 1;
         let count = self.points.len();

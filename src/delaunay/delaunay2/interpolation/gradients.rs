@@ -37,8 +37,8 @@ impl Triangulation {
     }
 }
 
-/// Least squares in two unknowns, by rotations (Givens): the rows of an upper triangular matrix, the right-hand
-/// side last. The squares of normal equations would lose half of the digits in flat stars.
+/// Least squares in two unknowns, by rotations (Givens): the rows of an upper triangular matrix, the
+/// right-hand side last. The squares of normal equations would lose half of the digits in flat stars.
 #[derive(Default)]
 struct PlaneFit {
     rows: [[f64; 3]; 2],

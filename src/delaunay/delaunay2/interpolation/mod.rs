@@ -1,8 +1,8 @@
 //! Values between the vertices: linear in each triangle, or smooth by natural neighbours.
 //!
 //! Both interpolators remember the triangle of their last target, so that targets along a line, a raster or a
-//! curve each cost a few steps; to other targets they walk from the nearest of many triangles. What they answer
-//! does not depend on the targets before.
+//! curve each cost a few steps; to other targets they walk from the nearest of many triangles. What they
+//! answer does not depend on the targets before.
 //!
 //! ```
 //! use spmesh_delaunay::delaunay2::interpolation::{Linear, NaturalNeighbours};

@@ -10,9 +10,9 @@ use crate::walk::{Arrival, Walker};
 
 /// Weights of natural neighbours: Sibson's coordinates.
 ///
-/// If a target was inserted, its Voronoi cell would take a part of the area of the cells of its neighbours; the
-/// weight of a neighbour is its part of what they lose. Weights are continuous in the target, and smooth but
-/// at the vertices; the target is the mean of its neighbours in these weights.
+/// If a target was inserted, its Voronoi cell would take a part of the area of the cells of its neighbours;
+/// the weight of a neighbour is its part of what they lose. Weights are continuous in the target, and smooth
+/// but at the vertices; the target is the mean of its neighbours in these weights.
 ///
 /// Source: Sibson, "A brief description of natural neighbour interpolation", 1981. On the hull, where the
 /// area is infinite, the weights are their limit: linear between the two ends of the edge.
@@ -42,13 +42,13 @@ impl<'m> NaturalNeighbours<'m> {
     /// first. `None` outside of the hull, also if the target is not finite. A target at a vertex has that one
     /// neighbour alone. Without triangles only vertices have weights.
     ///
-    /// Each weight is at least zero and off by less than 1e-12, whatever the coordinates; their sum is 1 up to
-    /// rounding. So the mean of the neighbours in these weights is the target up to 1e-12 times the sum of
+    /// Each weight is at least zero and off by less than 1e-12, whatever the coordinates; their sum is 1 up
+    /// to rounding. So the mean of the neighbours in these weights is the target up to 1e-12 times the sum of
     /// their distances from it. The weights do not depend on the targets before.
     ///
-    /// Cost: a walk from the triangle of the last target or from one of [`Triangulation::starts`], and the triangles whose circles contain the target,
-    /// about four. Plain arithmetic with a bound of its error; integers of arbitrary size where that does not
-    /// suffice, most of all in flat triangles at the hull.
+    /// Cost: a walk from the triangle of the last target or from one of [`Triangulation::starts`], and the
+    /// triangles whose circles contain the target, about four. Plain arithmetic with a bound of its error;
+    /// integers of arbitrary size where that does not suffice, most of all in flat triangles at the hull.
     pub fn weights(&mut self, target: Point2) -> Option<&[(u32, f64)]> {
         self.weights.clear();
         match self.walker.walk(target) {
@@ -71,8 +71,8 @@ impl<'m> NaturalNeighbours<'m> {
     /// The value at the target of a function that is smooth at the vertices, too, where it has these values
     /// and gradients, such as those of [`Triangulation::gradients`]. `None` outside of the hull.
     ///
-    /// With exact gradients it is exact, up to rounding, for sums of a linear function and a multiple of x^2 +
-    /// y^2.
+    /// With exact gradients it is exact, up to rounding, for sums of a linear function and a multiple of x^2
+    /// + y^2.
     ///
     /// Source: Sibson 1981; the formula is that of Flötotto, "A coordinate system associated to a point cloud
     /// issued from a manifold", 2003, as in CGAL's `sibson_c1_interpolation`.
