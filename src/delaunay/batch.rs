@@ -7,7 +7,10 @@ use std::num::NonZeroUsize;
 
 /// Targets that are put in order at once. More are denser, so that the way from one to the next is shorter;
 /// their order takes 16 bytes each.
-const BLOCK: usize = 1 << 20;
+const BLOCK_MAX: usize = 1 << 20;
+
+/// Fewer are not worth a thread.
+const BLOCK_MIN: usize = 1 << 13;
 
 /// Lets `ask` write the answer about each target, `width` items of `answers` that are in the order of the
 /// targets. Answers about targets that are not finite stay as they are.
@@ -47,7 +50,8 @@ pub fn answer<const D: usize, A: Send, S>(
     if width == 0 {
         return;
     }
-    let blocks = targets.chunks(BLOCK).zip(answers.chunks_mut(BLOCK * width));
+    let block = targets.len().div_ceil(threads.get()).clamp(BLOCK_MIN, BLOCK_MAX);
+    let blocks = targets.chunks(block).zip(answers.chunks_mut(block * width));
     parallel::for_each(threads, blocks, |(targets, answers)| {
         let is_finite = |target: &[f64; D]| target.iter().all(|coordinate| coordinate.is_finite());
         // What is not finite has no place in an order: it takes that of the origin.

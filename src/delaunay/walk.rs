@@ -6,11 +6,12 @@
 
 use crate::batch;
 use crate::predicates::Sign;
-use crate::starts::Starts;
+use std::collections::HashSet;
 use std::num::NonZeroUsize;
 
-/// Steps from the last simplex after which a [`Walker`] jumps. A jump costs about as much.
-pub(crate) const STEPS_TO_NEXT: usize = 16;
+/// Steps from a simplex that is probably near, after which another start is tried, too. To find it costs
+/// about as much.
+const STEPS_TO_NEXT: usize = 16;
 
 /// Simplices of `N` corners in `D` dimensions, with their neighbours.
 pub(crate) trait Walkable<const D: usize, const N: usize>: Sync {
@@ -27,8 +28,8 @@ pub(crate) trait Walkable<const D: usize, const N: usize>: Sync {
     /// The simplex across the facet opposite to a corner; `None` at the hull.
     fn across(&self, simplex: u32, corner: usize) -> Option<u32>;
 
-    /// Simplices to begin at.
-    fn starts(&self) -> Starts<D>;
+    /// Where walks to targets in no order begin.
+    fn start_near(&self, target: [f64; D]) -> u32;
 }
 
 /// Where a walk ends.
@@ -77,7 +78,7 @@ fn first<const D: usize, const N: usize, M: Walkable<D, N>>(
 /// # Errors
 /// The simplex where it is after as many steps as are allowed.
 #[inline]
-pub(crate) fn walk_steps<const D: usize, const N: usize, M: Walkable<D, N>>(
+fn walk_steps<const D: usize, const N: usize, M: Walkable<D, N>>(
     mesh: &M,
     start: u32,
     target: [f64; D],
@@ -107,6 +108,33 @@ pub(crate) fn walk_steps<const D: usize, const N: usize, M: Walkable<D, N>>(
     Err(simplex)
 }
 
+/// Walks to a target from a simplex that is near, or else from the one that `far` gives: in turns, as either
+/// may be the longer way, such as around a vertex of many simplices. `None` as of [`walk`].
+pub(crate) fn walk_from_either<const D: usize, const N: usize, M: Walkable<D, N>>(
+    mesh: &M,
+    near: u32,
+    far: impl FnOnce() -> u32,
+    target: [f64; D],
+    predicates: &mut M::Predicates,
+) -> Option<Arrival<N>> {
+    let mut near = first(mesh, near, target)?;
+    let mut steps = STEPS_TO_NEXT;
+    near = match walk_steps(mesh, near, target, steps, predicates) {
+        Ok(arrival) => return Some(arrival),
+        Err(simplex) => simplex,
+    };
+    let mut ways = [first(mesh, far(), target)?, near];
+    loop {
+        for simplex in &mut ways {
+            match walk_steps(mesh, *simplex, target, steps, predicates) {
+                Ok(arrival) => return Some(arrival),
+                Err(after) => *simplex = after,
+            }
+        }
+        steps *= 2;
+    }
+}
+
 /// Walks from target to target. Where it arrives does not depend on the targets before, but for the choice
 /// among simplices that all contain a target.
 #[derive(Debug)]
@@ -114,24 +142,17 @@ pub(crate) struct Walker<'m, M: Walkable<D, N>, const D: usize, const N: usize> 
     pub(crate) mesh: &'m M,
     pub(crate) predicates: M::Predicates,
     last: u32,
-    /// Found when they are needed first: targets that follow each other need none.
-    starts: Option<Starts<D>>,
 }
 
 impl<'m, M: Walkable<D, N>, const D: usize, const N: usize> Walker<'m, M, D, N> {
     pub(crate) fn new(mesh: &'m M) -> Self {
-        Walker { mesh, predicates: M::Predicates::default(), last: 0, starts: None }
+        Walker { mesh, predicates: M::Predicates::default(), last: 0 }
     }
 
-    /// Walks to a target, from the last one if it is near. `None` if there are no simplices or the target is
-    /// not finite.
+    /// Walks to a target, from the last one if it is near. `None` as of [`walk`].
     pub(crate) fn walk(&mut self, target: [f64; D]) -> Option<Arrival<N>> {
-        let start = first(self.mesh, self.last, target)?;
-        let arrival = walk_steps(self.mesh, start, target, STEPS_TO_NEXT, &mut self.predicates);
-        let arrival = arrival.ok().or_else(|| {
-            let start = self.starts.get_or_insert_with(|| self.mesh.starts()).near(target);
-            walk(self.mesh, start, target, &mut self.predicates)
-        })?;
+        let far = || self.mesh.start_near(target);
+        let arrival = walk_from_either(self.mesh, self.last, far, target, &mut self.predicates)?;
         self.last = arrival.simplex();
         Some(arrival)
     }
@@ -158,20 +179,18 @@ fn least<const D: usize, const N: usize, M: Walkable<D, N>>(
     if !sides.contains(&Sign::Zero) {
         return found;
     }
-    let mut all = vec![found];
-    let mut place = 0;
-    while let Some(&simplex) = all.get(place) {
-        place += 1;
+    let (mut left, mut seen) = (vec![found], HashSet::from([found]));
+    while let Some(simplex) = left.pop() {
         for corner in 0..N {
             if mesh.side(simplex, corner, target, predicates) == Sign::Zero
                 && let Some(other) = mesh.across(simplex, corner)
-                && !all.contains(&other)
+                && seen.insert(other)
             {
-                all.push(other);
+                left.push(other);
             }
         }
     }
-    all.into_iter().min().unwrap_or(found)
+    seen.into_iter().min().unwrap_or(found)
 }
 
 /// For each target the least simplex that contains it, its border included, or `none`: outside, or not

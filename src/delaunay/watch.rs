@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Points between two looks at a [`Watch`].
-const INTERVAL: usize = 1 << 12;
+const INTERVAL: usize = 1 << 8;
 
 /// What a kernel and those who wait for it have in common.
 #[derive(Debug, Default)]
@@ -15,13 +15,14 @@ pub struct Watch {
 
 // Nothing else goes from thread to thread by these numbers, and they may be seen late.
 impl Watch {
-    /// Number of points inserted so far, to some thousands. Those that a kernel must insert twice count
+    /// Number of points inserted so far, to some hundreds. Those that a kernel must insert twice count
     /// twice.
     pub fn inserted(&self) -> usize {
         self.inserted.load(Ordering::Relaxed)
     }
 
-    /// Makes the kernel give up after some thousands of points, with [`Error::Stopped`].
+    /// Makes the kernel give up after some hundreds of points, with [`Error::Stopped`]. What comes before and
+    /// after insertion, such as sorting, is not stopped.
     pub fn stop(&self) {
         self.is_stopped.store(true, Ordering::Relaxed);
     }

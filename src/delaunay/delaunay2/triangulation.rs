@@ -2,7 +2,7 @@
 
 use super::Kernel;
 use super::half_edge::NONE;
-use super::insert::FarStarts;
+use super::insert::FarWalks;
 use super::triangles::{Triangle, Triangles};
 use crate::error::Result;
 use crate::location::Location;
@@ -10,6 +10,7 @@ use crate::predicates::{Extent, FiniteFloatPredicates, Point2, Predicates2, Sign
 use crate::starts::Starts;
 use crate::walk::{self, Arrival, Walkable};
 use std::num::NonZeroUsize;
+use std::sync::OnceLock;
 
 /// A Delaunay triangulation with its points. All vertices are indices of the input points.
 ///
@@ -18,7 +19,9 @@ use std::num::NonZeroUsize;
 pub struct Triangulation {
     pub(super) points: Vec<Point2>,
     pub(super) triangles: Triangles,
-    pub(super) far_starts: FarStarts,
+    /// Of walks, found when they are needed first.
+    pub(super) starts: OnceLock<Starts<2>>,
+    pub(super) far_walks: FarWalks,
 }
 
 impl Triangulation {
@@ -29,7 +32,7 @@ impl Triangulation {
     pub fn by(kernel: &mut Kernel, points: Vec<Point2>) -> Result<Triangulation> {
         let mut triangles = Triangles::default();
         kernel.triangulate(&points, &mut triangles)?;
-        Ok(Triangulation { points, triangles, far_starts: FarStarts::default() })
+        Ok(Triangulation { points, triangles, ..Triangulation::default() })
     }
 
     /// The input points, duplicates included.
@@ -129,10 +132,15 @@ impl Triangulation {
         walk::find_all(self, targets, threads, NONE)
     }
 
-    /// Triangles to begin walks at, for targets in no order. Cost: a sort of a quarter as many as points.
-    pub fn starts(&self) -> Starts<2> {
-        let corner = |number: u32| self.points[self.triangles()[number as usize].vertices[0] as usize];
-        Starts::new(self.triangles().len(), &Extent::of(&self.points), corner)
+    /// Triangles to begin walks at, for targets in no order. They are found with the first question, and stay
+    /// good enough when points are inserted.
+    ///
+    /// Cost: a sort of a quarter as many as points.
+    pub fn starts(&self) -> &Starts<2> {
+        self.starts.get_or_init(|| {
+            let corner = |number: u32| self.points[self.triangles()[number as usize].vertices[0] as usize];
+            Starts::new(self.triangles().len(), &Extent::of(&self.points), corner)
+        })
     }
 
     /// Where the corners of a triangle are.
@@ -161,8 +169,8 @@ impl Walkable<2, 3> for Triangulation {
         self.triangles().len()
     }
 
-    fn starts(&self) -> Starts<2> {
-        Triangulation::starts(self)
+    fn start_near(&self, target: Point2) -> u32 {
+        self.starts().near(target)
     }
 
     #[inline]

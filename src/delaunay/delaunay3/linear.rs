@@ -3,7 +3,7 @@
 use super::tetrahedralization::Tetrahedralization;
 use crate::predicates::exact_integers::{integers, quotient};
 use crate::predicates::forms::{Form, Orient3d};
-use crate::predicates::{Point3, Sign};
+use crate::predicates::{BoundedFloatPredicates3, Point3, Sign};
 use crate::simplex::{TETRAHEDRON_FACETS, weighted_sum};
 use crate::vector::difference;
 use crate::walk::{Arrival, Walker};
@@ -16,9 +16,6 @@ const DETERMINANT_ERROR: f64 = 10.0 * f64::EPSILON / 2.0;
 
 /// Greatest error of a weight.
 const WEIGHT_ERROR: f64 = 1e-13;
-
-/// From this volume on, what underflows in products is far below the error.
-const LEAST_VOLUME: f64 = 1e-250;
 
 /// Interpolates linearly in each tetrahedron. It remembers the tetrahedron of its last target.
 #[derive(Debug)]
@@ -70,16 +67,16 @@ impl<'m> Linear<'m> {
 
 /// Barycentric coordinates of a target in a closed tetrahedron.
 fn barycentric(corners: [Point3; 4], target: Point3) -> [f64; 4] {
-    let to = corners.map(|corner| difference(corner, target));
-    let volumes = TETRAHEDRON_FACETS.map(|[i, j, k]| determinant(to[i], to[j], to[k]));
-    let total: f64 = volumes.iter().map(|[volume, _]| volume).sum();
-    let magnitude: f64 = volumes.iter().map(|[_, magnitude]| magnitude).sum();
-    // Written so that it fails for numbers that are none.
-    if total >= LEAST_VOLUME
-        && magnitude < f64::INFINITY
-        && 4.0 * DETERMINANT_ERROR * magnitude <= WEIGHT_ERROR * total
-    {
-        return volumes.map(|[volume, _]| volume.max(0.0) / total);
+    // Products of three differences neither overflow nor underflow then, with room for the sum of six of
+    // them.
+    if corners.iter().chain([&target]).all(BoundedFloatPredicates3::covers_point) {
+        let to = corners.map(|corner| difference(corner, target));
+        let volumes = TETRAHEDRON_FACETS.map(|[i, j, k]| determinant(to[i], to[j], to[k]));
+        let total: f64 = volumes.iter().map(|[volume, _]| volume).sum();
+        let magnitude: f64 = volumes.iter().map(|[_, magnitude]| magnitude).sum();
+        if 4.0 * DETERMINANT_ERROR * magnitude <= WEIGHT_ERROR * total {
+            return volumes.map(|[volume, _]| volume.max(0.0) / total);
+        }
     }
     let [a, b, c, d, target] = integers([corners[0], corners[1], corners[2], corners[3], target]);
     let to = [a, b, c, d].map(|corner| [0, 1, 2].map(|axis| &corner[axis] - &target[axis]));

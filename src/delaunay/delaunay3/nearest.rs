@@ -75,8 +75,14 @@ impl Tetrahedralization {
         }
     }
 
-    /// Tetrahedra to begin walks at, for targets in no order. Cost: a sort of about as many as points.
-    pub fn starts(&self) -> Starts<3> {
+    /// Tetrahedra to begin walks at, for targets in no order, found with the first question.
+    ///
+    /// Cost: a sort of about as many as points.
+    pub fn starts(&self) -> &Starts<3> {
+        self.starts.get_or_init(|| self.find_starts())
+    }
+
+    fn find_starts(&self) -> Starts<3> {
         let at = |vertex: u32| self.vertices[vertex as usize].at;
         let extent = Extent::of_each(self.vertices.iter().map(|vertex| vertex.at));
         let corner = |number: u32| at(self.tetrahedra[number as usize].vertices[0]);

@@ -2,6 +2,7 @@
 
 use super::tetrahedralization::{NONE, Tetrahedralization, Tetrahedron, WORDS};
 use crate::order::sizes_to_starts;
+use std::sync::OnceLock;
 
 /// The twelve even permutations of four corners, by the corner that comes first, then by the one after it.
 const TURNS: [[usize; 4]; 12] = [
@@ -49,6 +50,7 @@ impl Tetrahedralization {
             sorted[place as usize] = Tetrahedron { vertices: tetrahedron.vertices, neighbours };
         }
         self.tetrahedra = sorted;
+        self.starts = OnceLock::new();
     }
 
     /// For each tetrahedron its place in the order, given that its least vertex comes first.

@@ -8,6 +8,7 @@ use crate::starts::Starts;
 use crate::walk::{self, Arrival, Walkable};
 use bytemuck::{Pod, Zeroable};
 use std::num::NonZeroUsize;
+use std::sync::OnceLock;
 
 /// No tetrahedron: beyond a facet of the hull.
 pub const NONE: u32 = u32::MAX;
@@ -91,6 +92,8 @@ impl Tetrahedron {
 pub struct Tetrahedralization {
     pub(super) vertices: Vec<Vertex>,
     pub(super) tetrahedra: Vec<Tetrahedron>,
+    /// Of walks, found when they are needed first.
+    pub(super) starts: OnceLock<Starts<3>>,
     /// Input points left out because an equal one of lesser index is there: `[duplicate, the other]`.
     pub duplicates: Vec<[u32; 2]>,
     /// Input points whose cell in the power diagram is empty, so that they are in no tetrahedron: with
@@ -115,6 +118,7 @@ impl Tetrahedralization {
             vertices,
             tetrahedra,
             duplicates,
+            starts: OnceLock::new(),
             hidden: Vec::new(),
             hull_facets,
             stats: Stats::default(),
@@ -137,6 +141,7 @@ impl Tetrahedralization {
     pub(super) fn clear(&mut self) {
         self.vertices.clear();
         self.tetrahedra.clear();
+        self.starts = OnceLock::new();
         self.duplicates.clear();
         self.hidden.clear();
         self.hull_facets = 0;
@@ -239,8 +244,8 @@ impl Walkable<3, 4> for Tetrahedralization {
         self.tetrahedra.len()
     }
 
-    fn starts(&self) -> Starts<3> {
-        Tetrahedralization::starts(self)
+    fn start_near(&self, target: Point3) -> u32 {
+        self.starts().near(target)
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 
 use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 
 /// The rows of an array of `D` columns; `None` for another number of columns.
@@ -15,8 +15,27 @@ pub(crate) fn rows<'a, T: Element, const D: usize>(
     if array.shape()[1] != D {
         return Ok(None);
     }
-    let numbers = array.as_slice().map_err(|_| PyValueError::new_err("the array is not contiguous"))?;
-    Ok(Some(numbers.as_chunks().0))
+    Ok(Some(numbers(array)?.as_chunks().0))
+}
+
+/// The numbers of an array, row by row.
+///
+/// # Errors
+/// If it does not lie in memory like that.
+pub(crate) fn numbers<'a, T: Element>(array: &'a PyReadonlyArray2<'_, T>) -> PyResult<&'a [T]> {
+    let numbers = array.as_slice().ok().filter(|_| array.is_c_contiguous());
+    numbers.ok_or_else(|| PyValueError::new_err("the array is not contiguous, row by row"))
+}
+
+/// An empty list with room for so many items.
+///
+/// # Errors
+/// MemoryError, where the process would end otherwise.
+pub(crate) fn room_for<T>(count: usize) -> PyResult<Vec<T>> {
+    let mut list = Vec::new();
+    list.try_reserve_exact(count)
+        .map_err(|_| PyMemoryError::new_err(format!("no memory for {count} results")))?;
+    Ok(list)
 }
 
 /// An array of rows of so many numbers, without a copy.

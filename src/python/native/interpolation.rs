@@ -1,6 +1,6 @@
 //! Interpolation of rows of values.
 
-use crate::arrays::array_of_rows;
+use crate::arrays::{array_of_rows, numbers, room_for};
 use crate::mesh::{Dimensions, Mesh, in_pieces};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -14,24 +14,26 @@ type Neighbours<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i32>>, Bo
 
 #[pymethods]
 impl Mesh {
-    /// Values at targets by linear interpolation, in rows; NaN outside.
+    /// Values at targets by linear interpolation, in rows; the row `fill` where there are none. Nobody may
+    /// write to `values` meanwhile.
     fn linear<'py>(
         &self,
         py: Python<'py>,
         values: PyReadonlyArray2<'_, f64>,
+        fill: Vec<f64>,
         targets: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         match &self.dimensions {
             Dimensions::Two(mesh) => self.interpolate(
                 py,
-                &values,
+                (&values, &fill),
                 &targets,
                 || Linear::new(mesh),
                 |linear, target, sum| linear.weights(target).map(|weights| sum(&weights)),
             ),
             Dimensions::Three(mesh) => self.interpolate(
                 py,
-                &values,
+                (&values, &fill),
                 &targets,
                 || delaunay3::Linear::new(mesh),
                 |linear, target, sum| linear.weights(target).map(|weights| sum(&weights)),
@@ -39,17 +41,18 @@ impl Mesh {
         }
     }
 
-    /// Values at targets by natural neighbours, in rows; NaN outside.
+    /// Values at targets by natural neighbours, as of `linear`.
     fn natural<'py>(
         &self,
         py: Python<'py>,
         values: PyReadonlyArray2<'_, f64>,
+        fill: Vec<f64>,
         targets: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let mesh = self.plane()?;
         self.interpolate(
             py,
-            &values,
+            (&values, &fill),
             &targets,
             || NaturalNeighbours::new(mesh),
             |natural, target, sum| natural.weights(target).map(sum),
@@ -65,7 +68,7 @@ impl Mesh {
     ) -> PyResult<Neighbours<'py>> {
         let mesh = self.plane()?;
         let (mut starts, mut points, mut weights) = (vec![0i64], Vec::new(), Vec::new());
-        in_pieces(py, &targets, |targets| {
+        in_pieces(py, self.threads, &targets, |targets| {
             let mut found: Vec<Vec<(u32, f64)>> = vec![Vec::new(); targets.len()];
             batch::answer(
                 self.threads,
@@ -100,18 +103,22 @@ impl Mesh {
     fn interpolate<'py, const D: usize, S>(
         &self,
         py: Python<'py>,
-        values: &PyReadonlyArray2<'_, f64>,
+        (values, fill): (&PyReadonlyArray2<'_, f64>, &[f64]),
         targets: &PyReadonlyArray2<'_, f64>,
         begin: impl Fn() -> S + Sync,
         weigh: impl Fn(&mut S, [f64; D], &mut dyn FnMut(&[(u32, f64)])) -> Option<()> + Sync,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let width = values.shape()[1];
-        // Other threads of Python may write to the array meanwhile.
-        let values = values.as_slice()?.to_vec();
-        let mut all = Vec::with_capacity(width * targets.shape()[0]);
-        in_pieces(py, targets, |targets: &[[f64; D]]| {
+        if values.shape()[0] != self.points_len() || fill.len() != width {
+            return Err(PyValueError::new_err(
+                "values: one row for each point is needed, and as long a row to fill",
+            ));
+        }
+        let values = numbers(values)?;
+        let mut all = room_for(width * targets.shape()[0])?;
+        in_pieces(py, self.threads, targets, |targets: &[[f64; D]]| {
             let start = all.len();
-            all.resize(start + width * targets.len(), f64::NAN);
+            all.extend(fill.iter().cycle().take(width * targets.len()));
             batch::answer(self.threads, targets, &mut all[start..], width, &begin, |state, target, sums| {
                 weigh(state, target, &mut |weights| {
                     for (column, sum) in sums.iter_mut().enumerate() {

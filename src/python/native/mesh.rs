@@ -1,6 +1,6 @@
 //! Triangulations of the plane and of space as one class of Python.
 
-use crate::arrays::{array_of, rows, signed};
+use crate::arrays::{array_of, room_for, rows, signed};
 use crate::waiting::wait_for;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyOverflowError, PyValueError};
@@ -9,8 +9,8 @@ use spmesh_delaunay::{Error, delaunay2, delaunay3, parallel};
 use std::borrow::Cow;
 use std::num::NonZeroUsize;
 
-/// Targets that are asked for between two looks at signals.
-const TARGETS: usize = 1 << 22;
+/// Targets that each thread is asked for between two looks at signals.
+const TARGETS: usize = 1 << 20;
 
 /// Rows that a thread writes in one go.
 const ROWS: usize = 1 << 16;
@@ -33,7 +33,7 @@ fn error_of(error: Error) -> PyErr {
         Error::TooManyPoints { .. } | Error::TooManyTetrahedra(_) => {
             PyOverflowError::new_err(error.to_string())
         }
-        _ => PyValueError::new_err(error.to_string()),
+        _ => PyValueError::new_err(format!("points: {error}")),
     }
 }
 
@@ -128,12 +128,12 @@ impl Mesh {
         py: Python<'py>,
         targets: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        let mut found: Vec<i32> = Vec::with_capacity(targets.shape()[0]);
+        let mut found: Vec<i32> = room_for(targets.shape()[0])?;
         match &self.dimensions {
-            Two(mesh) => in_pieces(py, &targets, |targets| {
+            Two(mesh) => in_pieces(py, self.threads, &targets, |targets| {
                 found.extend(mesh.locate_all(targets, self.threads).into_iter().map(signed))
             })?,
-            Three(mesh) => in_pieces(py, &targets, |targets| {
+            Three(mesh) => in_pieces(py, self.threads, &targets, |targets| {
                 found.extend(mesh.locate_all(targets, self.threads).into_iter().map(signed))
             })?,
         }
@@ -142,6 +142,14 @@ impl Mesh {
 }
 
 impl Mesh {
+    /// Number of points, duplicates included.
+    pub(crate) fn points_len(&self) -> usize {
+        match &self.dimensions {
+            Two(mesh) => mesh.points().len(),
+            Three(mesh) => mesh.vertices().len() + mesh.duplicates.len(),
+        }
+    }
+
     /// An array with a row for each simplex, made on all threads.
     fn rows_of<'py, const N: usize>(
         &self,
@@ -163,13 +171,14 @@ impl Mesh {
 /// Gives `work` all targets in pieces, without the lock of the interpreter, and looks for signals in between.
 pub(crate) fn in_pieces<const D: usize>(
     py: Python<'_>,
+    threads: NonZeroUsize,
     targets: &PyReadonlyArray2<'_, f64>,
     mut work: impl FnMut(&[[f64; D]]) + Send,
 ) -> PyResult<()> {
     let Some(targets) = rows::<f64, D>(targets)? else {
         return Err(PyValueError::new_err(format!("targets have {D} columns, as points")));
     };
-    for piece in targets.chunks(TARGETS) {
+    for piece in targets.chunks(TARGETS.saturating_mul(threads.get())) {
         // Other threads of Python may write to the array meanwhile.
         let piece = piece.to_vec();
         py.detach(|| work(&piece));

@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// Points from which on work may take long.
-const LONG: usize = 100_000;
+/// Points from which on work may take long: in space its growth may be quadratic.
+const LONG: usize = 1_000;
 
 /// Time between two looks.
 const PAUSE: Duration = Duration::from_millis(50);
@@ -30,16 +30,22 @@ pub(crate) fn wait_for<T: Send>(
         progress.map_or(Ok(()), |progress| progress.call1((share,)).map(drop))
     };
     let mut raised = Ok(());
+    let work = Mutex::new(Some(work));
+    let take = || work.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let (sender, receiver) = sync_channel::<()>(1);
+    let receiver = Mutex::new(receiver);
     let done = thread::scope(|scope| {
-        let (sender, receiver) = sync_channel::<()>(1);
-        let receiver = Mutex::new(receiver);
-        let wait = || receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(PAUSE);
         let watch_of_work = watch.clone();
-        let worker = scope.spawn(move || {
+        let run = move || {
             // Dropped at the end, also of a panic, which wakes the one who waits.
             let _sender = sender;
-            work(watch_of_work)
-        });
+            take().map(|work| work(watch_of_work))
+        };
+        let Ok(worker) = thread::Builder::new().spawn_scoped(scope, run) else {
+            // The system has no thread for it: nobody looks for signals then.
+            return Ok(py.detach(|| take().map(|work| work(watch.clone()))));
+        };
+        let wait = || receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(PAUSE);
         while let Err(RecvTimeoutError::Timeout) = py.detach(wait) {
             if raised.is_ok() {
                 raised = report((watch.inserted() as f64 / points as f64).min(1.0));
@@ -52,6 +58,7 @@ pub(crate) fn wait_for<T: Send>(
     });
     raised?;
     let done = done.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    let done = done.expect("work is taken once");
     if done.is_ok() {
         report(1.0)?;
     }

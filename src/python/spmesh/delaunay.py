@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import warnings
 from collections.abc import Callable
@@ -20,11 +21,27 @@ Floats = NDArray[np.float64]
 _EPSILON = float(np.finfo(np.float64).eps)
 
 
-def points_of(points: ArrayLike, name: str = "points") -> Floats:
-    """An array of points as rows of finite numbers, or an error that names the argument."""
-    if isinstance(points, np.ma.MaskedArray):
+def numbers_of(value: object, name: str, kinds: str = "biuf") -> NDArray[Any]:
+    """An array of float64, or of complex128, that lies in memory row by row; or an error that names the argument."""
+    if isinstance(value, np.ma.MaskedArray):
         raise ValueError(f"{name}: masked arrays have no place for what is masked: select with .compressed()")
-    array = np.ascontiguousarray(points, dtype=np.float64)
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind == "O":
+            array = np.asarray(array, dtype=np.complex128 if "c" in kinds else np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"{name}: {error}") from None
+    if array.dtype.kind not in kinds:
+        raise ValueError(f"{name}: numbers are needed, not {array.dtype}")
+    is_long = array.dtype.kind in "iu" and array.dtype.itemsize == 8 and array.size > 0
+    if is_long and max(-int(array.min()), int(array.max())) > 2**53:
+        raise ValueError(f"{name}: integers beyond 2^53 are not exact as float64: subtract an offset")
+    return np.require(array, np.complex128 if array.dtype.kind == "c" else np.float64, ["C", "A"])
+
+
+def points_of(points: object, name: str = "points") -> Floats:
+    """An array of points as rows of numbers, or an error that names the argument."""
+    array = numbers_of(points, name)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         raise ValueError(f"{name}: an array of 2 or 3 columns is needed, this one has the shape {array.shape}")
     return array
@@ -34,9 +51,13 @@ def threads_of(threads: int | None) -> int:
     """A number of threads; None stands for all processors that this process may use."""
     if threads is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    if threads < 1:
-        raise ValueError(f"threads: at least 1 is needed, not {threads}")
-    return threads
+    try:
+        count = operator.index(threads)
+    except TypeError:
+        count = 0
+    if count < 1:
+        raise ValueError(f"threads: a number of at least 1 is needed, not {threads!r}")
+    return min(count, 1024)
 
 
 class Delaunay:
@@ -67,7 +88,7 @@ class Delaunay:
         Number of threads; all processors by default. The result does not depend on it. One thread triangulates
         points of the plane; all other steps use all.
     progress : callable, optional
-        Called now and then with the share that is done, from 0 to 1, if there are 100,000 points or more. What it
+        Called now and then with the share that is done, from 0 to 1, if there are 1,000 points or more. What it
         raises ends the work.
 
     Raises
@@ -77,7 +98,12 @@ class Delaunay:
     OverflowError
         If there are too many points.
     KeyboardInterrupt
-        Soon after the key is pressed.
+        Soon after the key is pressed: after some points, or between the steps before and after insertion.
+
+    Notes
+    -----
+    `points` may be the caller's array, which must not be changed then. Several threads may ask at once; none may add
+    points meanwhile.
 
     Examples
     --------
@@ -110,14 +136,25 @@ class Delaunay:
     def _triangulate(self, points: Floats, progress: Callable[[float], object] | None = None) -> None:
         from ._native import Mesh
 
-        self._points = points
-        self._mesh: Mesh = Mesh(points, threads_of(self._threads), progress)
-        for name in [name for name, value in vars(type(self)).items() if isinstance(value, cached_property)]:
-            self.__dict__.pop(name, None)
+        if progress is not None and not callable(progress):
+            raise ValueError(f"progress: something to call is needed, not {progress!r}")
+        mesh = Mesh(points, threads_of(self._threads), progress)
+        # Only now, so that nothing changes if that failed.
+        self._points, self._mesh = points, mesh
+        for kind in type(self).__mro__:
+            for name in [name for name, value in vars(kind).items() if isinstance(value, cached_property)]:
+                self.__dict__.pop(name, None)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        # A triangulation is canonical: its points are all there is to know.
-        return type(self), (self._points,)
+    # A triangulation is canonical: its points are all there is to know.
+
+    def __getstate__(self) -> dict[str, Any]:
+        members = (item for kind in type(self).__mro__ for item in vars(kind).items())
+        caches = {name for name, value in members if isinstance(value, cached_property)}
+        return {name: value for name, value in self.__dict__.items() if name not in caches | {"_mesh"}}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._triangulate(self._points)
 
     @property
     def points(self) -> Floats:
@@ -142,12 +179,12 @@ class Delaunay:
     @cached_property
     def min_bound(self) -> Floats:
         """(d,) least coordinates."""
-        return np.asarray(self._points.min(axis=0))
+        return np.asarray(self._points.min(axis=0, initial=np.inf))
 
     @cached_property
     def max_bound(self) -> Floats:
         """(d,) greatest coordinates."""
-        return np.asarray(self._points.max(axis=0))
+        return np.asarray(self._points.max(axis=0, initial=-np.inf))
 
     @cached_property
     def simplices(self) -> Ints:
@@ -208,11 +245,15 @@ class Delaunay:
         have no digit right."""
         corners = self._points[self.simplices]
         origin = corners[:, -1]
-        edges = np.swapaxes(corners[:, :-1] - origin[:, None], 1, 2)
         with np.errstate(all="ignore"):
+            edges = np.swapaxes(corners[:, :-1] - origin[:, None], 1, 2)
+            # By powers of two, so that determinants neither overflow nor underflow.
+            exponents = np.frexp(np.abs(edges).max(axis=(1, 2), initial=0))[1][:, None, None]
+            edges = np.ldexp(edges, -exponents)
             inverse = _inverses(edges)
-            sizes = [np.abs(matrices).sum(axis=1).max(axis=1) for matrices in (edges, inverse)]
+            sizes = [np.abs(matrices).sum(axis=1).max(axis=1, initial=0) for matrices in (edges, inverse)]
             inverse[~(sizes[0] * sizes[1] * 1000 * _EPSILON < 1)] = np.nan
+            inverse = np.ldexp(inverse, -exponents)
         return np.ascontiguousarray(np.concatenate([inverse, origin[:, None]], axis=1))
 
     def find_simplex(self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None) -> Ints:
@@ -238,7 +279,7 @@ class Delaunay:
         return self._mesh.locate(targets.reshape(-1, self.ndim)).reshape(targets.shape[:-1])
 
     def _targets(self, xi: ArrayLike) -> Floats:
-        targets = np.ascontiguousarray(xi, dtype=np.float64)
+        targets: Floats = numbers_of(xi, "xi")
         if targets.ndim == 0 or targets.shape[-1] != self.ndim:
             raise ValueError(f"xi: {self.ndim} coordinates each are needed, the shape is {targets.shape}")
         return targets
@@ -265,13 +306,13 @@ class Delaunay:
     def equations(self) -> Floats:
         """(m, d + 2) hyperplanes of the lifted simplices, [normal, offset] with unit normals that point down; the
         numbers are rounded. With `paraboloid_scale` 1 and `paraboloid_shift` 0."""
-        lifted = self.lift_points(self._points)[self.simplices]
-        edges = lifted[:, :-1] - lifted[:, -1:]
         with np.errstate(all="ignore"):
+            lifted = self.lift_points(self._points)[self.simplices]
+            edges = lifted[:, :-1] - lifted[:, -1:]
             slopes = _inverses(edges[:, :, :-1]) @ edges[:, :, -1:]
             normals = np.concatenate([slopes[:, :, 0], np.full((len(edges), 1), -1.0)], axis=1)
             normals /= np.linalg.norm(normals, axis=1)[:, None]
-        offsets = -np.einsum("ij,ij->i", normals, lifted[:, -1])
+            offsets = -np.einsum("ij,ij->i", normals, lifted[:, -1])
         return np.ascontiguousarray(np.concatenate([normals, offsets[:, None]], axis=1))
 
     def lift_points(self, x: ArrayLike) -> Floats:

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .delaunay import Delaunay, Floats, Ints, points_of
+from .delaunay import Delaunay, Floats, Ints, numbers_of, points_of
 
 Points: TypeAlias = "ArrayLike | Delaunay | tuple[ArrayLike, ...]"
 
 
-def _places(arguments: tuple[Any, ...], ndim: int) -> Floats:
+def _places(arguments: tuple[Any, ...], ndim: int, name: str = "xi") -> Floats:
     """(..., d) places from one array of them, or from arrays of each coordinate, which are broadcast."""
     if len(arguments) == 1 and isinstance(arguments[0], tuple):
         arguments = arguments[0]
     if len(arguments) == 1:
-        places = np.asarray(arguments[0], dtype=np.float64)
+        places = numbers_of(arguments[0], name)
+    elif not arguments:
+        raise ValueError(f"{name}: places are needed")
     else:
-        places = np.stack(np.broadcast_arrays(*[np.asarray(x, dtype=np.float64) for x in arguments]), axis=-1)
+        try:
+            places = np.stack(np.broadcast_arrays(*[numbers_of(x, name) for x in arguments]), axis=-1)
+        except ValueError as error:
+            raise ValueError(str(error) if str(error).startswith(name) else f"{name}: {error}") from None
     if places.ndim == 0 or places.shape[-1] != ndim:
-        raise ValueError(f"xi: {ndim} coordinates each are needed, the shape is {places.shape}")
+        raise ValueError(f"{name}: {ndim} coordinates each are needed, the shape is {places.shape}")
     return places
 
 
@@ -50,7 +56,7 @@ class _Interpolator:
                 raise TypeError("points: only a spmesh.Delaunay is taken as a triangulation: pass its points")
             rows: Any = points
             if isinstance(points, tuple):
-                rows = _places(points, len(points)).reshape(-1, len(points))
+                rows = _places(points, max(len(points), 2), "points").reshape(-1, max(len(points), 2))
             array = points_of(rows)
             if rescale and len(array):
                 self._offset = array.mean(axis=0)
@@ -58,26 +64,41 @@ class _Interpolator:
                 self._scale = np.where(spread > 0, spread, 1.0)
                 array = np.ascontiguousarray((array - self._offset) / self._scale)
             self.tri = Delaunay(array, threads=threads)
-        numbers = np.asarray(values)
+        # Of the triangulation as it is now: points that are added later have no values.
+        self._mesh = self.tri._mesh
+        numbers = numbers_of(values, "values", "biufc")
         if numbers.ndim == 0 or len(numbers) != self.tri.npoints:
             raise ValueError(
                 f"values: one for each of {self.tri.npoints} points is needed, the shape is {numbers.shape}"
             )
-        self.is_complex = np.issubdtype(numbers.dtype, np.complexfloating)
-        self.values: NDArray[Any] = np.ascontiguousarray(numbers, dtype=complex if self.is_complex else float)
+        self.is_complex = numbers.dtype.kind == "c"
         self.fill_value = fill_value
+        try:
+            self._fill = np.array([fill_value], dtype=numbers.dtype).view(np.float64)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise ValueError(f"fill_value: {error}") from None
+        # A copy that nobody writes to: threads read it without the lock of the interpreter.
+        self.values: NDArray[Any] = numbers.copy()
+        self.values.flags.writeable = False
+        width = math.prod(numbers.shape[1:]) * (2 if self.is_complex else 1)
+        self._columns: Floats = np.zeros((len(numbers), width))
+        if numbers.size:
+            self._columns = self.values.reshape(-1).view(np.float64).reshape(len(numbers), width)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name not in ("_mesh", "_columns")}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        triangulation = state["tri"]
+        self.__init__(triangulation, state["values"], state["fill_value"])  # type: ignore[misc]
+        self.__dict__.update(state)
 
     @property
     def points(self) -> Floats:
         """(n, d) points, rescaled if that was asked for."""
         return self.tri.points
 
-    def _columns(self) -> Floats:
-        """(n, k) real numbers of each point."""
-        columns = self.values.reshape(len(self.values), -1)
-        return np.ascontiguousarray(columns.view(np.float64) if self.is_complex else columns)
-
-    def _evaluate(self, places: Floats) -> Floats:
+    def _evaluate(self, places: Floats, fill: list[float]) -> Floats:
         raise NotImplementedError
 
     def __call__(self, *args: Any) -> NDArray[Any]:
@@ -93,11 +114,10 @@ class _Interpolator:
         """
         xi = _places(args, self.tri.ndim)
         places = np.ascontiguousarray((xi.reshape(-1, self.tri.ndim) - self._offset) / self._scale)
-        found = self._evaluate(places)
-        if self.is_complex:
+        width = self._columns.shape[1]
+        found: NDArray[Any] = self._evaluate(places, np.resize(self._fill, width).tolist())
+        if self.is_complex and width:
             found = found.view(np.complex128)
-        if not np.isnan(self.fill_value):
-            found[self.tri.find_simplex(places) < 0] = self.fill_value
         return found.reshape(xi.shape[:-1] + self.values.shape[1:])
 
 
@@ -113,7 +133,7 @@ class LinearNDInterpolator(_Interpolator):
     values : (n, ...) array of float or complex
         Values at the points. Those of duplicates do not count, but for the first.
     fill_value : number
-        What places outside of the hull get; NaN by default.
+        What places outside of the hull get, and those that are not finite; NaN by default.
     rescale : bool
         Whether points are scaled to a box with sides of 1 before they are triangulated.
     threads : int, optional
@@ -127,8 +147,8 @@ class LinearNDInterpolator(_Interpolator):
     array([ 3., nan])
     """
 
-    def _evaluate(self, places: Floats) -> Floats:
-        return self.tri._mesh.linear(self._columns(), places)
+    def _evaluate(self, places: Floats, fill: list[float]) -> Floats:
+        return self._mesh.linear(self._columns, fill, places)
 
 
 class NaturalNeighborInterpolator(_Interpolator):
@@ -163,11 +183,11 @@ class NaturalNeighborInterpolator(_Interpolator):
         if self.tri.ndim != 2:
             raise ValueError("points: natural neighbours are those of the plane, 2 columns")
 
-    def _evaluate(self, places: Floats) -> Floats:
-        return self.tri._mesh.natural(self._columns(), places)
+    def _evaluate(self, places: Floats, fill: list[float]) -> Floats:
+        return self._mesh.natural(self._columns, fill, places)
 
     def weights(self, xi: ArrayLike) -> tuple[NDArray[np.int64], Ints, Floats]:
         """`indptr, indices, weights`: the natural neighbours of place k of `xi`, an (m, 2) array, are the points
         `indices[indptr[k]:indptr[k + 1]]`, with weights in the same places that sum to 1; none outside of the hull."""
         places = _places((xi,), 2).reshape(-1, 2)
-        return self.tri._mesh.natural_weights(np.ascontiguousarray((places - self._offset) / self._scale))
+        return self._mesh.natural_weights(np.ascontiguousarray((places - self._offset) / self._scale))

@@ -47,6 +47,14 @@ def sets(seed=5):
         yield np.concatenate([random.random((8, ndim)), [[1e9] * ndim]])
 
 
+class Child(spmesh.Delaunay):
+    """A triangulation with a name."""
+
+    def __init__(self, points, name):
+        super().__init__(points)
+        self.name = name
+
+
 class Triangulations(unittest.TestCase):
     def test_simplices_are_delaunay_and_cover_the_hull(self):
         for points in sets():
@@ -144,6 +152,59 @@ class Triangulations(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "2 columns"):
             mesh.add_points([[1, 2, 3]])
 
+    def test_strange_arrays(self):
+        points = np.random.default_rng(15).random((20, 2))
+        expected = spmesh.Delaunay(points).simplices
+        unaligned = np.frombuffer(b"x" + points.tobytes(), np.float64, offset=1).reshape(-1, 2)
+        for same in (unaligned, np.asfortranarray(points), points.astype(">f8"), points[::-1][::-1], points.tolist()):
+            np.testing.assert_array_equal(spmesh.Delaunay(same).simplices, expected)
+        for bad in ([[2**60, 0], [2**60 + 1, 0]], np.zeros((3, 2), "M8[s]"), [["1", "2"]], [[None, 1]], [[1], [2, 3]], [[1j, 0]]):
+            with self.assertRaisesRegex(ValueError, "^points"):
+                spmesh.Delaunay(bad)
+        with self.assertRaisesRegex(ValueError, "^points: point 1"):
+            spmesh.Delaunay([[0, 0], [np.nan, 0]])
+        with self.assertRaisesRegex(ValueError, "^progress"):
+            spmesh.Delaunay(points, progress=3)
+        for threads in (2.5, "2", [1], -1):
+            with self.assertRaisesRegex(ValueError, "^threads"):
+                spmesh.Delaunay(points, threads=threads)
+        for masked in (np.ma.masked_array([0.0, 1.0], [True, False]),):
+            with self.assertRaisesRegex(ValueError, "^xi"):
+                spmesh.Delaunay(points).find_simplex(masked)
+
+    def test_what_fails_changes_nothing(self):
+        mesh = spmesh.Delaunay([[0, 0], [4, 0], [0, 4], [4, 5]])
+        simplices = mesh.simplices
+        for bad in ([[np.nan, 1]], [[1, 2, 3]]):
+            with self.assertRaises(ValueError):
+                mesh.add_points(bad)
+        self.assertEqual((mesh.npoints, len(mesh.points)), (4, 4))
+        np.testing.assert_array_equal(mesh.simplices, simplices)
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(mesh)).simplices, simplices)
+
+    def test_subclasses(self):
+        mesh = Child([[0, 0], [4, 0], [0, 4]], "name")
+        self.assertEqual((mesh.nsimplex, pickle.loads(pickle.dumps(mesh)).name), (1, "name"))
+        mesh.add_points([[1, 1]])
+        self.assertEqual(mesh.nsimplex, 3)
+
+    def test_transforms_of_great_and_small_simplices(self):
+        for ndim, powers in ((2, (160, -170)), (3, (110, -110))):
+            for power in powers:
+                corners = np.concatenate([np.zeros((1, ndim)), np.eye(ndim)]) * 10.0**power
+                mesh = spmesh.Delaunay(corners)
+                weights = mesh.transform[0, :ndim] @ (corners.mean(axis=0) - mesh.transform[0, ndim])
+                np.testing.assert_allclose(weights, 1 / (ndim + 1))
+
+    def test_many_simplices_at_one_vertex(self):
+        angles = np.linspace(0, 2 * np.pi, 20_000, endpoint=False)
+        mesh = spmesh.Delaunay(np.concatenate([[[0, 0]], np.stack([np.cos(angles), np.sin(angles)], axis=1)]))
+        at_centre = np.flatnonzero((mesh.simplices == 0).any(axis=1))
+        started = time.process_time()
+        self.assertEqual(mesh.find_simplex(np.zeros((20, 2))).tolist(), [at_centre.min()] * 20)
+        # A second a target if each triangle is compared with all others.
+        self.assertLess(time.process_time() - started, 5)
+
     def test_points_can_follow(self):
         points = np.random.default_rng(4).random((50, 2))
         mesh = spmesh.Delaunay(points[:20])
@@ -236,6 +297,40 @@ class Interpolators(unittest.TestCase):
                 f([[1, 2, 3]])
         with self.assertRaisesRegex(ValueError, "2 columns"):
             spmesh.NaturalNeighborInterpolator(np.eye(3), [1, 2, 3])
+
+    def test_a_triangulation_may_grow(self):
+        points = np.array([[0, 0], [4, 0], [0, 4]])
+        for interpolator in (spmesh.LinearNDInterpolator, spmesh.NaturalNeighborInterpolator):
+            mesh = spmesh.Delaunay(points)
+            f = interpolator(mesh, [0, 4, 8])
+            mesh.add_points([[9, 9], [1, 1]])
+            np.testing.assert_array_equal(np.isnan(f([[1, 1], [8, 8]])), [False, True])
+            self.assertAlmostEqual(float(f(1, 1)), 3)
+            with self.assertRaisesRegex(ValueError, "^values"):
+                interpolator(mesh, [0, 4, 8])
+            whole = interpolator(points, [0, 4j, 8], fill_value=2)
+            np.testing.assert_array_equal(pickle.loads(pickle.dumps(whole))([[1, 1], [9, 9]]), whole([[1, 1], [9, 9]]))
+
+    def test_places_without_simplices_get_the_fill_value(self):
+        for interpolator in (spmesh.LinearNDInterpolator, spmesh.NaturalNeighborInterpolator):
+            self.assertEqual(interpolator(np.zeros((0, 2)), [], fill_value=7)([[1, 1]]).tolist(), [7])
+            for fill in (np.nan, 7):
+                f = interpolator([[0, 0], [1, 1], [2, 2]], [0, 1, 2], fill_value=fill)
+                np.testing.assert_array_equal(f([[1, 1], [0, 1], [np.nan, 0]]), [1, fill, fill])
+            self.assertEqual(interpolator([[0, 0], [1, 0], [0, 1]], np.zeros((3, 0)))([[0, 0]]).shape, (1, 0))
+            with self.assertRaisesRegex(ValueError, "^fill_value"):
+                interpolator([[0, 0], [1, 0], [0, 1]], [1, 2, 3], fill_value="x")
+            for bad in (np.ma.masked_all(3), np.zeros(3, "M8[s]"), ["a", "b", "c"]):
+                with self.assertRaisesRegex(ValueError, "^values"):
+                    interpolator([[0, 0], [1, 0], [0, 1]], bad)
+
+    def test_scales_far_apart(self):
+        scales = np.array([1e102, 3e-138, 2e-202])
+        corners = np.concatenate([np.zeros((1, 3)), np.eye(3)]) * scales
+        self.assertAlmostEqual(float(spmesh.LinearNDInterpolator(corners, [0, 1, 0, 0])(*([0.3, 0.2, 0.37] * scales))), 0.3)
+        least = [[1e-323, 5e-324], [-1e-323, 1e-323], [-1e-323, -1e-323], [1e-323, -5e-324], [1e-323, 1.5e-323]]
+        _, indices, weights = spmesh.NaturalNeighborInterpolator(least, range(5)).weights([[1e-323, 0]])
+        self.assertEqual(dict(zip(indices.tolist(), weights.tolist())), {0: 0.5, 3: 0.5})
 
     def test_weights_of_natural_neighbours(self):
         points = np.random.default_rng(10).random((300, 2))

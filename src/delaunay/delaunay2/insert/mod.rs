@@ -7,23 +7,20 @@ use super::half_edge::{HalfEdge, NONE, WORDS, next, number_of, previous};
 use super::triangulation::Triangulation;
 use crate::error::{Error, Result};
 use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
-use crate::starts::Starts;
-use crate::walk::{Arrival, STEPS_TO_NEXT, walk, walk_steps};
+use crate::walk::{Arrival, walk_from_either};
 use cavity::{Cavity, Edge};
+use std::sync::OnceLock;
 
 /// Starts are found after one far walk for so many points: that takes about as long as these walks did, and
 /// so pays for itself.
 const POINTS_PER_WALK: usize = 4000;
 
-/// Triangles where far walks start. Triangles keep their numbers while points are inserted, and stay about
-/// where they are.
+/// Walks that begin far from a point, since starts were found for them.
 #[derive(Debug, Clone, Default)]
-pub(super) struct FarStarts {
-    starts: Option<Starts<2>>,
-    /// How many points they were found for.
-    count: usize,
-    /// Far walks since then.
+pub(super) struct FarWalks {
     walks: usize,
+    /// How many points there were then.
+    count: usize,
 }
 
 /// Where a walk to a point ends.
@@ -159,29 +156,37 @@ impl Triangulation {
         let first = self.triangles.triangle_of_vertex.get(near as usize).copied().unwrap_or(NONE);
         // A duplicate has no triangle.
         let first = if first == NONE { 0 } else { first };
-        let arrival = match walk_steps(self, first, at, STEPS_TO_NEXT, predicates) {
-            Ok(arrival) => Some(arrival),
-            Err(after) => {
-                let start = self.far_start(at, after);
-                walk(self, start, at, predicates)
-            }
+        self.renew_starts();
+        let far = || match self.starts.get() {
+            Some(starts) => starts.near(at),
+            None => first,
         };
+        let mut is_far = false;
+        let arrival = walk_from_either(
+            self,
+            first,
+            || {
+                is_far = true;
+                far()
+            },
+            at,
+            predicates,
+        );
+        self.far_walks.walks += usize::from(is_far);
         match arrival.expect("a walk without a limit ends") {
             Arrival::Inside(number, sides) => self.found_in(number, sides),
             Arrival::Outside(number, side) => Found::Beyond(number * WORDS as u32 + side as u32),
         }
     }
 
-    /// A triangle where a far walk to a place goes on: `after`, until there were so many that it pays to find
-    /// others.
-    fn far_start(&mut self, at: Point2, after: u32) -> u32 {
-        self.far_starts.walks += 1;
-        let count = self.points.len();
-        let is_due = self.far_starts.walks * POINTS_PER_WALK >= count && count >= 2 * self.far_starts.count;
-        if is_due {
-            self.far_starts = FarStarts { starts: Some(self.starts()), count, walks: 0 };
+    /// Finds starts for walks if there were so many far ones that it pays.
+    fn renew_starts(&mut self) {
+        let (FarWalks { walks, count: before }, count) = (&self.far_walks, self.points.len());
+        if walks * POINTS_PER_WALK >= count.max(1) && count >= 2 * before {
+            self.far_walks = FarWalks { walks: 0, count };
+            self.starts = OnceLock::new();
+            self.starts();
         }
-        self.far_starts.starts.as_ref().map_or(after, |starts| starts.near(at))
     }
 
     /// The place of a point in a closed triangle, from its sides of the edges.

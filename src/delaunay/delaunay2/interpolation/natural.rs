@@ -4,7 +4,7 @@ use super::cavity::Cavity;
 use super::exact_areas;
 use super::stolen_areas::StolenAreas;
 use crate::delaunay2::Triangulation;
-use crate::predicates::{BoundedFloatPredicates, Extent, Point2, Sign, is_bounded};
+use crate::predicates::{Point2, Sign, is_bounded};
 use crate::simplex::weighted_sum;
 use crate::walk::{Arrival, Walker};
 
@@ -19,19 +19,16 @@ use crate::walk::{Arrival, Walker};
 #[derive(Debug)]
 pub struct NaturalNeighbours<'m> {
     walker: Walker<'m, Triangulation, 2, 3>,
-    /// Whether plain arithmetic neither overflows nor underflows for any vertex.
-    is_bounded: bool,
     cavity: Cavity,
     areas: StolenAreas,
     weights: Vec<(u32, f64)>,
 }
 
 impl<'m> NaturalNeighbours<'m> {
-    /// The natural neighbours in `mesh`. Cost: one pass over its points.
+    /// The natural neighbours in `mesh`.
     pub fn new(mesh: &'m Triangulation) -> NaturalNeighbours<'m> {
         NaturalNeighbours {
             walker: Walker::new(mesh),
-            is_bounded: BoundedFloatPredicates::covers(&Extent::of(mesh.points())),
             cavity: Cavity::default(),
             areas: StolenAreas::default(),
             weights: Vec::new(),
@@ -123,8 +120,10 @@ impl<'m> NaturalNeighbours<'m> {
             return;
         }
         self.cavity.find(mesh, number, target, &mut self.walker.predicates);
-        let is_good = self.is_bounded
-            && is_bounded(&target)
+        // Plain arithmetic neither overflows nor underflows then.
+        let mut corners = self.cavity.border.iter().map(|edge| mesh.points[edge.ends[0] as usize]);
+        let is_good = is_bounded(&target)
+            && corners.all(|corner| is_bounded(&corner))
             && self.areas.write(&mesh.points, &self.cavity, target, &mut self.weights);
         if !is_good {
             exact_areas::write(&mesh.points, &self.cavity, target, &mut self.weights);
@@ -134,15 +133,15 @@ impl<'m> NaturalNeighbours<'m> {
 
 /// Which part of the way from a to b the target on it is, off by four roundings.
 fn part_of_edge(a: Point2, b: Point2, target: Point2) -> f64 {
-    // Halves do not overflow. They only choose the longer axis, for which a lost digit does not matter.
-    let half = |axis: usize| (0.5 * b[axis] - 0.5 * a[axis]).abs();
-    let axis = usize::from(half(1) > half(0));
-    let difference = b[axis] - a[axis];
-    if difference.is_finite() {
-        (target[axis] - a[axis]) / difference
-    } else {
-        (0.5 * target[axis] - 0.5 * a[axis]) / (0.5 * b[axis] - 0.5 * a[axis])
+    let whole = [0, 1].map(|axis| b[axis] - a[axis]);
+    if whole.iter().all(|length| length.is_finite()) {
+        // Of numbers so small that a difference has no digit more it is exact.
+        let axis = usize::from(whole[1].abs() > whole[0].abs());
+        return (target[axis] - a[axis]) / whole[axis];
     }
+    let half = [0, 1].map(|axis| 0.5 * b[axis] - 0.5 * a[axis]);
+    let axis = usize::from(half[1].abs() > half[0].abs());
+    (0.5 * target[axis] - 0.5 * a[axis]) / half[axis]
 }
 
 /// The corner at which the target lies, if it lies at one: the other two signs are zero.

@@ -42,7 +42,7 @@ impl BoundedFloatPredicates3 {
             && extent.greatest_magnitude() <= Self::GREATEST_MAGNITUDE
     }
 
-    fn covers_point(point: &Point3) -> bool {
+    pub(crate) fn covers_point(point: &Point3) -> bool {
         point.iter().all(|coordinate| {
             *coordinate == 0.0
                 || (Self::LEAST_MAGNITUDE..=Self::GREATEST_MAGNITUDE).contains(&coordinate.abs())
