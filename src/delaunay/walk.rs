@@ -13,6 +13,11 @@ use std::num::NonZeroUsize;
 /// about as much.
 const STEPS_TO_NEXT: usize = 16;
 
+/// Most targets that a [`Walker`] jumps to before it tries a walk from the last one again. Of targets in no
+/// order, the lost steps are then a small part; where they come in order again, a jump costs a few times a
+/// short walk.
+const JUMPS_MAX: u32 = 31;
+
 /// Simplices of `N` corners in `D` dimensions, with their neighbours.
 pub(crate) trait Walkable<const D: usize, const N: usize>: Sync {
     /// What decides sides; made once for many targets.
@@ -142,17 +147,35 @@ pub(crate) struct Walker<'m, M: Walkable<D, N>, const D: usize, const N: usize> 
     pub(crate) mesh: &'m M,
     pub(crate) predicates: M::Predicates,
     last: u32,
+    /// How many targets are to be jumped to at once, without a walk from the last one.
+    jumps: u32,
+    /// How many there were after the last walk that was too long.
+    jumps_before: u32,
 }
 
 impl<'m, M: Walkable<D, N>, const D: usize, const N: usize> Walker<'m, M, D, N> {
     pub(crate) fn new(mesh: &'m M) -> Self {
-        Walker { mesh, predicates: M::Predicates::default(), last: 0 }
+        Walker { mesh, predicates: M::Predicates::default(), last: 0, jumps: 0, jumps_before: 0 }
     }
 
     /// Walks to a target, from the last one if it is near. `None` as of [`walk`].
     pub(crate) fn walk(&mut self, target: [f64; D]) -> Option<Arrival<N>> {
-        let far = || self.mesh.start_near(target);
-        let arrival = walk_from_either(self.mesh, self.last, far, target, &mut self.predicates)?;
+        let (mesh, last, predicates) = (self.mesh, self.last, &mut self.predicates);
+        let arrival = if self.jumps > 0 {
+            self.jumps -= 1;
+            walk_from_either(mesh, mesh.start_near(target), || last, target, predicates)?
+        } else {
+            let mut is_long = false;
+            let far = || {
+                is_long = true;
+                mesh.start_near(target)
+            };
+            let arrival = walk_from_either(mesh, last, far, target, predicates)?;
+            // Each walk that is too long doubles the number of targets without one, since its steps are lost.
+            self.jumps_before = if is_long { (2 * self.jumps_before + 1).min(JUMPS_MAX) } else { 0 };
+            self.jumps = self.jumps_before;
+            arrival
+        };
         self.last = arrival.simplex();
         Some(arrival)
     }
