@@ -1,6 +1,7 @@
 """A build backend: the wheel of the library (../pyproject.toml), with the project's programs as its scripts."""
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -39,8 +40,29 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         scripts.mkdir(parents=True)
         for program in programs:
             shutil.copy(program, scripts)
-        output_of(*python, "wheel", "pack", tree, "--dest-dir", wheel_directory)
-        return library.name
+        (wheel / "packed").mkdir()
+        output_of(*python, "wheel", "pack", tree, "--dest-dir", wheel / "packed")
+        packed = next((wheel / "packed").iterdir())
+        if "-manylinux_2_" in packed.name:
+            # The tag is that of the library; programs may need a later glibc.
+            tag = re.sub(r"manylinux_2_\d+", f"manylinux_2_{glibc_of([library_file(tree), *programs])}", platform_of(packed))
+            output_of(*python, "wheel", "tags", "--remove", "--platform-tag", tag, packed)
+            packed = next((wheel / "packed").iterdir())
+        shutil.move(packed, wheel_directory)
+        return packed.name
+
+
+def library_file(tree):
+    return next((tree / "spmesh").glob("_native*.so"))
+
+
+def platform_of(wheel):
+    return wheel.stem.rsplit("-", 1)[1]
+
+
+def glibc_of(files):
+    """The minor version of glibc 2 that files of machine code ask for, by the names of symbols' versions in them."""
+    return max(int(minor) for file in files for minor in re.findall(rb"GLIBC_2\.(\d+)", file.read_bytes()))
 
 
 def build_sdist(sdist_directory, config_settings=None):
