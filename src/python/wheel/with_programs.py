@@ -45,7 +45,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         packed = next((wheel / "packed").iterdir())
         if "-manylinux_2_" in packed.name:
             # The tag is that of the library; programs may need a later glibc.
-            tag = re.sub(r"manylinux_2_\d+", f"manylinux_2_{glibc_of([library_file(tree), *programs])}", platform_of(packed))
+            glibc = glibc_of([library_file(tree), *programs])
+            tag = re.sub(r"manylinux_2_\d+", f"manylinux_2_{glibc}", platform_of(packed))
             output_of(*python, "wheel", "tags", "--remove", "--platform-tag", tag, packed)
             packed = next((wheel / "packed").iterdir())
         shutil.move(packed, wheel_directory)
@@ -75,7 +76,8 @@ def build_sdist(sdist_directory, config_settings=None):
         for file in filter(None, files):
             tar.add(ROOT / file, f"{name}/{file}")
         head = (HERE / "pyproject.toml").read_text().replace('["."]', '["src/python/wheel"]')
-        for file, text in [("pyproject.toml", head), ("PKG-INFO", f"Metadata-Version: 2.1\nName: spmesh\nVersion: {version}\n")]:
+        about = f"Metadata-Version: 2.1\nName: spmesh\nVersion: {version}\n"
+        for file, text in [("pyproject.toml", head), ("PKG-INFO", about)]:
             (Path(folder) / file).write_text(text)
             tar.add(Path(folder) / file, f"{name}/{file}")
     return f"{name}.tar.gz"
