@@ -12,6 +12,10 @@ use std::num::NonZeroUsize;
 /// Steps from the last simplex after which a [`Walker`] jumps. A jump costs about as much.
 pub(crate) const STEPS_TO_NEXT: usize = 16;
 
+/// Most targets that a [`Walker`] jumps to before it tries a walk from the last one again. Of targets in no order, the
+/// lost steps are then a small part; where they come in order again, a jump costs a few times a short walk.
+const JUMPS_MAX: u32 = 31;
+
 /// Simplices of `N` corners in `D` dimensions, with their neighbours.
 pub(crate) trait Walkable<const D: usize, const N: usize>: Sync {
     /// What decides sides; made once for many targets.
@@ -114,26 +118,49 @@ pub(crate) struct Walker<'m, M: Walkable<D, N>, const D: usize, const N: usize> 
     pub(crate) mesh: &'m M,
     pub(crate) predicates: M::Predicates,
     last: u32,
+    /// How many targets are to be jumped to at once, without a walk from the last one.
+    jumps: u32,
+    /// How many there were after the last walk that was too long.
+    jumps_before: u32,
     /// Found when they are needed first: targets that follow each other need none.
     starts: Option<Starts<D>>,
 }
 
 impl<'m, M: Walkable<D, N>, const D: usize, const N: usize> Walker<'m, M, D, N> {
     pub(crate) fn new(mesh: &'m M) -> Self {
-        Walker { mesh, predicates: M::Predicates::default(), last: 0, starts: None }
+        Walker {
+            mesh,
+            predicates: M::Predicates::default(),
+            last: 0,
+            jumps: 0,
+            jumps_before: 0,
+            starts: None,
+        }
     }
 
     /// Walks to a target, from the last one if it is near. `None` if there are no simplices or the target is not
     /// finite.
     pub(crate) fn walk(&mut self, target: [f64; D]) -> Option<Arrival<N>> {
         let start = first(self.mesh, self.last, target)?;
-        let arrival = walk_steps(self.mesh, start, target, STEPS_TO_NEXT, &mut self.predicates);
-        let arrival = arrival.ok().or_else(|| {
+        let arrival = self.walk_from_last(start, target).or_else(|| {
             let start = self.starts.get_or_insert_with(|| self.mesh.starts()).near(target);
             walk(self.mesh, start, target, &mut self.predicates)
         })?;
         self.last = arrival.simplex();
         Some(arrival)
+    }
+
+    /// Walks from the last simplex, unless the targets are in no order: each walk that is too long doubles the number
+    /// of targets without one, since its steps are lost.
+    fn walk_from_last(&mut self, start: u32, target: [f64; D]) -> Option<Arrival<N>> {
+        if self.jumps > 0 {
+            self.jumps -= 1;
+            return None;
+        }
+        let arrival = walk_steps(self.mesh, start, target, STEPS_TO_NEXT, &mut self.predicates).ok();
+        self.jumps_before = if arrival.is_some() { 0 } else { (2 * self.jumps_before + 1).min(JUMPS_MAX) };
+        self.jumps = self.jumps_before;
+        arrival
     }
 
     /// On which side of a facet of a simplex the target lies, as of [`Walkable::side`].
