@@ -12,8 +12,8 @@ use std::num::NonZeroUsize;
 /// Steps from the last simplex after which a [`Walker`] jumps. A jump costs about as much.
 pub(crate) const STEPS_TO_NEXT: usize = 16;
 
-/// Most targets that a [`Walker`] jumps to before it tries a walk from the last one again. Of targets in no order, the
-/// lost steps are then a small part; where they come in order again, a jump costs a few times a short walk.
+/// Most targets that a [`Walker`] jumps to before it tries a walk from the last one again. Of targets in no
+/// order, the lost steps are then a small part; where they come in order again, so few jumps cost little.
 const JUMPS_MAX: u32 = 31;
 
 /// Simplices of `N` corners in `D` dimensions, with their neighbours.
@@ -150,8 +150,8 @@ impl<'m, M: Walkable<D, N>, const D: usize, const N: usize> Walker<'m, M, D, N> 
         Some(arrival)
     }
 
-    /// Walks from the last simplex, unless the targets are in no order: each walk that is too long doubles the number
-    /// of targets without one, since its steps are lost.
+    /// Walks from the last simplex, unless the targets are in no order: each walk that is too long doubles the
+    /// number of targets without one, since its steps are lost.
     fn walk_from_last(&mut self, start: u32, target: [f64; D]) -> Option<Arrival<N>> {
         if self.jumps > 0 {
             self.jumps -= 1;
