@@ -11,9 +11,9 @@ use crate::walk::{Arrival, walk_from_either};
 use cavity::{Cavity, Edge};
 use std::sync::OnceLock;
 
-/// Starts are found after one far walk for so many points: that takes about as long as these walks did, and
-/// so pays for itself.
-const POINTS_PER_WALK: usize = 4000;
+/// Starts are found after √n / 16 far walks in a triangulation of n points: to find them takes about as long as these
+/// walks did, and so pays for itself.
+const FAR_WALKS: usize = 16;
 
 /// Walks that begin far from a point, since starts were found for them.
 #[derive(Debug, Clone, Default)]
@@ -157,21 +157,12 @@ impl Triangulation {
         // A duplicate has no triangle.
         let first = if first == NONE { 0 } else { first };
         self.renew_starts();
-        let far = || match self.starts.get() {
-            Some(starts) => starts.near(at),
-            None => first,
-        };
         let mut is_far = false;
-        let arrival = walk_from_either(
-            self,
-            first,
-            || {
-                is_far = true;
-                far()
-            },
-            at,
-            predicates,
-        );
+        let far = || {
+            is_far = true;
+            self.starts.get().map_or(first, |starts| starts.near(at))
+        };
+        let arrival = walk_from_either(self, first, far, at, predicates);
         self.far_walks.walks += usize::from(is_far);
         match arrival.expect("a walk without a limit ends") {
             Arrival::Inside(number, sides) => self.found_in(number, sides),
@@ -182,7 +173,7 @@ impl Triangulation {
     /// Finds starts for walks if there were so many far ones that it pays.
     fn renew_starts(&mut self) {
         let (FarWalks { walks, count: before }, count) = (&self.far_walks, self.points.len());
-        if walks * POINTS_PER_WALK >= count.max(1) && count >= 2 * before {
+        if *walks >= count.isqrt().div_ceil(FAR_WALKS).max(1) && count >= 2 * before {
             self.far_walks = FarWalks { walks: 0, count };
             self.starts = OnceLock::new();
             self.starts();
