@@ -169,6 +169,16 @@ fn barycentric(points: &[Point], mesh: &Triangulation, target: Point) -> Option<
 }
 
 #[test]
+fn an_edge_of_the_least_numbers_is_divided() {
+    let least = f64::from_bits(1);
+    let at = |x: f64, y: f64| [x * least, y * least];
+    let points = [at(2.0, 1.0), at(-2.0, 2.0), at(-2.0, -2.0), at(2.0, -1.0)];
+    let mesh = triangulate(&points).expect("finite points");
+    let mut natural = NaturalNeighbours::new(&mesh);
+    assert_eq!(natural.weights(at(2.0, 0.0)), Some(&[(0, 0.5), (3, 0.5)][..]));
+}
+
+#[test]
 fn linear_weights_are_areas() {
     let mut random = Random::new(35);
     for round in 0..300 {
@@ -212,11 +222,14 @@ fn linear_weights_are_volumes() {
     for round in 0..120 {
         let side = [3, 9, 1 << 20, 1 << 20][round % 4];
         let flatness = [1, 1, 1, 1 << 18][round % 4];
-        let scale = 2f64.powi([0, -3, 300, -340, 900, -1000][round % 6]);
+        // Axes of scales far apart, too, where products of three are of any size.
+        let exponents =
+            [[0; 3], [-3; 3], [300; 3], [-340; 3], [900; 3], [-1000; 3], [338, -458, -669]][round % 7];
+        let scaled = |place: [i64; 3]| [0, 1, 2].map(|axis| place[axis] as f64 * 2f64.powi(exponents[axis]));
         let count = 4 + random.integer(0, 10);
         let corner = |random: &mut Random| [1, 1, flatness].map(|by| 2 * random.integer(0, side / by));
         let places: Vec<[i64; 3]> = (0..count).map(|_| corner(&mut random)).collect();
-        let points: Vec<[f64; 3]> = places.iter().map(|p| p.map(|c| c as f64 * scale)).collect();
+        let points: Vec<[f64; 3]> = places.iter().map(|&place| scaled(place)).collect();
         let mesh = delaunay3::triangulate(&points).expect("finite points");
         let mut linear = delaunay3::Linear::new(&mesh);
         for turn in 0..20 {
@@ -226,7 +239,7 @@ fn linear_weights_are_volumes() {
                 1 => [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2),
                 _ => corner(&mut random).map(|c| c + 1),
             };
-            let at = target.map(|c| c as f64 * scale);
+            let at = scaled(target);
             let Some(weights) = linear.weights(at) else {
                 assert_eq!(mesh.locate(at), Location::Outside, "{points:?} {at:?}");
                 continue;
@@ -244,11 +257,7 @@ fn linear_weights_are_volumes() {
                 part[corner] = target;
                 let part = volume(part);
                 assert!(part >= 0 && total > 0);
-                assert_eq!(
-                    part == 0,
-                    weight == 0.0,
-                    "{points:?} {at:?} {corner} {weights:?} {part} {total} {scale}"
-                );
+                assert_eq!(part == 0, weight == 0.0, "{points:?} {at:?} {corner} {weights:?} {part} {total}");
                 assert!((weight - part as f64 / total as f64).abs() < 1e-13, "{points:?} {at:?} {vertex}");
                 assert!(part != total || weight == 1.0);
             }
