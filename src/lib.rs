@@ -20,7 +20,7 @@
 //!     println!("{a} {b} {c}");
 //! }
 //! assert_eq!(mesh.hull().count(), 4);
-//! assert_eq!(mesh.duplicates, [[4, 0]]);
+//! assert_eq!(mesh.duplicates(), [[4, 0]]);
 //!
 //! match mesh.locate([1.0, 0.5]) {
 //!     Location::Simplex(number) => println!("in triangle {number}, beside {:?}", mesh.neighbours(number)),
