@@ -238,6 +238,8 @@ class Triangulations(unittest.TestCase):
 
         with self.assertRaisesRegex(RuntimeError, "enough"):
             spmesh.Delaunay(points, progress=give_up)
+        # Where a test runs in the background, the shell makes it ignore the signal.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()
         with self.assertRaises(KeyboardInterrupt):
