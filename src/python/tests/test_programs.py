@@ -120,7 +120,9 @@ class Pipes(unittest.TestCase):
     def test_an_interrupt_ends_all_programs_and_leaves_no_file(self):
         with tempfile.TemporaryDirectory() as folder:
             script = (
-                "import sys; from spmesh import programs\n"
+                "import signal, sys; from spmesh import programs\n"
+                # Where a test runs in the background, the shell makes it ignore the signal.
+                "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
                 "with programs.Pipe(['wait', sys.argv[1]], ['pass']) as pipe:\n"
                 "    print(pipe.stdout.readline().decode(), end='', flush=True)\n"
                 "    pipe.stdout.read()\n"
