@@ -4,13 +4,12 @@ use crate::bases::Basis;
 use spmesh_base::error::{Error, Result};
 use spmesh_configurations::special::{Features, Function, features};
 use spmesh_configurations::{self as configurations, Configurations, Knots, Rule};
-use spmesh_delaunay::delaunay2::{self, Triangulation};
-use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
+use spmesh_delaunay::delaunay2::{Kernel, Triangulation};
+use spmesh_delaunay::predicates::{Point2, area};
 
 /// The Delaunay triangulation of points.
 #[derive(Debug)]
 pub struct Mesh {
-    points: Vec<Point2>,
     triangulation: Triangulation,
 }
 
@@ -20,17 +19,18 @@ impl Mesh {
     /// # Errors
     /// Coordinates that are not finite; no triangle.
     pub fn of(points: Vec<Point2>) -> Result<Mesh> {
-        let triangulation = delaunay2::triangulate(&points).map_err(Error::of_computation)?;
+        let triangulation = Triangulation::by(&mut Kernel::new(), points).map_err(Error::of_computation)?;
         if triangulation.triangles().is_empty() {
-            let what = format!("{} points on one line: three that are not are needed", points.len());
+            let count = triangulation.points().len();
+            let what = format!("{count} points on one line: three that are not are needed");
             return Err(Error::usage(what));
         }
-        Ok(Mesh { points, triangulation })
+        Ok(Mesh { triangulation })
     }
 
     /// The points, in the order given.
     pub fn points(&self) -> &[Point2] {
-        &self.points
+        self.triangulation.points()
     }
 
     /// Vertices of the hull, counterclockwise, including vertices on its edges.
@@ -49,7 +49,7 @@ impl Mesh {
     }
 
     pub(super) fn corners(&self, triangle: u32) -> [Point2; 3] {
-        self.vertices(triangle).map(|vertex| self.points[vertex as usize])
+        self.vertices(triangle).map(|vertex| self.points()[vertex as usize])
     }
 
     pub(super) fn border_edges(&self, triangle: u32) -> impl Iterator<Item = [Point2; 2]> {
@@ -68,25 +68,12 @@ impl Mesh {
         (0..3).filter(is_wanted).map(|side| [(side + 1) % 3, (side + 2) % 3])
     }
 
-    /// A triangle that contains x, if there is one: the walk starts at `near`, and sets it to the triangle
-    /// found.
+    /// A triangle that contains x, if there is one: the walk starts at `near`, and sets it to the last
+    /// triangle.
     ///
-    /// Cost: proportional to the number of triangles between. The walk ends, because the triangulation is
-    /// regular: each step leads to a triangle whose circle has less power at x (Edelsbrunner 1990).
+    /// Cost: proportional to the number of triangles between.
     pub(super) fn locate(&self, x: Point2, near: &mut u32) -> Option<u32> {
-        let mut predicates = FiniteFloatPredicates::default();
-        loop {
-            let triangle = &self.triangulation.triangles()[*near as usize];
-            let beyond = (0..3).find(|&side| {
-                let [a, b] =
-                    [(side + 1) % 3, (side + 2) % 3].map(|i| self.points[triangle.vertices[i] as usize]);
-                predicates.orient2d(a, b, x) == Sign::Negative
-            });
-            match beyond {
-                Some(side) => *near = triangle.neighbour(side)?.triangle,
-                None => return Some(*near),
-            }
-        }
+        self.triangulation.triangle_at(x, near)
     }
 
     /// The value at x of the function that is linear on triangles and has these values at points; `None`
@@ -95,7 +82,7 @@ impl Mesh {
     /// The search starts from the triangle `near`, at first 0, and sets it to the triangle found.
     ///
     /// # Panics
-    /// If there are fewer values than points, or no triangle `near`.
+    /// If there are fewer values than points.
     pub fn interpolate(&self, values: &[f64], x: Point2, near: &mut u32) -> Option<f64> {
         let triangle = self.locate(x, near)?;
         let [a, b, c] = self.corners(triangle);
