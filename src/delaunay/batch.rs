@@ -2,6 +2,7 @@
 
 use crate::order::{Curve, SpatialOrder};
 use crate::parallel;
+use crate::points::is_finite;
 use crate::predicates::Extent;
 use std::num::NonZeroUsize;
 
@@ -53,7 +54,6 @@ pub fn answer<const D: usize, A: Send, S>(
     let block = targets.len().div_ceil(threads.get()).clamp(BLOCK_MIN, BLOCK_MAX);
     let blocks = targets.chunks(block).zip(answers.chunks_mut(block * width));
     parallel::for_each(threads, blocks, |(targets, answers)| {
-        let is_finite = |target: &[f64; D]| target.iter().all(|coordinate| coordinate.is_finite());
         // What is not finite has no place in an order: it takes that of the origin.
         let finite: Vec<[f64; D]> =
             targets.iter().map(|target| if is_finite(target) { *target } else { [0.0; D] }).collect();

@@ -6,6 +6,12 @@ pub type Point2 = [f64; 2];
 /// A point of space: x, y, z; all finite. Integer coordinates are stored as integer-valued `f64`.
 pub type Point3 = [f64; 3];
 
+/// Whether all coordinates are finite.
+#[inline]
+pub fn is_finite<const D: usize>(point: &[f64; D]) -> bool {
+    point.iter().all(|coordinate| coordinate.is_finite())
+}
+
 /// What has the coordinates of a point, exactly: arrays of `f32`, of `f64` and of integers up to 32 bits, and
 /// references to them; with the feature `mint` its points too.
 ///

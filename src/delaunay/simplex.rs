@@ -21,8 +21,9 @@ const fn reversed(mut facets: [[usize; 3]; 4]) -> [[usize; 3]; 4] {
     facets
 }
 
-/// The sum of the values in these weights. A value whose weight is zero does not matter, whatever it is.
-pub(crate) fn weighted_sum(weights: &[(u32, f64)], values: &[f64]) -> f64 {
+/// The sum of the values of vertices in these weights. A value whose weight is zero does not matter, whatever
+/// it is.
+pub fn weighted_sum(weights: &[(u32, f64)], value: impl Fn(u32) -> f64) -> f64 {
     let counting = weights.iter().filter(|(_, weight)| *weight != 0.0);
-    counting.map(|&(vertex, weight)| weight * values[vertex as usize]).sum()
+    counting.map(|&(vertex, weight)| weight * value(vertex)).sum()
 }

@@ -5,8 +5,9 @@
 //! dimensions", 1990). All decisions are exact.
 
 use crate::batch;
+use crate::points::is_finite;
 use crate::predicates::Sign;
-use std::collections::HashSet;
+use foldhash::HashSet;
 use std::num::NonZeroUsize;
 
 /// Steps from a simplex that is probably near, after which another start is tried, too. To find it costs
@@ -75,7 +76,7 @@ fn first<const D: usize, const N: usize, M: Walkable<D, N>>(
     target: [f64; D],
 ) -> Option<u32> {
     let last = mesh.simplices_len().checked_sub(1)? as u32;
-    target.iter().all(|coordinate| coordinate.is_finite()).then_some(start.min(last))
+    is_finite(&target).then_some(start.min(last))
 }
 
 /// Walks from a simplex that is there, at most so many steps.
@@ -113,22 +114,23 @@ fn walk_steps<const D: usize, const N: usize, M: Walkable<D, N>>(
     Err(simplex)
 }
 
-/// Walks to a target from a simplex that is near, or else from the one that `far` gives: in turns, as either
-/// may be the longer way, such as around a vertex of many simplices. `None` as of [`walk`].
+/// Walks to a target from simplex `near`; if that is a long way, from the one that `far` gives, too: in
+/// turns, as either may be the longer way, such as around a vertex of many simplices. `None` as of [`walk`].
 pub(crate) fn walk_from_either<const D: usize, const N: usize, M: Walkable<D, N>>(
     mesh: &M,
     near: u32,
-    far: impl FnOnce() -> u32,
+    far: impl FnOnce() -> Option<u32>,
     target: [f64; D],
     predicates: &mut M::Predicates,
 ) -> Option<Arrival<N>> {
-    let mut near = first(mesh, near, target)?;
-    let mut steps = STEPS_TO_NEXT;
-    near = match walk_steps(mesh, near, target, steps, predicates) {
+    let near = first(mesh, near, target)?;
+    let after = match walk_steps(mesh, near, target, STEPS_TO_NEXT, predicates) {
         Ok(arrival) => return Some(arrival),
-        Err(simplex) => simplex,
+        Err(after) => after,
     };
-    let mut ways = [first(mesh, far(), target)?, near];
+    let Some(far) = far() else { return walk(mesh, after, target, predicates) };
+    let mut ways = [first(mesh, far, target)?, after];
+    let mut steps = STEPS_TO_NEXT;
     loop {
         for simplex in &mut ways {
             match walk_steps(mesh, *simplex, target, steps, predicates) {
@@ -160,22 +162,21 @@ impl<'m, M: Walkable<D, N>, const D: usize, const N: usize> Walker<'m, M, D, N> 
 
     /// Walks to a target, from the last one if it is near. `None` as of [`walk`].
     pub(crate) fn walk(&mut self, target: [f64; D]) -> Option<Arrival<N>> {
-        let (mesh, last, predicates) = (self.mesh, self.last, &mut self.predicates);
-        let arrival = if self.jumps > 0 {
+        let (mesh, last, is_jump) = (self.mesh, self.last, self.jumps > 0);
+        let near = if is_jump { mesh.start_near(target) } else { last };
+        let mut is_long = false;
+        let far = || {
+            is_long = true;
+            Some(if is_jump { last } else { mesh.start_near(target) })
+        };
+        let arrival = walk_from_either(mesh, near, far, target, &mut self.predicates)?;
+        if is_jump {
             self.jumps -= 1;
-            walk_from_either(mesh, mesh.start_near(target), || last, target, predicates)?
         } else {
-            let mut is_long = false;
-            let far = || {
-                is_long = true;
-                mesh.start_near(target)
-            };
-            let arrival = walk_from_either(mesh, last, far, target, predicates)?;
             // Each walk that is too long doubles the number of targets without one, since its steps are lost.
             self.jumps_before = if is_long { (2 * self.jumps_before + 1).min(JUMPS_MAX) } else { 0 };
             self.jumps = self.jumps_before;
-            arrival
-        };
+        }
         self.last = arrival.simplex();
         Some(arrival)
     }
@@ -202,7 +203,7 @@ fn least<const D: usize, const N: usize, M: Walkable<D, N>>(
     if !sides.contains(&Sign::Zero) {
         return found;
     }
-    let (mut left, mut seen) = (vec![found], HashSet::from([found]));
+    let (mut left, mut seen): (_, HashSet<u32>) = (vec![found], [found].into_iter().collect());
     while let Some(simplex) = left.pop() {
         for corner in 0..N {
             if mesh.side(simplex, corner, target, predicates) == Sign::Zero

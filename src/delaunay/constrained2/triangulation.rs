@@ -7,7 +7,7 @@ use crate::delaunay2::triangulate;
 use crate::error::{Error, Result};
 use crate::location::Location;
 use crate::noding::{LineVertex, NodingOptions, node_lines};
-use crate::points::Point2;
+use crate::points::{Point2, is_finite};
 use crate::predicates::{Extent, FiniteFloatPredicates};
 use crate::starts::Starts;
 use std::sync::OnceLock;
@@ -175,7 +175,7 @@ impl ConstrainedTriangulation {
     /// Cost: a straight walk from the nearest of many vertices, which the first call sorts; without
     /// triangles, O(n).
     pub fn locate(&self, target: Point2) -> Location {
-        if !target.iter().all(|coordinate| coordinate.is_finite()) {
+        if !is_finite(&target) {
             return Location::Outside;
         }
         if self.mesh.triangles.is_empty() {

@@ -29,6 +29,7 @@ pub use triangulation::Triangulation;
 
 use crate::error::{Error, Result};
 use crate::order::{Curve, Rounds, sort_in};
+use crate::points::is_finite;
 use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts};
 use crate::watch::Watch;
 use build::Build;
@@ -91,7 +92,7 @@ impl Kernel {
         }
         let extent = Extent::of(points);
         if !extent.finite {
-            let bad = points.iter().position(|p| !p.iter().all(|c| c.is_finite())).unwrap_or_default();
+            let bad = points.iter().position(|point| !is_finite(point)).unwrap_or_default();
             return Err(Error::not_finite(bad, &points[bad]));
         }
         triangles.clear();

@@ -2,6 +2,7 @@
 
 use super::triangulation::Triangulation;
 use crate::nearest::{Graph, Search, nearest_of_all};
+use crate::points::is_finite;
 use crate::predicates::{FiniteFloatPredicates, Point2};
 use crate::walk::walk;
 
@@ -65,7 +66,7 @@ impl Triangulation {
 
     /// Without triangles.
     fn nearest_on_line(&self, target: Point2, count: usize) -> Vec<u32> {
-        if !target.iter().all(|coordinate| coordinate.is_finite()) {
+        if !is_finite(&target) {
             return Vec::new();
         }
         nearest_of_all(self.triangles.hull.iter().map(|&v| (self.points[v as usize], v)), target, count)

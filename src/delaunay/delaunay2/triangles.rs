@@ -131,6 +131,7 @@ impl TriangleMemory {
     pub(super) fn set_count(&mut self, count: usize) {
         self.count = count;
     }
+
     /// Keeps the triangles, and makes their number `count`. Those that are new have arbitrary content.
     ///
     /// Cost: amortised, the number of new triangles.
@@ -142,6 +143,7 @@ impl TriangleMemory {
         self.count = count;
         &mut bytemuck::pod_align_to_mut::<u32, Triangle>(&mut self.words).1[..count]
     }
+
     /// The triangles in memory of their own, for the triangles of `vertices` vertices. A vector of words
     /// alone could have another alignment there.
     fn copy(&self, vertices: usize) -> TriangleMemory {

@@ -6,6 +6,7 @@ use super::insert::FarWalks;
 use super::triangles::{Triangle, Triangles};
 use crate::error::Result;
 use crate::location::Location;
+use crate::points::is_finite;
 use crate::predicates::{Extent, FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
 use crate::starts::Starts;
 use crate::walk::{self, Arrival, Walkable};
@@ -121,6 +122,15 @@ impl Triangulation {
         }
     }
 
+    /// A triangle that contains `target`, its border included, by a walk that begins at triangle `near`, any
+    /// number, which becomes the last one of the walk. `None` outside of the hull, without triangles, and if
+    /// the target is not finite.
+    pub fn triangle_at(&self, target: Point2, near: &mut u32) -> Option<u32> {
+        let arrival = walk::walk(self, *near, target, &mut FiniteFloatPredicates::default())?;
+        *near = arrival.simplex();
+        matches!(arrival, Arrival::Inside(..)).then_some(*near)
+    }
+
     /// For each target the number of the triangle that contains it, its border included: the least, if there
     /// are several. [`NONE`] for targets that are outside, or not finite.
     ///
@@ -151,7 +161,7 @@ impl Triangulation {
 
     /// The vertex at `target` if there are no triangles: the vertices are in lexicographic order then.
     pub(super) fn vertex_on_line(&self, target: Point2) -> Option<u32> {
-        let is_answer = self.triangles().is_empty() && target.iter().all(|c| c.is_finite());
+        let is_answer = self.triangles().is_empty() && is_finite(&target);
         is_answer.then(|| self.place_on_line(target).ok()).flatten().map(|place| self.triangles.hull[place])
     }
 

@@ -3,16 +3,11 @@
 use super::tetrahedralization::Tetrahedralization;
 use crate::predicates::exact_integers::{integers, quotient};
 use crate::predicates::forms::{Form, Orient3d};
-use crate::predicates::{BoundedFloatPredicates3, Point3, Sign};
+use crate::predicates::{BoundedFloatPredicates3, Estimate, Point3, Sign};
 use crate::simplex::{TETRAHEDRON_FACETS, weighted_sum};
 use crate::vector::difference;
 use crate::walk::{Arrival, Walker};
 use num_bigint::BigInt;
-
-/// The error of a determinant in plain arithmetic in parts of the sum of the magnitudes of its six products:
-/// each product has three rounded factors and is rounded twice, and sums are rounded, less than ten roundings
-/// in all.
-const DETERMINANT_ERROR: f64 = 10.0 * f64::EPSILON / 2.0;
 
 /// Greatest error of a weight.
 const WEIGHT_ERROR: f64 = 1e-13;
@@ -61,7 +56,7 @@ impl<'m> Linear<'m> {
     /// # Panics
     /// If there are fewer values than points.
     pub fn interpolate(&mut self, values: &[f64], target: Point3) -> Option<f64> {
-        self.weights(target).map(|weights| weighted_sum(&weights, values))
+        self.weights(target).map(|weights| weighted_sum(&weights, |v| values[v as usize]))
     }
 }
 
@@ -71,11 +66,13 @@ fn barycentric(corners: [Point3; 4], target: Point3) -> [f64; 4] {
     // them.
     if corners.iter().chain([&target]).all(BoundedFloatPredicates3::covers_point) {
         let to = corners.map(|corner| difference(corner, target));
-        let volumes = TETRAHEDRON_FACETS.map(|[i, j, k]| determinant(to[i], to[j], to[k]));
-        let total: f64 = volumes.iter().map(|[volume, _]| volume).sum();
-        let magnitude: f64 = volumes.iter().map(|[_, magnitude]| magnitude).sum();
-        if 4.0 * DETERMINANT_ERROR * magnitude <= WEIGHT_ERROR * total {
-            return volumes.map(|[volume, _]| volume.max(0.0) / total);
+        let volumes = TETRAHEDRON_FACETS.map(|facet| Estimate::orient3d(facet.map(|i| to[i])));
+        let total: f64 = volumes.iter().map(|volume| volume.value).sum();
+        let error: f64 = volumes.iter().map(|volume| volume.bound * volume.magnitude).sum();
+        // A weight is off by the errors of its volume and of the total, whose sum is rounded, too, and of the
+        // quotient: less than three times the errors of all volumes. Twice that is on the safe side.
+        if 6.0 * error <= WEIGHT_ERROR * total {
+            return volumes.map(|volume| volume.value.max(0.0) / total);
         }
     }
     let [a, b, c, d, target] = integers([corners[0], corners[1], corners[2], corners[3], target]);
@@ -84,13 +81,4 @@ fn barycentric(corners: [Point3; 4], target: Point3) -> [f64; 4] {
         TETRAHEDRON_FACETS.map(|facet| Orient3d::value(&facet.map(|i| to[i].clone()), |_| BigInt::ZERO));
     let total = volumes.iter().sum();
     volumes.map(|volume| quotient(&volume, &total, 0))
-}
-
-/// The determinant of three vectors, and the sum of the magnitudes of its products.
-fn determinant(p: Point3, q: Point3, r: Point3) -> [f64; 2] {
-    let minor = |i: usize, j: usize| [q[i] * r[j], q[j] * r[i]];
-    let minors = [minor(1, 2), minor(2, 0), minor(0, 1)];
-    let value = (0..3).map(|axis| p[axis] * (minors[axis][0] - minors[axis][1])).sum();
-    let magnitude = (0..3).map(|axis| p[axis].abs() * (minors[axis][0].abs() + minors[axis][1].abs())).sum();
-    [value, magnitude]
 }

@@ -46,6 +46,7 @@ pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vert
 use crate::error::{Error, Result};
 use crate::order::{Curve, Insertions, Places, Sequence, SpatialOrder, Suffixes};
 use crate::parallel;
+use crate::points::is_finite;
 use crate::predicates::{Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3};
 use crate::watch::Watch;
 use build::{Build, First};
@@ -325,7 +326,7 @@ fn checked_extent(points: &[Point3], threads: NonZeroUsize) -> Result<Extent<3>>
     }
     let extent = Extent::on(threads, points);
     if !extent.finite {
-        let bad = points.iter().position(|p| !p.iter().all(|c| c.is_finite())).unwrap_or_default();
+        let bad = points.iter().position(|point| !is_finite(point)).unwrap_or_default();
         return Err(Error::not_finite(bad, &points[bad]));
     }
     Ok(extent)

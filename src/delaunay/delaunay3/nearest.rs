@@ -3,6 +3,7 @@
 use super::stars::TetrahedraAround;
 use super::tetrahedralization::Tetrahedralization;
 use crate::nearest::{Graph, Search, nearest_of_all};
+use crate::points::is_finite;
 use crate::predicates::{Extent, FiniteFloatPredicates3, Point3};
 use crate::starts::Starts;
 use crate::walk::walk;
@@ -102,7 +103,7 @@ impl Tetrahedralization {
 
     /// Without tetrahedra.
     fn nearest_of_flat(&self, target: Point3, count: usize) -> Vec<u32> {
-        if !target.iter().all(|coordinate| coordinate.is_finite()) {
+        if !is_finite(&target) {
             return Vec::new();
         }
         nearest_of_all(self.vertices.iter().map(|vertex| (vertex.at, vertex.index)), target, count)

@@ -13,10 +13,10 @@ const ORIENT2D_BOUND: f64 = (3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
 pub(crate) const INCIRCLE_BOUND: f64 = (10.0 + 96.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
 
 /// A determinant evaluated in `f64`, with the sum of the magnitudes of its products.
-pub(super) struct Estimate {
-    pub(super) value: f64,
-    pub(super) magnitude: f64,
-    pub(super) bound: f64,
+pub(crate) struct Estimate {
+    pub(crate) value: f64,
+    pub(crate) magnitude: f64,
+    pub(crate) bound: f64,
 }
 
 impl Estimate {

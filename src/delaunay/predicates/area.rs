@@ -42,7 +42,8 @@ fn difference(p: f64, q: f64) -> [f64; 2] {
     two_sum(p, -q)
 }
 
-fn two_sum(p: f64, q: f64) -> [f64; 2] {
+/// The rounded sum, and its error (Knuth).
+pub(super) fn two_sum(p: f64, q: f64) -> [f64; 2] {
     let sum = p + q;
     let of_q = sum - p;
     [sum, (p - (sum - of_q)) + (q - of_q)]

@@ -5,6 +5,7 @@ use super::area::exact_area;
 use super::exact_integers::{integers_and_unit, quotient};
 use super::forms::{Magnitude, Number, cross, dot, lift, minor, times};
 use super::{Point2, Point3};
+use crate::points::is_finite;
 use num_bigint::BigInt;
 
 /// Errors of centres are at most this times the radius.
@@ -74,7 +75,7 @@ pub(crate) fn circumcentre2([a, b, c]: [Point2; 3]) -> Option<Point2> {
     } else {
         exact([a, b, c], |[a, b, c]| [minus(b, a), minus(c, a)], numerators2)
     };
-    centre.iter().all(|coordinate| coordinate.is_finite()).then_some(centre)
+    is_finite(&centre).then_some(centre)
 }
 
 /// The same for the sphere through four points that are not coplanar.
@@ -101,7 +102,7 @@ pub(crate) fn circumcentre3([a, b, c, d]: [Point3; 4]) -> Option<Point3> {
     } else {
         exact([a, b, c, d], |[a, b, c, d]| [minus(b, a), minus(c, a), minus(d, a)], numerators3)
     };
-    centre.iter().all(|coordinate| coordinate.is_finite()).then_some(centre)
+    is_finite(&centre).then_some(centre)
 }
 
 fn minus<const D: usize>(p: &[BigInt; D], q: &[BigInt; D]) -> [BigInt; D] {

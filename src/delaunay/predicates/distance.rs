@@ -1,6 +1,7 @@
 //! Which of two points is nearer to a third one, exactly.
 
 use super::adaptive::UNIT_ROUNDOFF;
+use super::area::two_sum;
 use super::exact_integers::integers_of;
 use num_bigint::BigInt;
 use std::cmp::Ordering;
@@ -41,22 +42,15 @@ fn exact_square<const D: usize>(p: [f64; D], q: [f64; D]) -> Option<f64> {
     for axis in 0..D {
         let difference = p[axis] - q[axis];
         let square = difference * difference;
-        let is_exact = rounding(p[axis], -q[axis]) == 0.0
+        let is_exact = two_sum(p[axis], -q[axis])[1] == 0.0
             && f64::from(difference as f32) == difference
-            && rounding(sum, square) == 0.0;
+            && two_sum(sum, square)[1] == 0.0;
         if !is_exact {
             return None;
         }
         sum += square;
     }
     Some(sum)
-}
-
-/// The rounding error of a sum (Knuth's two-sum).
-fn rounding(p: f64, q: f64) -> f64 {
-    let sum = p + q;
-    let of_q = sum - p;
-    (p - (sum - of_q)) + (q - of_q)
 }
 
 #[cold]

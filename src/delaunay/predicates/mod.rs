@@ -49,8 +49,8 @@ pub mod residues;
 pub(crate) mod spatial;
 pub mod sphere;
 
-pub(crate) use adaptive::INCIRCLE_BOUND;
 pub use adaptive::{BoundedFloatPredicates, FiniteFloatPredicates};
+pub(crate) use adaptive::{Estimate, INCIRCLE_BOUND};
 pub use area::{area, exact_area};
 pub(crate) use centre::{Centre2, circumcentre2, circumcentre3, is_bounded, numerators2};
 pub use counts::PredicateCounts;

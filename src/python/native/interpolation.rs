@@ -7,6 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use spmesh_delaunay::delaunay2::Triangulation;
 use spmesh_delaunay::delaunay2::interpolation::{Linear, NaturalNeighbours};
+use spmesh_delaunay::simplex::weighted_sum;
 use spmesh_delaunay::{batch, delaunay3};
 
 /// The natural neighbours of many targets: starts, points, weights.
@@ -122,11 +123,7 @@ impl Mesh {
             batch::answer(self.threads, targets, &mut all[start..], width, &begin, |state, target, sums| {
                 weigh(state, target, &mut |weights| {
                     for (column, sum) in sums.iter_mut().enumerate() {
-                        // A value whose weight is zero does not matter, whatever it is.
-                        let counting = weights.iter().filter(|(_, weight)| *weight != 0.0);
-                        *sum = counting
-                            .map(|&(vertex, weight)| weight * values[vertex as usize * width + column])
-                            .sum();
+                        *sum = weighted_sum(weights, |vertex| values[vertex as usize * width + column]);
                     }
                 });
             });

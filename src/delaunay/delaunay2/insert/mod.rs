@@ -6,13 +6,14 @@ use super::MAX_POINTS;
 use super::half_edge::{HalfEdge, NONE, WORDS, next, number_of, previous};
 use super::triangulation::Triangulation;
 use crate::error::{Error, Result};
+use crate::points::is_finite;
 use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
 use crate::walk::{Arrival, walk_from_either};
 use cavity::{Cavity, Edge};
 use std::sync::OnceLock;
 
-/// Starts are found after √n / 16 far walks in a triangulation of n points: to find them takes about as long as these
-/// walks did, and so pays for itself.
+/// Starts are found after √n / 16 far walks in a triangulation of n points: to find them takes about as long
+/// as these walks did, and so pays for itself.
 const FAR_WALKS: usize = 16;
 
 /// Walks that begin far from a point, since starts were found for them.
@@ -71,7 +72,7 @@ impl Triangulation {
         if count >= MAX_POINTS {
             return Err(Error::TooManyPoints { count: count + 1, most: MAX_POINTS });
         }
-        if !point.iter().all(|coordinate| coordinate.is_finite()) {
+        if !is_finite(&point) {
             return Err(Error::not_finite(count, &point));
         }
         let mut predicates = FiniteFloatPredicates::default();
@@ -160,7 +161,7 @@ impl Triangulation {
         let mut is_far = false;
         let far = || {
             is_far = true;
-            self.starts.get().map_or(first, |starts| starts.near(at))
+            self.starts.get().map(|starts| starts.near(at))
         };
         let arrival = walk_from_either(self, first, far, at, predicates);
         self.far_walks.walks += usize::from(is_far);

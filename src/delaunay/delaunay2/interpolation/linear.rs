@@ -47,7 +47,7 @@ impl<'m> Linear<'m> {
     /// # Panics
     /// If there are fewer values than points.
     pub fn interpolate(&mut self, values: &[f64], target: Point2) -> Option<f64> {
-        self.weights(target).map(|weights| weighted_sum(&weights, values))
+        self.weights(target).map(|weights| weighted_sum(&weights, |v| values[v as usize]))
     }
 }
 

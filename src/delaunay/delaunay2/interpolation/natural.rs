@@ -4,6 +4,7 @@ use super::cavity::Cavity;
 use super::exact_areas;
 use super::stolen_areas::StolenAreas;
 use crate::delaunay2::Triangulation;
+use crate::points::is_finite;
 use crate::predicates::{Point2, Sign, is_bounded};
 use crate::simplex::weighted_sum;
 use crate::walk::{Arrival, Walker};
@@ -62,7 +63,7 @@ impl<'m> NaturalNeighbours<'m> {
     /// # Panics
     /// If there are fewer values than points.
     pub fn interpolate(&mut self, values: &[f64], target: Point2) -> Option<f64> {
-        self.weights(target).map(|weights| weighted_sum(weights, values))
+        self.weights(target).map(|weights| weighted_sum(weights, |v| values[v as usize]))
     }
 
     /// The value at the target of a function that is smooth at the vertices, too, where it has these values
@@ -100,7 +101,7 @@ impl<'m> NaturalNeighbours<'m> {
             planes += weight / distance * plane;
         }
         let (of_values, of_planes) = (first / inverse, second);
-        let value = weighted_sum(weights, values);
+        let value = weighted_sum(weights, |v| values[v as usize]);
         Some((of_values * value + of_planes * planes / inverse) / (of_values + of_planes))
     }
 
@@ -134,7 +135,7 @@ impl<'m> NaturalNeighbours<'m> {
 /// Which part of the way from a to b the target on it is, off by four roundings.
 fn part_of_edge(a: Point2, b: Point2, target: Point2) -> f64 {
     let whole = [0, 1].map(|axis| b[axis] - a[axis]);
-    if whole.iter().all(|length| length.is_finite()) {
+    if is_finite(&whole) {
         // Of numbers so small that a difference has no digit more it is exact.
         let axis = usize::from(whole[1].abs() > whole[0].abs());
         return (target[axis] - a[axis]) / whole[axis];

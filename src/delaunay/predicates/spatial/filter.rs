@@ -153,7 +153,7 @@ impl Cross {
 impl Estimate {
     /// Orientation from the differences of b, c, d to a.
     #[inline(always)]
-    pub(super) fn orient3d([ab, ac, ad]: [Point3; 3]) -> Estimate {
+    pub(crate) fn orient3d([ab, ac, ad]: [Point3; 3]) -> Estimate {
         let [value, magnitude] = Cross::of(ab, ac).dot(ad);
         Estimate { value, magnitude, bound: ORIENT3D_BOUND }
     }
