@@ -1,8 +1,8 @@
 //! Weights of natural neighbours in sets of points of the plane, for `scripts/check-cgal`.
 //!
-//! On stdin, each set is the number of its points and of its targets as u32, and pairs of f64: the points, then
-//! the targets. On stdout go, for each target, the number of its neighbours as u32, and for each of them its
-//! index as u32 and its weight as f64; none outside of the hull. All numbers are little-endian.
+//! On stdin, each set is the number of its points and of its targets as u32, and pairs of f64: the points,
+//! then the targets. On stdout go, for each target, the number of its neighbours as u32, and for each of them
+//! its index as u32 and its weight as f64; none outside of the hull. All numbers are little-endian.
 
 use spmesh_delaunay::delaunay2::interpolation::NaturalNeighbours;
 use spmesh_delaunay::delaunay2::triangulate;

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Mapping
 
 import numpy as np
+import numpy.typing as npt
 
 from .attributes import TYPES, Attribute
 from .types import ArrayLike, Columns, Floats, Integers
@@ -13,19 +14,41 @@ from .types import ArrayLike, Columns, Floats, Integers
 EXACT = 2**53
 
 
-def points_of(points: ArrayLike, name: str = "xyz", axes: tuple[int, ...] = (2, 3)) -> Floats:
-    """Points as float64 (n, axes). Raises ValueError for other shapes and types, and for integers that
-    float64 rounds.
+def numbers_of(value: object, name: str, kinds: str = "iuf") -> npt.NDArray[Any]:
+    """Numbers as float64, or as complex128 if they are complex.
+
+    `kinds` are those of dtypes that are taken: "O" for objects that are such numbers. Raises ValueError for others,
+    for masked arrays, which have no place for what is masked, and for integers that float64 rounds.
     """
-    array = np.asarray(points)
-    if array.ndim != 2 or array.shape[1] not in axes:
-        expected = " or ".join(f"(n, {count})" for count in axes)
-        raise ValueError(f"{name} has the shape {array.shape}, expected {expected}")
-    if array.dtype.kind not in "iuf":
+    if isinstance(value, np.ma.MaskedArray):
+        raise ValueError(f"{name} is a masked array, which has no numbers where it is masked: use .compressed()")
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind == "O" and "O" in kinds:
+            array = np.asarray(array, np.complex128 if "c" in kinds else np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"{name}: {error}") from None
+    if array.dtype.kind not in kinds:
         raise ValueError(f"{name} has the type {array.dtype}, expected numbers")
     if array.dtype.kind in "iu" and array.size and not -EXACT <= int(array.min()) <= int(array.max()) <= EXACT:
         raise ValueError(f"{name} has integers beyond 2^53, which float64 cannot hold")
-    return array.astype(np.float64, copy=False)
+    return array.astype(np.complex128 if array.dtype.kind == "c" else np.float64, copy=False)
+
+
+def points_of(points: ArrayLike, name: str = "xyz", axes: tuple[int, ...] = (2, 3)) -> Floats:
+    """Points as float64 (n, axes). Raises ValueError for other shapes, and as `numbers_of`."""
+    array = numbers_of(points, name)
+    if array.ndim != 2 or array.shape[1] not in axes:
+        expected = " or ".join(f"(n, {count})" for count in axes)
+        raise ValueError(f"{name} has the shape {array.shape}, expected {expected}")
+    return array
+
+
+def check_finite(points: Floats, name: str) -> None:
+    """Raises ValueError, with the row, if a coordinate of points (n, axes) is not finite."""
+    is_finite = np.isfinite(points).all(axis=1)
+    if not is_finite.all():
+        raise ValueError(f"{name} has a coordinate that is not finite, in row {int(is_finite.argmin())}")
 
 
 def indices_of(indices: ArrayLike, count: int, name: str, corners: tuple[int, ...]) -> Integers:

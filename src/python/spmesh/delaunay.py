@@ -12,36 +12,34 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arguments import numbers_of
+from .types import Floats
+
 if TYPE_CHECKING:
     from ._native import Mesh
 
 Ints = NDArray[np.int32]
-Floats = NDArray[np.float64]
 
 _EPSILON = float(np.finfo(np.float64).eps)
 
 
-def numbers_of(value: object, name: str, kinds: str = "biuf") -> NDArray[Any]:
-    """An array of float64, or of complex128, that lies in memory row by row; or an error that names the argument."""
-    if isinstance(value, np.ma.MaskedArray):
-        raise ValueError(f"{name}: masked arrays have no place for what is masked: select with .compressed()")
-    try:
-        array = np.asarray(value)
-        if array.dtype.kind == "O":
-            array = np.asarray(array, dtype=np.complex128 if "c" in kinds else np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise ValueError(f"{name}: {error}") from None
-    if array.dtype.kind not in kinds:
-        raise ValueError(f"{name}: numbers are needed, not {array.dtype}")
-    is_long = array.dtype.kind in "iu" and array.dtype.itemsize == 8 and array.size > 0
-    if is_long and max(-int(array.min()), int(array.max())) > 2**53:
-        raise ValueError(f"{name}: integers beyond 2^53 are not exact as float64: subtract an offset")
-    return np.require(array, np.complex128 if array.dtype.kind == "c" else np.float64, ["C", "A"])
+def array_of(value: object, name: str, kinds: str = "biufO") -> NDArray[Any]:
+    """Numbers as of `numbers_of`, as the compiled module takes them: in memory row by row."""
+    numbers = numbers_of(value, name, kinds)
+    return np.require(numbers, numbers.dtype, ["C", "A"])
+
+
+def places_of(value: object, ndim: int, name: str = "xi") -> Floats:
+    """(..., ndim) places."""
+    places = array_of(value, name)
+    if places.ndim == 0 or places.shape[-1] != ndim:
+        raise ValueError(f"{name}: {ndim} coordinates each are needed, the shape is {places.shape}")
+    return places
 
 
 def points_of(points: object, name: str = "points") -> Floats:
     """An array of points as rows of numbers, or an error that names the argument."""
-    array = numbers_of(points, name)
+    array = array_of(points, name)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         raise ValueError(f"{name}: an array of 2 or 3 columns is needed, this one has the shape {array.shape}")
     return array
@@ -207,9 +205,10 @@ class Delaunay:
         """(k, 3) points that are no vertices because an equal point of lesser index is one: index, a simplex at
         that vertex (-1 if there are none), that vertex."""
         pairs = self._mesh.duplicates()
-        simplex = self._simplex_of_vertex()[pairs[:, 1]]
+        simplex = self._simplex_of_vertex[pairs[:, 1]]
         return np.stack([pairs[:, 0], simplex, pairs[:, 1]], axis=1)
 
+    @cached_property
     def _simplex_of_vertex(self) -> Ints:
         """For each point that is a vertex one of its simplices; else -1."""
         simplex = np.full(self.npoints, -1, dtype=np.int32)
@@ -221,7 +220,7 @@ class Delaunay:
     @cached_property
     def vertex_to_simplex(self) -> Ints:
         """(n,) index of a simplex at each point, or at the equal point that is a vertex; -1 if there are none."""
-        simplex = self._simplex_of_vertex()
+        simplex: Ints = np.array(self._simplex_of_vertex)
         simplex[self.coplanar[:, 0]] = self.coplanar[:, 1]
         return simplex
 
@@ -275,14 +274,8 @@ class Delaunay:
         """
         if tol:
             raise ValueError("tol: decisions are exact, there is no tolerance")
-        targets = self._targets(xi)
+        targets = places_of(xi, self.ndim)
         return self._mesh.locate(targets.reshape(-1, self.ndim)).reshape(targets.shape[:-1])
-
-    def _targets(self, xi: ArrayLike) -> Floats:
-        targets: Floats = numbers_of(xi, "xi")
-        if targets.ndim == 0 or targets.shape[-1] != self.ndim:
-            raise ValueError(f"xi: {self.ndim} coordinates each are needed, the shape is {targets.shape}")
-        return targets
 
     def add_points(self, points: ArrayLike, restart: bool = False) -> None:
         """Adds points. The result is the triangulation of all points, which are triangulated anew.
@@ -317,7 +310,7 @@ class Delaunay:
 
     def lift_points(self, x: ArrayLike) -> Floats:
         """(..., d + 1) points of the paraboloid above points (..., d)."""
-        points = self._targets(x)
+        points = places_of(x, self.ndim, "x")
         return np.concatenate([points, np.square(points).sum(axis=-1, keepdims=True)], axis=-1)
 
     def plane_distance(self, xi: ArrayLike) -> Floats:

@@ -8,7 +8,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .delaunay import Delaunay, Floats, Ints, numbers_of, points_of
+from .delaunay import Delaunay, Ints, array_of, places_of, points_of
+from .types import Floats
 
 Points: TypeAlias = "ArrayLike | Delaunay | tuple[ArrayLike, ...]"
 
@@ -18,17 +19,15 @@ def _places(arguments: tuple[Any, ...], ndim: int, name: str = "xi") -> Floats:
     if len(arguments) == 1 and isinstance(arguments[0], tuple):
         arguments = arguments[0]
     if len(arguments) == 1:
-        places = numbers_of(arguments[0], name)
-    elif not arguments:
+        return places_of(arguments[0], ndim, name)
+    if not arguments:
         raise ValueError(f"{name}: places are needed")
-    else:
-        try:
-            places = np.stack(np.broadcast_arrays(*[numbers_of(x, name) for x in arguments]), axis=-1)
-        except ValueError as error:
-            raise ValueError(str(error) if str(error).startswith(name) else f"{name}: {error}") from None
-    if places.ndim == 0 or places.shape[-1] != ndim:
-        raise ValueError(f"{name}: {ndim} coordinates each are needed, the shape is {places.shape}")
-    return places
+    columns = [array_of(x, name) for x in arguments]
+    try:
+        columns = list(np.broadcast_arrays(*columns))
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    return places_of(np.stack(columns, axis=-1), ndim, name)
 
 
 class _Interpolator:
@@ -43,8 +42,8 @@ class _Interpolator:
         *,
         threads: int | None = None,
     ) -> None:
-        self._offset: Floats | float = 0.0
-        self._scale: Floats | float = 1.0
+        # How points are scaled: what is taken off, and what divides the rest.
+        self._rescaling: tuple[Floats, Floats] | None = None
         if isinstance(points, Delaunay):
             if rescale:
                 raise ValueError(
@@ -59,14 +58,13 @@ class _Interpolator:
                 rows = _places(points, max(len(points), 2), "points").reshape(-1, max(len(points), 2))
             array = points_of(rows)
             if rescale and len(array):
-                self._offset = array.mean(axis=0)
                 spread = np.ptp(array, axis=0)
-                self._scale = np.where(spread > 0, spread, 1.0)
-                array = np.ascontiguousarray((array - self._offset) / self._scale)
+                self._rescaling = array.mean(axis=0), np.where(spread > 0, spread, 1.0)
+                array = self._rescaled(array)
             self.tri = Delaunay(array, threads=threads)
         # Of the triangulation as it is now: points that are added later have no values.
         self._mesh = self.tri._mesh
-        numbers = numbers_of(values, "values", "biufc")
+        numbers = array_of(values, "values", "biufcO")
         if numbers.ndim == 0 or len(numbers) != self.tri.npoints:
             raise ValueError(
                 f"values: one for each of {self.tri.npoints} points is needed, the shape is {numbers.shape}"
@@ -89,14 +87,20 @@ class _Interpolator:
         return {name: value for name, value in self.__dict__.items() if name not in ("_mesh", "_columns")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        triangulation = state["tri"]
-        self.__init__(triangulation, state["values"], state["fill_value"])  # type: ignore[misc]
+        self.__init__(state["tri"], state["values"], state["fill_value"])  # type: ignore[misc]
         self.__dict__.update(state)
 
     @property
     def points(self) -> Floats:
         """(n, d) points, rescaled if that was asked for."""
         return self.tri.points
+
+    def _rescaled(self, places: Floats) -> Floats:
+        """Places (n, d) of the world among the points of the triangulation."""
+        if self._rescaling is None:
+            return places
+        offset, scale = self._rescaling
+        return np.asarray((places - offset) / scale)
 
     def _evaluate(self, places: Floats, fill: list[float]) -> Floats:
         raise NotImplementedError
@@ -113,7 +117,7 @@ class _Interpolator:
         (...) + the shape of one point's value; `fill_value` outside of the hull and where coordinates are not finite
         """
         xi = _places(args, self.tri.ndim)
-        places = np.ascontiguousarray((xi.reshape(-1, self.tri.ndim) - self._offset) / self._scale)
+        places = self._rescaled(xi.reshape(-1, self.tri.ndim))
         width = self._columns.shape[1]
         found: NDArray[Any] = self._evaluate(places, np.resize(self._fill, width).tolist())
         if self.is_complex and width:
@@ -190,4 +194,4 @@ class NaturalNeighborInterpolator(_Interpolator):
         """`indptr, indices, weights`: the natural neighbours of place k of `xi`, an (m, 2) array, are the points
         `indices[indptr[k]:indptr[k + 1]]`, with weights in the same places that sum to 1; none outside of the hull."""
         places = _places((xi,), 2).reshape(-1, 2)
-        return self._mesh.natural_weights(np.ascontiguousarray((places - self._offset) / self._scale))
+        return self._mesh.natural_weights(self._rescaled(places))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .arguments import attributes_of, columns_of, indices_of, points_of, rows_of, triple
+from .arguments import attributes_of, check_finite, columns_of, indices_of, points_of, rows_of, triple
 from .header import Header
 from .orientation import orientations
 from .types import ArrayLike, Columns, File, Integers
@@ -99,8 +99,7 @@ def _prepare(
         return np.empty((0, header.axes), header.dtype)
     low, high = _box(points)
     if not np.isfinite(low + high).all():
-        row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
-        raise ValueError(f"xyz has a coordinate that is not finite, in row {row}")
+        check_finite(points, "xyz")
     stored = header.stored(points)
     flat = [0.0] * (3 - header.axes)
     low, high = (header.stored(np.array(side)).tolist() for side in (low, high))

@@ -10,7 +10,7 @@ from typing import Any, Sequence, cast
 import numpy as np
 
 from . import programs
-from .arguments import points_of
+from .arguments import check_finite, points_of
 from .options import Owner, Place, flags_of, paths_of
 from .raster import Raster, drawn
 from .reader import Reader
@@ -75,9 +75,7 @@ class Fit(Owner):
         if not len(sites):
             columns = {"gradient": (2,), "hessian": (3,)}.get(kind, ())
             return np.empty((0, *columns))
-        if not np.isfinite(sites).all():
-            row = int(np.argmin(np.isfinite(sites).all(axis=1)))
-            raise ValueError(f"xy has a coordinate that is not finite, in row {row}")
+        check_finite(sites, "xy")
         with tempfile.TemporaryDirectory(prefix="spmesh-") as folder:
             source, target = Path(folder, "sites.npy"), Path(folder, "values.npy")
             np.save(source, sites)

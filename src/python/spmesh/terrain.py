@@ -12,7 +12,7 @@ from typing import Any, BinaryIO, Callable, Sequence, cast
 import numpy as np
 
 from . import las, programs
-from .arguments import points_of
+from .arguments import check_finite, points_of
 from .header import Header
 from .meshes import write_points
 from .options import Owner, Place, flags_of, paths_of
@@ -138,8 +138,7 @@ class Tin(Owner):
         points = points_of(xyz)
         if not len(points):
             return np.empty(0)
-        if not np.isfinite(points).all():
-            raise ValueError("xyz has a coordinate that is not finite")
+        check_finite(points, "xyz")
         header = self.header
         bounds = header.bounds or _box_of(self.read().xyz)
         is_flat = points.shape[1] == 2

@@ -146,6 +146,7 @@ class Meshes(unittest.TestCase):
             (dict(xyz=frame), "xyz has the type object"),
             (dict(xyz=points.astype(str)), "xyz has the type"),
             (dict(xyz=points.astype(complex)), "xyz has the type complex128"),
+            (dict(xyz=np.ma.masked_equal(points, 4)), "xyz is a masked array"),
             (dict(xyz=points.astype(int) + 2**60), "xyz has integers beyond 2.53"),
             (dict(xyz=np.where(points == 4, np.nan, points)), "xyz has a coordinate that is not finite, in row"),
             (dict(triangles=triangles.ravel()), r"triangles has the shape \(24,\)"),

@@ -4,7 +4,8 @@ use crate::inputs::Inputs;
 use crate::libraries::{Answer, NAMES, Task};
 use crate::rounds::Measured;
 
-/// Targets farther from the square than this share of its side are away from the hull: no circle reaches both.
+/// Targets farther from the square than this share of its side are away from the hull: no circle reaches
+/// both.
 const BORDER: f64 = 0.1;
 
 /// Prints the table of answers.
@@ -31,8 +32,8 @@ pub fn print(inputs: &Inputs, all: &[Measured]) {
     println!("| linear, random | {} |", cells.collect::<Vec<_>>().join(" | "));
 }
 
-/// The greatest difference away from the hull, the greatest near it, and how many targets only one of both has
-/// a value for.
+/// The greatest difference away from the hull, the greatest near it, and how many targets only one of both
+/// has a value for.
 fn difference(values: &[f64], ours: &[f64], targets: &[[f64; 2]], side: f64) -> String {
     let (mut within, mut border, mut only_one) = (0.0f64, 0.0f64, 0);
     for ((value, our), target) in values.iter().zip(ours).zip(targets) {

@@ -1,4 +1,5 @@
-//! The library of the plane beside its peers: processor time of one thread, memory, and whether answers agree.
+//! The library of the plane beside its peers: processor time of one thread, memory, and whether answers
+//! agree.
 //!
 //! `spmesh-library-bench KIND COUNT ROUNDS` measures one kind of points, and prints tables in Markdown.
 //! `spmesh-library-bench KIND COUNT memory LIBRARY` prints the peak of one build in bytes per point.
