@@ -196,7 +196,7 @@ fn open_as(
     }
     let file = inputs::open(path).map_err(|e| e.of_input(&name))?;
     if is_manifest(&file) {
-        return Ok((Box::new(open_manifest(path)?), name));
+        return Ok((Box::new(open_manifest(path, None)?), name));
     }
     Ok((Box::new(plain(Box::new(file)).map_err(reading)?), name))
 }

@@ -2,12 +2,12 @@
 
 use std::io::{self, Read};
 
-use foldhash::{HashSet, HashSetExt};
+use foldhash::{HashMap, HashMapExt};
 
 use super::event::{Event, Patch, Totals};
 use super::header::Header;
 use super::live::LiveVertices;
-use super::part::GlobalId;
+use super::part::{GlobalId, PartName};
 use super::reader::StreamReader;
 use super::writer::StreamWriter;
 use spmesh_base::error::{Error, Result};
@@ -15,14 +15,19 @@ use spmesh_base::error::{Error, Result};
 /// The bytes of a part, with the name that messages use.
 pub type OpenedPart = (Box<dyn Read + Send>, String);
 
-/// Opens part number `n`.
-type Open = Box<dyn FnMut(u32) -> Result<OpenedPart> + Send>;
+/// Opens the part at a place in the list of parts.
+type Open = Box<dyn FnMut(usize) -> Result<OpenedPart> + Send>;
+
+/// Vertices of a patch that only finalizes. Each takes 12 bytes.
+const PATCH_VERTICES: usize = 16_384;
 
 /// One part of a mesh: what is known of it before it is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PartSize {
-    /// The number of the part.
-    pub number: u32,
+    /// Its name.
+    pub name: PartName,
+    /// Whether the joined mesh has its simplices.
+    pub is_wanted: bool,
     /// Its vertices that no part before it has.
     pub vertices: u64,
     /// Its triangles or tetrahedra.
@@ -31,21 +36,18 @@ pub struct PartSize {
 
 /// Reads the parts of a mesh, one after the other, as the bytes of one stream without parts.
 ///
-/// A vertex of several parts is written once, with the first of them, and finalized with the last. Ids of vertices
-/// count up over all parts, so no table of ids is needed: the id of a vertex is its number in its part and the
-/// number of vertices of the parts before.
+/// A vertex of several parts is written once, with the first of them that is wanted, and finalized with the last.
+/// Parts that are not wanted are not opened: their simplices are left out.
 ///
-/// Memory: 8 bytes for each part, one patch, the live vertices of one part, and 8 bytes for each vertex that a later
+/// Memory: 16 bytes for each part, one patch, the live vertices of one part, and 16 bytes for each vertex that a later
 /// part may use: the residuals of nodes whose parent is still to come. An error of a part is the inner
 /// error of the [`io::Error`].
 pub struct JoinedMesh {
     open: Open,
-    parts: std::vec::IntoIter<PartSize>,
-    /// For each part number, the id of its first vertex in the joined mesh.
-    first_ids: Vec<u64>,
-    plan: u64,
-    /// Vertices that parts have kept for later ones.
-    kept: HashSet<u64>,
+    parts: Vec<PartSize>,
+    /// The part that comes next.
+    next: usize,
+    shared: Shared,
     current: Option<Current>,
     /// `None` after END.
     writer: Option<StreamWriter<Vec<u8>>>,
@@ -58,49 +60,71 @@ pub struct JoinedMesh {
     stated: Totals,
 }
 
+/// What is known of vertices of several parts.
+struct Shared {
+    /// For each part, the number of vertices of all parts before it.
+    firsts: Vec<u64>,
+    /// For each part, the place of the first part below it, or its own.
+    lowest: Vec<usize>,
+    /// Whether all parts are wanted.
+    is_whole: bool,
+    /// Vertices that parts have kept for later ones: number among the vertices of all parts, and id in the joined
+    /// mesh.
+    kept: HashMap<u64, u64>,
+    /// Ids of those that are left when all wanted parts were read.
+    left: Vec<u64>,
+    /// Vertices of the joined mesh so far.
+    vertices: u64,
+}
+
 /// The part that is being read.
 struct Current {
     reader: StreamReader<Box<dyn Read + Send>>,
     size: PartSize,
-    /// Its live vertices, each with its id in the joined mesh.
-    live: LiveVertices<u64>,
+    /// Its place among all parts.
+    place: usize,
+    /// Its live vertices.
+    live: LiveVertices<Vertex>,
     /// Vertices of its own so far.
     own: u64,
 }
 
+/// A vertex: its number among the vertices of all parts, and its id in the joined mesh.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct Vertex {
+    number: u64,
+    id: u64,
+}
+
 impl JoinedMesh {
-    /// Joins `parts` of the plan `plan`, each after those whose vertices it uses. All of them have
-    /// the `stated` points, so many of which are merged with others. `header` is that of the joined
-    /// mesh; what it shares with those of the parts is checked.
+    /// Joins `parts`, each directly behind all parts below it. All of them have the `stated` points, so many of
+    /// which are merged with others. `header` is that of the joined mesh; what it shares with those of the parts is
+    /// checked.
     ///
     /// # Errors
-    /// Malformed, if the parts are not numbered from 0 on; usage, if the header cannot be written.
-    pub fn new(
-        header: Header,
-        plan: u64,
-        parts: Vec<PartSize>,
-        stated: Totals,
-        open: Open,
-    ) -> Result<JoinedMesh> {
-        let mut first_ids = vec![u64::MAX; parts.len()];
+    /// Malformed, if a part comes before one below it; usage, if the header cannot be written.
+    pub fn new(header: Header, parts: Vec<PartSize>, stated: Totals, open: Open) -> Result<JoinedMesh> {
+        let (mut firsts, mut lowest) = (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
         let mut vertices = 0u64;
-        for part in &parts {
-            let twice = || {
-                Error::malformed(format!("part {} of {} comes twice, or is none", part.number, parts.len()))
-            };
-            let first = first_ids.get_mut(part.number as usize).filter(|first| **first == u64::MAX);
-            *first.ok_or_else(twice)? = vertices;
+        for (place, part) in parts.iter().enumerate() {
+            let below = part.name.below;
+            if below as usize > place {
+                return Err(Error::malformed(format!(
+                    "part {place} comes before one of the {below} below it"
+                )));
+            }
+            firsts.push(vertices);
+            lowest.push(place - below as usize);
             let sum = vertices.checked_add(part.vertices).filter(|sum| *sum < u64::MAX);
             vertices = sum.ok_or_else(|| Error::malformed("vertices beyond counting"))?;
         }
+        let is_whole = parts.iter().all(|part| part.is_wanted);
         let writer = StreamWriter::new(Vec::new(), header)?;
-        let parts = parts.into_iter();
         Ok(JoinedMesh {
             open,
             parts,
-            first_ids,
-            plan,
-            kept: HashSet::new(),
+            next: 0,
+            shared: Shared { firsts, lowest, is_whole, kept: HashMap::new(), left: Vec::new(), vertices: 0 },
             current: None,
             writer: Some(writer),
             bytes: Vec::new(),
@@ -120,7 +144,7 @@ impl JoinedMesh {
                 return current.check_end(totals.simplices);
             }
             if let Some(Event::Patch(patch)) = event {
-                let joined = current.join(&patch, &self.first_ids, &mut self.kept);
+                let joined = current.join(&patch, &mut self.shared);
                 let (patch, rows) = joined.map_err(|error| current.reader.locate(error))?;
                 if patch.vertices() > 0 {
                     writer.patch_with_rows(&patch, &rows)?;
@@ -129,15 +153,24 @@ impl JoinedMesh {
             self.current = Some(current);
             return Ok(());
         }
-        if let Some(size) = self.parts.next() {
-            let (input, name) = (self.open)(size.number)?;
+        let wanted = (self.next..self.parts.len()).find(|&place| self.parts[place].is_wanted);
+        self.next = wanted.map_or(self.parts.len(), |place| place + 1);
+        if let Some(place) = wanted {
+            let (input, name) = (self.open)(place)?;
             let reader = StreamReader::new(input, name)?;
-            let current = Current { reader, size, live: LiveVertices::new(), own: 0 };
-            current.check(writer.header(), self.plan).map_err(|e| e.of_input(current.reader.name()))?;
+            let current =
+                Current { reader, size: self.parts[place], place, live: LiveVertices::new(), own: 0 };
+            current.check(writer.header()).map_err(|e| e.of_input(current.reader.name()))?;
             self.current = Some(current);
             return Ok(());
         }
+        if let Some(patch) = self.shared.next_left() {
+            return writer.patch(&patch);
+        }
         let points = writer.totals().vertices + self.merged;
+        if !self.shared.is_whole {
+            self.stated = Totals { points, merged: self.merged, ..Totals::default() };
+        }
         for (found, stated, what) in
             [(self.merged, self.stated.merged, "merged points"), (points, self.stated.points, "points")]
         {
@@ -151,13 +184,37 @@ impl JoinedMesh {
     }
 }
 
+impl Shared {
+    /// A patch that finalizes vertices which were kept for parts that are not wanted, if any are left.
+    fn next_left(&mut self) -> Option<Patch> {
+        if self.is_whole {
+            return None;
+        }
+        if !self.kept.is_empty() {
+            self.left = self.kept.drain().map(|(_, id)| id).collect();
+            self.left.sort_unstable();
+        }
+        let imported = self.left.split_off(self.left.len().saturating_sub(PATCH_VERTICES));
+        let finalized = (0..imported.len() as u32).collect();
+        let patch = Patch { first_id: self.vertices, imported, finalized, ..Patch::default() };
+        (patch.vertices() > 0).then_some(patch)
+    }
+
+    /// The number of the vertex that part `place` calls `id`, and its id in the joined mesh if a part before has kept it.
+    fn vertex(&self, id: GlobalId, place: usize) -> Result<(u64, Option<u64>)> {
+        let part = self.lowest[place] + id.part() as usize;
+        let number = self.firsts.get(part).and_then(|first| first.checked_add(id.number()));
+        let number = number.ok_or_else(|| Error::malformed("a vertex of no part"))?;
+        Ok((number, self.kept.get(&number).copied()))
+    }
+}
+
 impl Current {
     /// Checks that the stream is the part that it should be.
-    fn check(&self, joined: &Header, plan: u64) -> Result<()> {
+    fn check(&self, joined: &Header) -> Result<()> {
         let header = self.reader.header();
-        let is_it = header.part.is_some_and(|part| part.plan == plan && part.number == self.size.number);
-        if !is_it || header.kind != joined.kind {
-            let message = format!("this is not part {} of the plan", self.size.number);
+        if header.part != Some(self.size.name) || header.kind != joined.kind {
+            let message = "this is another part than the manifest names";
             return Err(Error::malformed(message).at("header at byte 0"));
         }
         if header.coordinates != joined.coordinates
@@ -187,88 +244,78 @@ impl Current {
 
     /// A patch with the ids of the joined mesh, and the rows of its new vertices. It has no vertices if there is
     /// nothing to say.
-    fn join(
-        &mut self,
-        patch: &Patch,
-        first_ids: &[u64],
-        kept_before: &mut HashSet<u64>,
-    ) -> Result<(Patch, Vec<u8>)> {
-        let id_of = |id: GlobalId| {
-            let first = first_ids.get(id.part() as usize);
-            first
-                .and_then(|first| first.checked_add(id.number()))
-                .ok_or_else(|| Error::malformed("a vertex of no part"))
-        };
-        let first_own = first_ids[self.size.number as usize] + self.own;
-        // For each new vertex of the part, its id; those of its own count up.
-        let mut ids = Vec::with_capacity(patch.new.len());
-        let (mut origins, mut own) = (patch.origins.iter().peekable(), first_own);
-        for local in 0..patch.new.len() as u32 {
-            if let Some(origin) = origins.next_if(|origin| origin.local == local) {
-                let id = id_of(origin.id)?;
-                if !kept_before.contains(&id) {
-                    let (part, number) = (origin.id.part(), origin.id.number());
-                    let message = format!("vertex {number} of part {part}, which no part before has kept");
-                    return Err(Error::malformed(message));
-                }
-                ids.push(id);
-            } else {
-                ids.push(own);
-                own += 1;
-            }
-        }
-        self.own += own - first_own;
-        let new_ids = |id: u64, _| ids[(id - patch.first_id) as usize];
-        let vertices: Vec<u64> = self.live.enter(patch, new_ids)?.iter().map(|&(_, id)| id).collect();
-        let is_own = |id: u64| (first_own..own).contains(&id);
+    fn join(&mut self, patch: &Patch, shared: &mut Shared) -> Result<(Patch, Vec<u8>)> {
+        let first = shared.vertices;
+        let entering = self.entering(patch, shared)?;
+        let is_new = |id: u64| id >= first;
+        let entered = |id: u64, _| entering[(id - patch.first_id) as usize];
+        let vertices: Vec<Vertex> = self.live.enter(patch, entered)?.iter().map(|&(_, it)| it).collect();
         let used = used_of(patch);
         let mut imported: Vec<u64> = vertices
             .iter()
             .zip(&used)
-            .filter(|&(&id, &used)| used && !is_own(id))
-            .map(|(&id, _)| id)
+            .filter(|&(it, &used)| used && !is_new(it.id))
+            .map(|(it, _)| it.id)
             .collect();
         imported.sort_unstable();
-        let count = own - first_own;
+        let count = shared.vertices - first;
         let local_of = |local: u32| {
-            let id = vertices[local as usize];
-            let local = if is_own(id) {
-                id - first_own
+            let Vertex { id, .. } = vertices[local as usize];
+            let local = if is_new(id) {
+                id - first
             } else {
                 count + imported.partition_point(|&other| other < id) as u64
             };
             local as u32
         };
         let mut kept = patch.kept.iter().peekable();
-        let mut finalized: Vec<u32> = patch
-            .finalized
-            .iter()
-            .filter(|&local| {
-                let id = vertices[*local as usize];
-                let is_kept = kept.next_if_eq(&local).is_some();
-                if is_kept {
-                    kept_before.insert(id)
-                } else {
-                    kept_before.remove(&id)
-                };
-                !is_kept
-            })
-            .map(|&local| local_of(local))
-            .collect();
+        let mut finalized: Vec<u32> = Vec::with_capacity(patch.finalized.len());
+        for local in &patch.finalized {
+            let Vertex { number, id } = vertices[*local as usize];
+            if kept.next_if_eq(&local).is_some() {
+                shared.kept.insert(number, id);
+            } else {
+                shared.kept.remove(&number);
+                finalized.push(local_of(*local));
+            }
+        }
         finalized.sort_unstable();
         let row_len = self.reader.rows().len().checked_div(patch.new.len()).unwrap_or(0);
-        let own_places = (0..patch.new.len()).filter(|&place| is_own(ids[place]));
+        let places = (0..patch.new.len()).filter(|&place| is_new(entering[place].id));
         let rows =
-            own_places.clone().flat_map(|place| &self.reader.rows()[place * row_len..][..row_len]).copied();
+            places.clone().flat_map(|place| &self.reader.rows()[place * row_len..][..row_len]).copied();
         let joined = Patch {
-            first_id: first_own,
-            new: own_places.clone().map(|place| patch.new[place]).collect(),
+            first_id: first,
+            new: places.clone().map(|place| patch.new[place]).collect(),
             simplices: patch.simplices.iter().map(|&local| local_of(local)).collect(),
             imported,
             finalized,
             ..Patch::default()
         };
         Ok((joined, rows.collect()))
+    }
+
+    /// The new vertices of a patch. Those that no part before has written are vertices of the joined mesh from now on.
+    fn entering(&mut self, patch: &Patch, shared: &mut Shared) -> Result<Vec<Vertex>> {
+        let mut vertices = Vec::with_capacity(patch.new.len());
+        let mut origins = patch.origins.iter().peekable();
+        for local in 0..patch.new.len() as u32 {
+            let (number, known) = match origins.next_if(|origin| origin.local == local) {
+                Some(origin) => shared.vertex(origin.id, self.place)?,
+                None => {
+                    self.own += 1;
+                    (shared.firsts[self.place] + self.own - 1, None)
+                }
+            };
+            let is_own = number >= shared.firsts[self.place];
+            if !is_own && known.is_none() && shared.is_whole {
+                return Err(Error::malformed("a vertex of another part, which no part before has kept"));
+            }
+            let id = known.unwrap_or(shared.vertices);
+            shared.vertices += u64::from(known.is_none());
+            vertices.push(Vertex { number, id });
+        }
+        Ok(vertices)
     }
 }
 

@@ -21,10 +21,11 @@ const ORIGIN_LEN: usize = 12;
 /// Which part of a mesh a stream is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PartName {
-    /// The plan that says which parts there are.
-    pub plan: u64,
-    /// The number of the part. Parts use vertices of parts with lesser numbers.
-    pub number: u32,
+    /// The name of the node that makes it: a hash of all that it depends on.
+    pub node: u64,
+    /// How many parts it joins, directly or not. These have the numbers 0, 1, ... in its ids of vertices, in the
+    /// order in which they are joined, and the part itself has the number `below`.
+    pub below: u32,
 }
 
 impl PartName {
@@ -32,15 +33,15 @@ impl PartName {
     pub const PARTS_MAX: u32 = 1 << PART_BITS;
 
     pub(super) fn encode(header: &Header) -> Option<Vec<u8>> {
-        let PartName { plan, number } = header.part?;
-        Some([&plan.to_le_bytes()[..], &number.to_le_bytes()].concat())
+        let PartName { node, below } = header.part?;
+        Some([&node.to_le_bytes()[..], &below.to_le_bytes()].concat())
     }
 
     pub(super) fn decode(header: &mut Header, payload: &[u8]) -> std::result::Result<(), String> {
         if payload.len() != 12 {
             return Err(format!("{} bytes, expected 12", payload.len()));
         }
-        header.part = Some(PartName { plan: LE::read_u64(payload), number: LE::read_u32(&payload[8..]) });
+        header.part = Some(PartName { node: LE::read_u64(payload), below: LE::read_u32(&payload[8..]) });
         Ok(())
     }
 
@@ -53,14 +54,15 @@ impl PartName {
         if header.constrained.is_some() || header.weighted.is_some() {
             return Err("a part of a mesh is neither constrained nor weighted".into());
         }
-        if self.number >= Self::PARTS_MAX {
-            return Err(format!("part {}, expected less than {}", self.number, Self::PARTS_MAX));
+        if self.below >= Self::PARTS_MAX {
+            return Err(format!("{} parts below, expected less than {}", self.below, Self::PARTS_MAX));
         }
         Ok(())
     }
 }
 
-/// The name of a vertex in all parts: the part that has it as a vertex of its own, and its number among those.
+/// A vertex as a part, and those that join it, name it: the number of the part that has it as a vertex of its own,
+/// among the parts below the one that speaks of it, and its number among the vertices of that part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct GlobalId(pub u64);
 
@@ -78,6 +80,16 @@ impl GlobalId {
             return Err(Error::usage(message));
         }
         Ok(GlobalId(u64::from(part) << NUMBER_BITS | number))
+    }
+
+    /// The name of the vertex in a part that joins this one behind `before` other parts.
+    ///
+    /// # Errors
+    /// Malformed, if there cannot be so many parts.
+    pub fn moved(self, before: u32) -> Result<GlobalId> {
+        let part = self.part().checked_add(before).filter(|&part| part < PartName::PARTS_MAX);
+        let part = part.ok_or_else(|| Error::malformed("a vertex of more parts than there can be"))?;
+        GlobalId::new(part, self.number())
     }
 
     /// The part that has the vertex as one of its own. It fits 32 bits if [`GlobalId::is_valid`].
@@ -112,7 +124,7 @@ pub struct Origin {
 /// Malformed, if there can be no such vertex.
 pub fn check_residual_id(header: &Header, vertices: u64, id: u64) -> Result<()> {
     let is_known = match header.part {
-        Some(part) => GlobalId(id).is_valid() && GlobalId(id).part() <= part.number,
+        Some(part) => GlobalId(id).is_valid() && GlobalId(id).part() <= part.below,
         None => id < vertices,
     };
     if is_known {
@@ -129,10 +141,10 @@ pub(super) fn check_shared(part: Option<PartName>, patch: &Patch) -> Result<()> 
     if !is_increasing || patch.origins.last().is_some_and(|it| it.local as usize >= patch.new.len()) {
         return Err(Error::malformed("vertices of other parts are not increasing numbers of new vertices"));
     }
-    let is_earlier = |origin: &Origin| origin.id.is_valid() && origin.id.part() < part.number;
+    let is_earlier = |origin: &Origin| origin.id.is_valid() && origin.id.part() < part.below;
     if let Some(origin) = patch.origins.iter().find(|origin| !is_earlier(origin)) {
-        let (other, number) = (origin.id.0 >> NUMBER_BITS, part.number);
-        return Err(Error::malformed(format!("a vertex of part {other}, expected one before part {number}")));
+        let (other, below) = (origin.id.0 >> NUMBER_BITS, part.below);
+        return Err(Error::malformed(format!("a vertex of part {other}, expected one before part {below}")));
     }
     let mut finalized = patch.finalized.iter();
     match patch.kept.iter().find(|&local| !finalized.any(|other| other == local)) {

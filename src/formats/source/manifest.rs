@@ -11,10 +11,10 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::limits::MANIFEST_LEN_MAX;
 use spmesh_stream::model::bounds::Bounds;
-use spmesh_stream::{Header, JoinedMesh, OpenedPart, PartSize, StreamReader, Totals};
+use spmesh_stream::{Coordinates, Header, JoinedMesh, OpenedPart, PartName, PartSize, StreamReader, Totals};
 
 const FORMAT: &str = "spmesh mesh in parts";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What all versions have.
 #[derive(Deserialize)]
@@ -24,11 +24,13 @@ struct Head {
 }
 
 /// A part of a mesh: a stream of its own.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ManifestPart {
-    /// Its number.
-    pub number: u32,
+    /// Its name: 16 hexadecimal digits.
+    pub name: String,
+    /// How many parts it joins, directly or not: those that are listed directly before it.
+    pub below: u32,
     /// Its file, relative to the folder of the manifest.
     pub file: String,
     /// Its length in bytes.
@@ -37,6 +39,19 @@ pub struct ManifestPart {
     pub vertices: u64,
     /// Its triangles or tetrahedra.
     pub simplices: u64,
+    /// A box that holds its vertices, in stored coordinates; none without points.
+    #[serde(rename = "box")]
+    pub bounds: Option<[[f64; 3]; 2]>,
+}
+
+/// A file that a mesh does without.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SkippedFile {
+    /// Its path, as it was given.
+    pub file: String,
+    /// What is wrong with it.
+    pub reason: String,
 }
 
 /// A mesh in parts.
@@ -45,23 +60,23 @@ pub struct ManifestPart {
 pub struct Manifest {
     format: String,
     version: u32,
-    /// The hash of the plan, in hexadecimal digits.
-    pub plan: String,
     /// Bounding box of all points in stored coordinates; none without points.
     pub bounds: Option<[[f64; 3]; 2]>,
     /// Points of the input, and how many of them coincide with another one.
     pub points: u64,
     /// Points that coincide with another one, and are no vertices.
     pub merged: u64,
-    /// The parts, each behind those whose vertices it uses.
+    /// Files whose points are not in the mesh.
+    pub skipped: Vec<SkippedFile>,
+    /// The parts, each behind those that it joins.
     pub parts: Vec<ManifestPart>,
 }
 
 impl Manifest {
     /// A manifest of these parts.
-    pub fn new(plan: &str, parts: Vec<ManifestPart>) -> Manifest {
-        let (format, plan) = (FORMAT.to_string(), plan.to_string());
-        Manifest { format, version: VERSION, plan, bounds: None, points: 0, merged: 0, parts }
+    pub fn new(parts: Vec<ManifestPart>) -> Manifest {
+        let (format, skipped) = (FORMAT.to_string(), Vec::new());
+        Manifest { format, version: VERSION, bounds: None, points: 0, merged: 0, skipped, parts }
     }
 
     /// The manifest as JSON, one part in each line.
@@ -92,13 +107,6 @@ impl Manifest {
         }
         serde_json::from_slice(text).map_err(not_one)
     }
-
-    /// The number by which streams name the plan.
-    fn plan_number(&self) -> Result<u64> {
-        let digits = self.plan.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'));
-        let number = u64::from_str_radix(&self.plan, 16).ok().filter(|_| digits && self.plan.len() == 16);
-        number.ok_or_else(|| Error::malformed(format!("{:?} is no hash of a plan", self.plan)))
-    }
 }
 
 /// Whether a file starts as a manifest does. Pipes do not.
@@ -110,43 +118,54 @@ pub fn is_manifest(file: &File) -> bool {
     found.take(start.len()).eq(start.as_bytes())
 }
 
-/// Opens a mesh in parts as one stream.
+/// Opens a mesh in parts as one stream. With a `window`, a closed box of the world, parts that have no vertex there, and
+/// no simplex that reaches in, may be left out.
 ///
 /// Memory: the manifest, and that of [`JoinedMesh`].
 ///
 /// # Errors
 /// If the manifest or the first part cannot be read.
-pub fn open_manifest(path: &Path) -> Result<JoinedMesh> {
-    joined(path).map_err(|e| e.of_input(path.display().to_string()))
+pub fn open_manifest(path: &Path, window: Option<&Bounds>) -> Result<JoinedMesh> {
+    joined(path, window).map_err(|e| e.of_input(path.display().to_string()))
 }
 
-fn joined(path: &Path) -> Result<JoinedMesh> {
+fn joined(path: &Path, window: Option<&Bounds>) -> Result<JoinedMesh> {
     let manifest = Manifest::parse(&inputs::read(path, "a manifest of", MANIFEST_LEN_MAX)?)?;
-    let plan = manifest.plan_number()?;
     let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-    let sizes: Vec<PartSize> = manifest.parts.iter().map(size_of).collect();
-    let mut files = vec![PathBuf::new(); manifest.parts.len()];
-    for part in &manifest.parts {
-        if let Some(file) = files.get_mut(part.number as usize) {
-            *file = folder.join(&part.file);
-        }
-    }
-    let open = move |number: u32| open_part(&files[number as usize]);
-    let Some(first) = sizes.first() else { return Err(Error::malformed("a mesh without parts")) };
-    if first.number as usize >= sizes.len() {
-        return Err(Error::malformed("parts are not numbered from 0 on"));
-    }
-    let (input, name) = open(first.number)?;
+    let files: Vec<PathBuf> = manifest.parts.iter().map(|part| folder.join(&part.file)).collect();
+    let Some(first) = files.first() else { return Err(Error::malformed("a mesh without parts")) };
+    let (input, name) = open_part(first)?;
     let header = StreamReader::new(input, name)?.header().clone();
     let bounds = manifest.bounds.map(|[min, max]| Bounds { min, max });
     let header = Header { bounds, tree: None, part: None, points: None, ..header };
     header.check().map_err(Error::malformed)?;
+    let is_wanted =
+        |part: &ManifestPart| window.is_none_or(|window| reaches(part, window, &header.coordinates));
+    let sizes = manifest.parts.iter().map(|part| size_of(part, is_wanted(part)));
+    let sizes = sizes.collect::<Result<Vec<PartSize>>>()?;
     let stated = Totals { points: manifest.points, merged: manifest.merged, ..Totals::default() };
-    JoinedMesh::new(header, plan, sizes, stated, Box::new(open))
+    JoinedMesh::new(header, sizes, stated, Box::new(move |place| open_part(&files[place])))
 }
 
-fn size_of(part: &ManifestPart) -> PartSize {
-    PartSize { number: part.number, vertices: part.vertices, simplices: part.simplices }
+/// Whether a part may have simplices in a window.
+fn reaches(part: &ManifestPart, window: &Bounds, coordinates: &Coordinates) -> bool {
+    let Some([min, max]) = part.bounds.filter(|_| part.simplices > 0) else { return false };
+    // A step more, as coordinates of the world are rounded.
+    let step = match coordinates {
+        Coordinates::I32 { scale, .. } => *scale,
+        Coordinates::F64 => [0.0; 3],
+    };
+    let (min, max) = (coordinates.to_world(min), coordinates.to_world(max));
+    (0..3)
+        .all(|axis| min[axis] - step[axis] <= window.max[axis] && window.min[axis] <= max[axis] + step[axis])
+}
+
+fn size_of(part: &ManifestPart, is_wanted: bool) -> Result<PartSize> {
+    let digits = part.name.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'));
+    let node = u64::from_str_radix(&part.name, 16).ok().filter(|_| digits && part.name.len() == 16);
+    let node = node.ok_or_else(|| Error::malformed(format!("{:?} is no name of a part", part.name)))?;
+    let name = PartName { node, below: part.below };
+    Ok(PartSize { name, is_wanted, vertices: part.vertices, simplices: part.simplices })
 }
 
 fn open_part(path: &Path) -> Result<OpenedPart> {

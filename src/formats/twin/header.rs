@@ -79,11 +79,11 @@ impl TwinHeader {
                 self.weighted = Some(Weighted { greatest });
             }
             b"part" => {
-                let plan = parse_integer(next_field(&mut values)?)?;
-                let number = parse_integer(next_field(&mut values)?)?;
-                let number = u32::try_from(number)
-                    .map_err(|_| Error::malformed("the part has no number of 32 bits"))?;
-                self.part = Some(only(PartName { plan, number }, values)?);
+                let node = parse_integer(next_field(&mut values)?)?;
+                let below = parse_integer(next_field(&mut values)?)?;
+                let below = u32::try_from(below)
+                    .map_err(|_| Error::malformed("the parts below have no number of 32 bits"))?;
+                self.part = Some(only(PartName { node, below }, values)?);
             }
             b"producer" => self.producer = parse_string(rest)?,
             _ => return Err(unexpected(&key, "a statement of the header")),

@@ -180,8 +180,8 @@ fn write_header(output: &mut impl Write, header: &Header) -> Result<()> {
     if let Some(Weighted { greatest }) = header.weighted {
         line(format_args!("weighted {}", Decimal(greatest)))?;
     }
-    if let Some(PartName { plan, number }) = header.part {
-        line(format_args!("part {plan} {number}"))?;
+    if let Some(PartName { node, below }) = header.part {
+        line(format_args!("part {node} {below}"))?;
     }
     line(format_args!("producer {}", string(&header.producer)))
 }

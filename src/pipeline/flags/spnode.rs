@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 
+use super::roots::RootFlags;
 use super::spfinalize;
-use crate::plan::{Maker, Node, Plan, Work, collect};
-use crate::reduce::Duplicates;
-use spmesh_base::error::{Error, Result};
+use crate::plan::{Maker, Node, Plan, Work, batches, collect, expected, incomplete, remove, spent};
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_shell::{Common, advise_on_memory, endings, notice, parse_size, parse_threads, threads};
 
@@ -24,8 +24,10 @@ Examples:
       spdem --step 1 ground.json -o terrain.tif
   The leaves as one job array of Slurm, and later the nodes of the next stage:
       sbatch --array=0-999 --wrap 'spnode run plan.json $SLURM_ARRAY_TASK_ID -d parts'
-  The raster of one part, in the job that made it:
-      spnode run plan.json 17 -d parts && spdem --step 1 parts/000017.spm -o dem/000017.tif
+  After some tiles have changed: what does not depend on them is not made again:
+      spfinalize --plan plan.json --keep-class 2 tiles/*.laz
+      spnode list plan.json -d parts --missing | cut -f 1 | xargs -r spnode run plan.json -d parts
+      spnode collect plan.json -d parts -o ground.json && spnode clean plan.json -d parts
   The parts as one stream without parts:
       spconvert ground.json -o ground.spm
 
@@ -35,11 +37,11 @@ points that are not accounted for, 5 not enough memory, 6 input of another versi
 /// Make one part of a mesh that many jobs make, on one machine or on a cluster
 ///
 /// spfinalize --plan divides the box of all points into leaves. A leaf triangulates its points; a node above it joins
-/// what its children left. Each node writes three files into the folder: its part of the mesh (000017.spm, a stream
-/// that other programs read), what it leaves to the node above (000017.rest.spm), and at last its report
-/// (000017.json). A node that is complete is not made again. Jobs need nothing but the plan, the points and the
-/// folder, and run in any order in which children come before their parents: scripts/cluster has them for Snakemake,
-/// Slurm and GNU parallel.
+/// what its children left. Each node writes three files into the folder, under its name, a hash of all that it depends
+/// on: its part of the mesh (NAME.spm, a stream that other programs read), what it leaves to the node above
+/// (NAME.rest.spm), and at last its report (NAME.json). A node that is complete is not made again, also by another plan
+/// that has it. Jobs need nothing but the plan, the points and the folder, and run in any order in which children come
+/// before their parents: scripts/cluster has them for Snakemake, Slurm and GNU parallel.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -52,12 +54,14 @@ pub struct Flags {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// List the nodes: number, stage, kind, children, expected points, separated by tabs
+    /// List the nodes: number, stage, kind, children, expected points and name, separated by tabs
     List(ListFlags),
     /// Make nodes, unless they are complete
     Run(RunFlags),
     /// Check that all nodes are complete and account for every point, and write the manifest of the mesh
     Collect(CollectFlags),
+    /// Remove the parts of earlier plans from the folder, and say which
+    Clean(CleanFlags),
 }
 
 #[derive(Debug, Args)]
@@ -71,8 +75,24 @@ struct ListFlags {
     stage: Option<u32>,
 
     /// Print the first and the last node of each stage instead: stage, first, last
-    #[arg(long, conflicts_with = "stage")]
+    #[arg(long, conflicts_with_all = ["stage", "missing", "batch_points"])]
     stages: bool,
+
+    /// Only nodes that are not complete in the folder of -d
+    #[arg(long, requires = "dir")]
+    missing: bool,
+
+    /// Print batches of nodes of one stage instead: a line of numbers for each, which have up to so many expected points
+    /// together, inner nodes those that their children leave. 0: one node a batch
+    #[arg(long, value_name = "N")]
+    batch_points: Option<u64>,
+
+    /// Folder for the parts
+    #[arg(short = 'd', long, value_name = "FOLDER", requires = "missing")]
+    dir: Option<PathBuf>,
+
+    #[command(flatten)]
+    roots: RootFlags,
 }
 
 #[derive(Debug, Args)]
@@ -88,10 +108,6 @@ struct RunFlags {
     /// Make nodes again that are complete
     #[arg(long)]
     force: bool,
-
-    /// Elevation of a vertex where points coincide in x and y; the same for all nodes
-    #[arg(long, value_enum, default_value_t = Duplicates::First, value_name = "POLICY")]
-    duplicates: Duplicates,
 
     #[command(flatten)]
     work: WorkFlags,
@@ -113,6 +129,24 @@ struct CollectFlags {
 
     #[command(flatten)]
     work: WorkFlags,
+}
+
+#[derive(Debug, Args)]
+struct CleanFlags {
+    /// The plan of spfinalize --plan whose parts stay
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+
+    /// Folder for the parts
+    #[arg(short = 'd', long, value_name = "FOLDER")]
+    dir: PathBuf,
+
+    /// Only print the names of the files
+    #[arg(long)]
+    dry_run: bool,
+
+    #[command(flatten)]
+    roots: RootFlags,
 }
 
 /// How nodes are made.
@@ -137,13 +171,16 @@ struct WorkFlags {
     /// Compress parts and residuals
     #[arg(long)]
     compress: bool,
+
+    #[command(flatten)]
+    roots: RootFlags,
 }
 
 impl WorkFlags {
-    fn work(&self, duplicates: Duplicates) -> Work {
-        let &WorkFlags { ref dir, threads: asked, memory, ref temp_dir, compress } = self;
+    fn work(&self) -> Work {
+        let &WorkFlags { ref dir, threads: asked, memory, ref temp_dir, compress, .. } = self;
         let (folder, threads, temp_dir) = (dir.clone(), threads(asked), temp_dir.clone());
-        Work { folder, duplicates, threads, memory, temp_dir, compress }
+        Work { folder, threads, memory, temp_dir, compress }
     }
 }
 
@@ -158,37 +195,75 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     match &flags.action {
         Action::List(action) => list(action)?,
         Action::Run(action) => {
-            let plan = Plan::read(&action.plan)?;
-            let work = action.work.work(action.duplicates);
+            let plan = read(&action.plan, &action.work.roots)?;
+            let work = action.work.work();
             let maker = Maker::new(&plan, &work, &recipe, &note)?;
             action.nodes.iter().try_for_each(|&number| plan.node(number).map(|_| ()))?;
             action.nodes.iter().try_for_each(|&number| maker.run(number, action.force))?;
         }
         Action::Collect(CollectFlags { plan, output, verify, work }) => {
             endings::check(output, &[endings::JSON])?;
-            let work = work.work(Duplicates::default());
-            let loaded = Plan::read(plan)?;
-            collect(&loaded, &work, output, *verify, &recipe, &note)?;
+            let loaded = read(plan, &work.roots)?;
+            collect(&loaded, &work.work(), output, *verify, &recipe, &note)?;
         }
+        Action::Clean(action) => clean(action, &note)?,
     }
     Ok(())
 }
 
+/// Reads a plan whose files are where `roots` says.
+fn read(path: &Path, roots: &RootFlags) -> Result<Plan> {
+    let mut plan = Plan::read(path)?;
+    plan.move_roots(roots.roots())?;
+    Ok(plan)
+}
+
 fn list(flags: &ListFlags) -> Result<()> {
-    let plan = Plan::read(&flags.plan)?;
+    let plan = read(&flags.plan, &flags.roots)?;
     if flags.stages {
         let lines =
             (0..).zip(&plan.stages).map(|(stage, [first, last])| format!("{stage}\t{first}\t{last}\n"));
         return print(&lines.collect::<String>());
     }
-    let nodes = plan.nodes.iter().filter(|node| flags.stage.is_none_or(|stage| stage == node.stage));
-    print(&nodes.map(line_of).collect::<String>())
+    let mut nodes: Vec<&Node> = match flags.dir.as_ref().filter(|_| flags.missing) {
+        Some(folder) => incomplete(&plan, folder)?,
+        None => plan.nodes.iter().collect(),
+    };
+    nodes.retain(|node| flags.stage.is_none_or(|stage| stage == node.stage));
+    match flags.batch_points {
+        Some(points) => {
+            let batches = batches(&plan, &nodes, points);
+            print(&batches.iter().map(|batch| batch_line(batch)).collect::<String>())
+        }
+        None => print(&nodes.iter().map(|node| line_of(&plan, node)).collect::<String>()),
+    }
 }
 
-fn line_of(node: &Node) -> String {
-    let children: Vec<String> = node.children.iter().map(u32::to_string).collect();
+fn line_of(plan: &Plan, node: &Node) -> String {
+    let Node { number, stage, ref children, ref name, .. } = *node;
+    let children: Vec<String> = children.iter().map(u32::to_string).collect();
     let children = if children.is_empty() { "-".to_string() } else { children.join(",") };
-    format!("{}\t{}\t{}\t{children}\t{}\n", node.number, node.stage, node.kind_name(), node.points)
+    format!("{number}\t{stage}\t{}\t{children}\t{}\t{name}\n", node.kind_name(), expected(plan, node))
+}
+
+fn batch_line(batch: &[&Node]) -> String {
+    let numbers: Vec<String> = batch.iter().map(|node| node.number.to_string()).collect();
+    format!("{}\n", numbers.join(" "))
+}
+
+fn clean(flags: &CleanFlags, note: &dyn Fn(&str)) -> Result<()> {
+    let plan = read(&flags.plan, &flags.roots)?;
+    let files = spent(&plan, &flags.dir)?;
+    print(&files.iter().map(|file| format!("{}\n", file.path.display())).collect::<String>())?;
+    let bytes: u64 = files.iter().map(|file| file.bytes).sum();
+    let what = format!("{} of earlier plans, {bytes} bytes", counted(files.len() as u64, "file", "files"));
+    if flags.dry_run {
+        note(&format!("{what}: not removed"));
+        return Ok(());
+    }
+    remove(&files)?;
+    note(&format!("{what}: removed"));
+    Ok(())
 }
 
 fn print(text: &str) -> Result<()> {

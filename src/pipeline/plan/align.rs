@@ -14,8 +14,6 @@ pub(super) struct Borders {
     /// that a border would divide them from.
     pub(super) origin: f64,
     pub(super) pitch: f64,
-    /// Columns from the first to the last one.
-    pub(super) columns: u32,
 }
 
 /// Where a border may be that cuts no tile: above `after`, and at most at `before`. All tiles of earlier columns
@@ -64,8 +62,16 @@ pub(super) fn borders_between(tiles: &[(f64, f64)]) -> Option<Borders> {
         }
     }
     let (count, origin, pitch) = best?;
-    let columns = gaps[gaps.len() - 1].column as u32 + 1;
-    (2 * count >= gaps.len()).then_some(Borders { origin, pitch, columns })
+    (2 * count >= gaps.len()).then_some(Borders { origin, pitch })
+}
+
+/// A border between two columns of tiles, if there are any.
+pub(super) fn border_near(tiles: &[(f64, f64)]) -> Option<f64> {
+    let mut sorted = tiles.to_vec();
+    sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let width = median(tiles.iter().map(|(min, max)| max - min).collect())?;
+    let gaps = gaps_of(&sorted, width / 2.0);
+    gaps.iter().find(|gap| gap.after < gap.before).map(|gap| roundest_in(gap.after, gap.before))
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {
@@ -124,7 +130,7 @@ fn origin_of(gaps: &[Gap], pitch: f64) -> (usize, f64) {
 }
 
 /// The number with the fewest digits that is above `low` and at most `high`.
-fn roundest_in(low: f64, high: f64) -> f64 {
+pub(super) fn roundest_in(low: f64, high: f64) -> f64 {
     let start = high.abs().max((high - low).abs()).max(1.0).log10().ceil() as i32;
     let candidates = (0..=start).rev().map(|power| {
         let unit = 10f64.powi(power);
@@ -145,9 +151,9 @@ mod tests {
             .collect()
     }
 
-    fn cut(tiles: &[(f64, f64)], borders: Borders) -> usize {
-        let last = f64::from(borders.columns - 1);
-        let column = |at: f64| ((at - borders.origin) / borders.pitch).floor().clamp(0.0, last);
+    fn cut(tiles: &[(f64, f64)], borders: Borders, columns: usize) -> usize {
+        let column =
+            |at: f64| ((at - borders.origin) / borders.pitch).floor().clamp(0.0, columns as f64 - 1.0);
         tiles.iter().filter(|(min, max)| column(*min) != column(*max)).count()
     }
 
@@ -157,8 +163,7 @@ mod tests {
             for count in [3, 4, 9, 100] {
                 let tiles = grid(count, origin, pitch);
                 let borders = borders_between(&tiles).unwrap_or_else(|| panic!("{origin} {pitch} {count}"));
-                assert_eq!(cut(&tiles, borders), 0, "{borders:?} of {origin} {pitch} {count}");
-                assert_eq!(borders.columns as usize, count);
+                assert_eq!(cut(&tiles, borders, count), 0, "{borders:?} of {origin} {pitch} {count}");
             }
         }
     }
@@ -169,7 +174,7 @@ mod tests {
         tiles.retain(|tile| !(7000.0..12000.0).contains(&tile.0) && tile.0 as i64 % 3 != 0);
         tiles.push((30_400.0, 30_700.0));
         let borders = borders_between(&tiles).unwrap();
-        assert!(cut(&tiles, borders) <= 1, "{borders:?}");
+        assert!(cut(&tiles, borders, 50) <= 1, "{borders:?}");
     }
 
     /// Tiles of a survey whose outline is ragged, with borders that are no whole numbers.
@@ -183,7 +188,7 @@ mod tests {
             (50_000_900.0, border(1) - 1.0),
         ]);
         let borders = borders_between(&tiles).unwrap();
-        assert_eq!((cut(&tiles, borders), borders.columns), (0, 16), "{borders:?}");
+        assert_eq!(cut(&tiles, borders, 16), 0, "{borders:?}");
     }
 
     #[test]

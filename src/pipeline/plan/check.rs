@@ -30,6 +30,13 @@ pub(super) fn check(plan: &Plan) -> Result<()> {
         if !node.children.iter().all(&mut is_child) {
             return of_node(number, DISAGREEMENT);
         }
+        let below = |&child: &u32| u64::from(plan.nodes[child as usize].below) + 1;
+        if u64::from(node.below) != node.children.iter().map(below).sum::<u64>() {
+            return of_node(number, "it has another number of nodes below");
+        }
+        if node.name.len() != 16 || !node.name.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f')) {
+            return of_node(number, "its name is none");
+        }
         if !is_whole(&node.region, usize::from(plan.dims())) {
             return of_node(number, "its box has other axes than the plan, or is empty");
         }
@@ -55,14 +62,14 @@ fn is_whole(region: &NodeBox, dims: usize) -> bool {
 mod tests {
     use super::*;
 
-    const PLAN: &str = r#"{"format":"spmesh plan","version":1,"id":"","arguments":[],"dims":2,"grid":null,
-    "elevation":true,"crs":"unknown","attributes":[],"leaf_points":4,"points":7,"stages":[[0,1],[2,2]],"beside":[],
-    "nodes":[
-    {"number":0,"stage":0,"parent":2,"children":[],"box":{"min":[null,1.5],"max":[5.0,3.5]},"points":4,"files":[0]},
-    {"number":1,"stage":0,"parent":2,"children":[],"box":{"min":[5.0,null],"max":[null,null]},"points":3,"files":[]},
-    {"number":2,"stage":1,"parent":null,"children":[0,1],"box":{"min":[null,null],"max":[null,null]},"points":7,
+    const PLAN: &str = r#"{"format":"spmesh plan","version":2,"id":"","arguments":[],"duplicates":"first","dims":2,"grid":null,
+    "elevation":true,"crs":"unknown","attributes":[],"leaf_points":4,"points":7,"stages":[[0,1],[2,2]],"beside":[],"roots":{},
+    "skipped":[],"nodes":[
+    {"number":0,"name":"0123456789abcdef","stage":0,"below":0,"parent":2,"children":[],"box":{"min":[null,1.5],"max":[5.0,3.5]},"points":4,"files":[0]},
+    {"number":1,"name":"1123456789abcdef","stage":0,"below":0,"parent":2,"children":[],"box":{"min":[5.0,null],"max":[null,null]},"points":3,"files":[]},
+    {"number":2,"name":"2123456789abcdef","stage":1,"below":2,"parent":null,"children":[0,1],"box":{"min":[null,null],"max":[null,null]},"points":7,
     "files":[]}],
-    "files":[{"path":"/a","bytes":46,"modified":1,"points":7,"min":[0.0,0.0,1.0],"max":[9.0,9.0,9.0]}]}"#;
+    "files":[{"root":null,"path":"/a","bytes":46,"modified":1,"content":null,"points":7,"min":[0.0,0.0,1.0],"max":[9.0,9.0,9.0]}]}"#;
 
     #[test]
     fn each_broken_rule_is_found() {
@@ -84,6 +91,8 @@ mod tests {
             ("[0,1],\"box", "[0,0,1],\"box", "node 2: parent and children"),
             ("[0,1],\"box", "[1],\"box", "node 0: parent and children"),
             (r#""children":[]"#, r#""children":[0]"#, "node 0: parent and children"),
+            (r#""below":2"#, r#""below":1"#, "node 2: it has another number"),
+            ("1123456789abcdef", "1123456789abcdeF", "node 1: its name"),
             ("[null,1.5]", "[1.5]", "node 0: its box"),
             ("[null,1.5]", "[null,3.5]", "node 0: its box"),
             (r#""files":[0]"#, r#""files":[1]"#, "node 0: it names a file"),

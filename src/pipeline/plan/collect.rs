@@ -1,24 +1,22 @@
 //! All parts as one mesh.
 
+use std::collections::HashMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::folder::Folder;
-use super::make::options_text;
 use super::{Maker, NodeReport, Plan, Work};
 use crate::finalize::Recipe;
-use crate::reduce::Duplicates;
 use spmesh_base::error::{Error, ErrorKind, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_formats::source::{Manifest, ManifestPart};
 
-/// Checks all parts, makes missing ones with the policy for duplicates of those that are there, and writes
-/// the manifest of the mesh into the file `manifest`. With `is_verified`, all parts are read, and those made
-/// again whose checksums are wrong. `recipe` and `note` are as in [`Maker::new`].
+/// Makes all nodes that are not complete, and writes the manifest of the mesh into the file `manifest`. With
+/// `is_verified`, all parts are read, and those made again whose checksums are wrong. `recipe` and `note` are as in
+/// [`Maker::new`].
 ///
 /// # Errors
-/// Those of [`Maker::run`]; usage, if nodes were made differently, or the manifest would replace the report
-/// of one; malformed, if points are not accounted for.
+/// Those of [`Maker::run`]; usage, if a file has changed since the plan was made, or the manifest would replace the
+/// report of a node; malformed, if points are not accounted for.
 pub fn collect(
     plan: &Plan,
     work: &Work,
@@ -27,24 +25,16 @@ pub fn collect(
     recipe: &dyn Fn(&Plan) -> Result<Recipe>,
     note: &dyn Fn(&str),
 ) -> Result<()> {
-    check_name(manifest, &work.folder)?;
-    let work = Work { duplicates: duplicates_of(plan, work)?, ..work.clone() };
-    let maker = Maker::new(plan, &work, recipe, note)?;
+    plan.check_files()?;
+    let maker = Maker::new(plan, work, recipe, note)?;
     plan.note_files()?;
     let mut output = Output::create(manifest, false)?;
     let order = plan.upwards();
     for &number in &order {
         let node = plan.node(number)?;
-        match maker.folder.with_mesh(number)? {
-            None => {
-                note(&format!("node {number} is not complete: making it"));
-                maker.make(node)?;
-            }
-            Some(report) if report.joined != maker.folder.residual_hashes(node)? => {
-                note(&format!("node {number} is older than what it joins: making it again"));
-                maker.make(node)?;
-            }
-            Some(_) => {}
+        if maker.folder.complete(node)?.is_none() {
+            note(&format!("node {number} is not complete: making it"));
+            maker.make(node)?;
         }
         if is_verified && let Some(damage) = maker.folder.damage_of(node)? {
             note(&format!("{damage}: making node {number} again"));
@@ -54,56 +44,54 @@ pub fn collect(
     let mut reports = Vec::with_capacity(order.len());
     for &number in &order {
         let gone = || Error::new(ErrorKind::Io, format!("node {number} is not complete any more"));
-        reports.push(maker.folder.with_mesh(number)?.ok_or_else(gone)?);
-    }
-    if let Some(other) = reports.iter().find(|report| report.options != reports[0].options) {
-        let (a, b) = (&reports[0], other);
-        let message = format!(
-            "node {} was made with {}, node {} with {}: make all nodes with the same flags",
-            a.node, a.options, b.node, b.options
-        );
-        return Err(Error::usage(message));
+        reports.push(maker.folder.complete(plan.node(number)?)?.ok_or_else(gone)?);
     }
     check_sums(plan, &reports)?;
     let manifest = manifest_of(plan, &reports, &work.folder, manifest)?;
     output.write_all(manifest.to_json()?.as_bytes()).map_err(|e| Error::io("writing the manifest", e))?;
     output.commit()?;
+    note(&summary(plan, &reports, &manifest));
+    Ok(())
+}
+
+fn summary(plan: &Plan, reports: &[NodeReport], manifest: &Manifest) -> String {
     let simplices: u64 = reports.iter().map(|report| report.simplices).sum();
     let dropped: u64 = reports.iter().map(|report| report.dropped).sum();
-    let (points, parts) = (plan.points, reports.len());
-    let (parts, simplices) =
-        (counted(parts as u64, "part", "parts"), counted(simplices, "simplex", "simplices"));
-    let points = counted(points, "point", "points");
-    note(&format!(
-        "{parts}, {simplices}; {points}, all accounted for ({dropped} dropped, {} merged)",
+    let skipped = match plan.skipped.len() as u64 {
+        0 => String::new(),
+        count => format!("; {} left out", counted(count, "bad file", "bad files")),
+    };
+    format!(
+        "{}, {}; {}, all accounted for ({dropped} dropped, {} merged){skipped}",
+        counted(reports.len() as u64, "part", "parts"),
+        counted(simplices, "simplex", "simplices"),
+        counted(plan.points, "point", "points"),
         manifest.merged
-    ));
-    Ok(())
+    )
 }
 
 /// Checks that every point that the files state was in the box of one leaf, and became a vertex, was merged,
 /// or was dropped by a filter there.
 fn check_sums(plan: &Plan, reports: &[NodeReport]) -> Result<()> {
-    let mut found = vec![0u64; plan.files.len()];
+    let mut found: HashMap<&str, u64> = HashMap::new();
     for count in reports.iter().flat_map(|report| &report.files) {
-        if let Some(points) = found.get_mut(count.file as usize) {
-            *points += count.points;
-        }
+        *found.entry(&count.file).or_default() += count.points;
     }
-    if let Some((file, found)) = plan.files.iter().zip(&found).find(|(file, found)| file.points != **found) {
+    let found = plan.files.iter().map(|file| (file, found.get(file.name().as_str()).copied().unwrap_or(0)));
+    if let Some((file, found)) = found.into_iter().find(|&(file, found)| file.points != found) {
         let stated = file.points;
         let message = format!(
             "states {stated} points, but the leaves found {found} of it: its header or its index is wrong (make its \
              header or index anew, and plan again)"
         );
-        return Err(Error::malformed(message).of_input(&file.path));
+        return Err(Error::malformed(message).of_input(file.name()));
     }
     for report in reports.iter().filter(|report| report.stage == 0) {
         let counted: u64 = report.files.iter().map(|count| count.points).sum();
         if counted != report.points + report.dropped {
             return Err(Error::malformed(format!(
-                "node {} found {counted} points, but triangulated {} and dropped {}",
-                report.node, report.points, report.dropped
+                "part {} found {counted} points, but triangulated {} and dropped {}",
+                report.name, report.points, report.dropped
             )));
         }
     }
@@ -117,52 +105,28 @@ fn check_sums(plan: &Plan, reports: &[NodeReport]) -> Result<()> {
     Ok(())
 }
 
-/// Refuses the names of reports, which the manifest would replace.
-fn check_name(output: &Path, folder: &Path) -> Result<()> {
-    let parent = output.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let both = std::fs::canonicalize(parent).ok().zip(std::fs::canonicalize(folder).ok());
-    let stem = output.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-    if both.is_some_and(|(parent, folder)| parent == folder) && stem.bytes().all(|byte| byte.is_ascii_digit())
-    {
-        let message = "the name is that of the report of a node: give another one";
-        return Err(Error::usage(message).of_input(output.display().to_string()));
-    }
-    Ok(())
-}
-
-/// The policy that the nodes so far were made with.
-fn duplicates_of(plan: &Plan, work: &Work) -> Result<Duplicates> {
-    use Duplicates::{Error as Refused, First, Highest, Lowest, Mean};
-    let folder = Folder { path: &work.folder, plan };
-    for node in &plan.nodes {
-        if let Some(NodeReport { options, .. }) = folder.report(node.number)? {
-            let mut all = [First, Lowest, Highest, Mean, Refused].into_iter();
-            let found = all.find(|&duplicates| options_text(duplicates) == options);
-            return found
-                .ok_or_else(|| Error::malformed(format!("options {options:?} of node {}", node.number)));
-        }
-    }
-    Ok(First)
-}
-
 fn manifest_of(plan: &Plan, reports: &[NodeReport], folder: &Path, output: &Path) -> Result<Manifest> {
     let base = relative(folder, output)?;
     let file = |report: &NodeReport| -> Result<String> {
-        let path = base.join(&report.mesh.file);
+        let path = base.join(&report.name[..2]).join(&report.mesh.file);
         path.to_str().map(str::to_string).ok_or_else(|| Error::usage("the folder of the parts is not UTF-8"))
     };
     let part = |report: &NodeReport| -> Result<ManifestPart> {
         Ok(ManifestPart {
-            number: report.node,
+            name: report.name.clone(),
+            below: report.below,
             file: file(report)?,
             bytes: report.mesh.bytes,
             vertices: report.vertices,
             simplices: report.simplices,
+            bounds: report.bounds,
         })
     };
     let parts = reports.iter().map(part).collect::<Result<Vec<_>>>()?;
-    let mut manifest = Manifest::new(plan.id(), parts);
-    let boxes = reports.iter().filter_map(|report| report.bounds);
+    let mut manifest = Manifest::new(parts);
+    manifest.skipped.clone_from(&plan.skipped);
+    let leaves = reports.iter().filter(|report| report.stage == 0);
+    let boxes = leaves.filter_map(|report| report.bounds);
     manifest.bounds = boxes.reduce(|[a, b], [c, d]| {
         [std::array::from_fn(|i| a[i].min(c[i])), std::array::from_fn(|i| b[i].max(d[i]))]
     });

@@ -1,26 +1,37 @@
 //! The files of a plan, as they were when it was made.
 
-use std::fs;
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
+use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use spmesh_base::error::{Error, Result};
 use spmesh_base::places::file_and_layer;
 use spmesh_formats::source::Extent;
 use spmesh_stream::model::bounds::Bounds;
 
+/// Folders by the names under which plans know them.
+pub type Roots = BTreeMap<String, PathBuf>;
+
 /// A file of points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlannedFile {
-    /// Its absolute path.
+    /// The root that it is in; none if its path is absolute.
+    pub root: Option<String>,
+    /// Its path in the root, or its absolute path.
     pub path: String,
     /// Its length in bytes.
     pub bytes: u64,
     /// When it was last changed, in nanoseconds since 1970.
     pub modified: i64,
+    /// The SHA-256 of its content in hexadecimal digits, if files are known by their contents.
+    pub content: Option<String>,
     /// Number of its points.
     pub points: u64,
     /// Its bounding box in stored coordinates of the plan; none without points.
@@ -29,23 +40,44 @@ pub struct PlannedFile {
     pub max: Option<[f64; 3]>,
 }
 
+/// How files are named in a plan, and what makes them the same.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Naming {
+    /// Files in these folders are named relative to them.
+    pub roots: Roots,
+    /// Whether files are known by their contents, and not by when they were last changed.
+    pub by_content: bool,
+}
+
 impl PlannedFile {
     /// A file and where its points are.
-    pub(super) fn new(path: &Path, extent: &Extent) -> Result<PlannedFile> {
+    pub(super) fn new(path: &Path, extent: &Extent, naming: &Naming) -> Result<PlannedFile> {
         let name = || path.display().to_string();
         let absolute = std::path::absolute(path).map_err(|e| Error::io("finding", e).of_input(name()))?;
-        let Some(text) = absolute.to_str() else {
+        let inside = |(root, folder): (&String, &PathBuf)| {
+            let folder = std::path::absolute(folder).ok()?;
+            Some((Some(root.clone()), absolute.strip_prefix(folder).ok()?.to_path_buf()))
+        };
+        let (root, place) = naming.roots.iter().find_map(inside).unwrap_or_else(|| (None, absolute.clone()));
+        let Some(text) = place.to_str() else {
             return Err(Error::usage("its name is not UTF-8, which plans need").of_input(name()));
         };
         let (bytes, modified) = state_of(&absolute).map_err(|e| e.of_input(name()))?;
+        let content = naming.by_content.then(|| content_of(&absolute)).transpose()?;
         let Extent { points, bounds } = *extent;
         let (min, max) = (bounds.map(|bounds| bounds.min), bounds.map(|bounds| bounds.max));
-        Ok(PlannedFile { path: text.to_string(), bytes, modified, points, min, max })
+        Ok(PlannedFile { root, path: text.to_string(), bytes, modified, content, points, min, max })
     }
 
-    /// Its path.
-    pub fn path(&self) -> PathBuf {
-        PathBuf::from(&self.path)
+    /// Its path, where `roots` says where its root is.
+    pub fn path(&self, roots: &Roots) -> PathBuf {
+        let folder = self.root.as_ref().and_then(|root| roots.get(root));
+        folder.map_or_else(|| PathBuf::from(&self.path), |folder| folder.join(&self.path))
+    }
+
+    /// Its name in reports: that of its root, if it is in one, and its path.
+    pub fn name(&self) -> String {
+        self.root.as_ref().map_or_else(|| self.path.clone(), |root| format!("{root}:{}", self.path))
     }
 
     /// Its bounding box in stored coordinates of the plan.
@@ -57,13 +89,22 @@ impl PlannedFile {
     ///
     /// # Errors
     /// I/O, if it is not there; usage, if it has changed.
-    pub fn check(&self) -> Result<()> {
-        let (bytes, modified) = state_of(Path::new(&self.path)).map_err(|e| e.of_input(&self.path))?;
-        if (bytes, modified) == (self.bytes, self.modified) {
+    pub fn check(&self, roots: &Roots) -> Result<()> {
+        let path = self.path(roots);
+        let named = |e: Error| e.of_input(path.display().to_string());
+        let (bytes, modified) = state_of(&path).map_err(named)?;
+        let is_same = bytes == self.bytes
+            && match &self.content {
+                _ if modified == self.modified => true,
+                Some(content) => content_of(&path)? == *content,
+                None => false,
+            };
+        if is_same {
             return Ok(());
         }
-        Err(Error::usage("changed since the plan was made: plan again, into another folder")
-            .of_input(&self.path))
+        Err(named(Error::usage(
+            "changed since the plan was made: plan again, and run the same commands; what does not depend on it stays",
+        )))
     }
 }
 
@@ -76,4 +117,21 @@ fn state_of(path: &Path) -> Result<(u64, i64)> {
     }
     let modified = metadata.mtime().saturating_mul(1_000_000_000).saturating_add(metadata.mtime_nsec());
     Ok((metadata.len(), modified))
+}
+
+/// The hash of the bytes of a file.
+fn content_of(path: &Path) -> Result<String> {
+    let reading = |e| Error::io("reading", e).of_input(path.display().to_string());
+    let mut hasher = Sha256::new();
+    let mut file = File::open(file_and_layer(path).0).map_err(reading)?;
+    let mut buffer = vec![0; 1 << 20];
+    loop {
+        match file.read(&mut buffer) {
+            Ok(0) => break,
+            Ok(count) => hasher.update(&buffer[..count]),
+            Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
+            Err(e) => return Err(reading(e)),
+        }
+    }
+    Ok(HEXLOWER.encode(&hasher.finalize()))
 }

@@ -16,18 +16,18 @@ pub(super) struct Folder<'a> {
 }
 
 /// Name of the part of a node.
-pub(super) fn mesh_name(number: u32) -> String {
-    format!("{number:06}.spm")
+pub(super) fn mesh_name(node: &Node) -> String {
+    format!("{}.spm", node.name)
 }
 
 /// Name of the residual of a node.
-pub(super) fn residual_name(number: u32) -> String {
-    format!("{number:06}.rest.spm")
+pub(super) fn residual_name(node: &Node) -> String {
+    format!("{}.rest.spm", node.name)
 }
 
 /// Name of the report of a node.
-pub(super) fn report_name(number: u32) -> String {
-    format!("{number:06}.json")
+pub(super) fn report_name(node: &Node) -> String {
+    format!("{}.json", node.name)
 }
 
 /// Opens a stream that a node has written. It is no input that must stay: the node may be made again.
@@ -39,43 +39,49 @@ pub(super) fn open_stream(path: &Path) -> Result<StreamReader<Plain<File>>> {
 }
 
 impl Folder<'_> {
-    pub(super) fn mesh(&self, number: u32) -> PathBuf {
-        self.path.join(mesh_name(number))
+    /// The folder for the files of a node: parts are spread over 256 of them.
+    pub(super) fn home(&self, node: &Node) -> PathBuf {
+        self.path.join(&node.name[..2])
     }
 
-    pub(super) fn residual(&self, number: u32) -> PathBuf {
-        self.path.join(residual_name(number))
+    pub(super) fn mesh(&self, node: &Node) -> PathBuf {
+        self.home(node).join(mesh_name(node))
     }
 
-    pub(super) fn report_path(&self, number: u32) -> PathBuf {
-        self.path.join(report_name(number))
+    pub(super) fn residual(&self, node: &Node) -> PathBuf {
+        self.home(node).join(residual_name(node))
     }
 
-    /// The report of a node, if it is one of this plan.
-    pub(super) fn report(&self, number: u32) -> Result<Option<NodeReport>> {
-        let report = NodeReport::read(&self.report_path(number))?;
-        Ok(report.filter(|report| report.plan == self.plan.id() && report.node == number))
+    pub(super) fn report_path(&self, node: &Node) -> PathBuf {
+        self.home(node).join(report_name(node))
     }
 
-    fn has(&self, file: &FileSize) -> bool {
-        fs::metadata(self.path.join(&file.file))
-            .is_ok_and(|found| found.is_file() && found.len() == file.bytes)
+    /// The report of a node, if there is one.
+    pub(super) fn report(&self, node: &Node) -> Result<Option<NodeReport>> {
+        Ok(NodeReport::read(&self.report_path(node))?.filter(|report| report.name == node.name))
+    }
+
+    fn has(&self, path: &Path, file: &FileSize) -> bool {
+        fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() == file.bytes)
     }
 
     /// The report of a node whose part is there.
-    pub(super) fn with_mesh(&self, number: u32) -> Result<Option<NodeReport>> {
-        Ok(self.report(number)?.filter(|report| self.has(&report.mesh)))
+    pub(super) fn with_mesh(&self, node: &Node) -> Result<Option<NodeReport>> {
+        Ok(self.report(node)?.filter(|report| self.has(&self.mesh(node), &report.mesh)))
     }
 
     /// The report of a node that need not be made: its part is there, made of the residuals that its children have
     /// left; and its residual is, or the part of its parent, which has used it.
+    ///
+    /// Nothing else decides whether a node is complete.
     pub(super) fn complete(&self, node: &Node) -> Result<Option<NodeReport>> {
-        let Some(report) = self.with_mesh(node.number)? else { return Ok(None) };
+        let Some(report) = self.with_mesh(node)? else { return Ok(None) };
         if report.joined != self.residual_hashes(node)? {
             return Ok(None);
         }
-        let is_used = match (&report.residual, node.parent) {
-            (Some(residual), _) if self.has(residual) => true,
+        let parent = node.parent.map(|parent| self.plan.node(parent)).transpose()?;
+        let is_used = match (&report.residual, parent) {
+            (Some(residual), _) if self.has(&self.residual(node), residual) => true,
             (_, Some(parent)) => self.with_mesh(parent)?.is_some(),
             (_, None) => true,
         };
@@ -83,15 +89,15 @@ impl Folder<'_> {
     }
 
     /// Whether the residual of a node is there, as it was written.
-    pub(super) fn has_whole_residual(&self, number: u32) -> Result<bool> {
-        let written = self.report(number)?.and_then(|report| report.residual).map(|residual| residual.hash);
-        Ok(written.is_some() && hash_of_file(&self.residual(number)).ok() == written)
+    pub(super) fn has_whole_residual(&self, node: &Node) -> Result<bool> {
+        let written = self.report(node)?.and_then(|report| report.residual).map(|residual| residual.hash);
+        Ok(written.is_some() && hash_of_file(&self.residual(node)).ok() == written)
     }
 
     /// The hashes of the residuals that a node joins, as the reports of its children state them.
     pub(super) fn residual_hashes(&self, node: &Node) -> Result<Vec<String>> {
         let hash = |&child: &u32| -> Result<String> {
-            let residual = self.report(child)?.and_then(|report| report.residual);
+            let residual = self.report(self.plan.node(child)?)?.and_then(|report| report.residual);
             Ok(residual.map(|residual| residual.hash).unwrap_or_default())
         };
         node.children.iter().map(hash).collect()
@@ -100,10 +106,10 @@ impl Folder<'_> {
     /// What is wrong with the part of a node, if anything: it is read to its end.
     pub(super) fn damage_of(&self, node: &Node) -> Result<Option<Error>> {
         let read = || -> Result<()> {
-            let path = self.mesh(node.number);
+            let path = self.mesh(node);
             let mut reader = open_stream(&path)?;
             if reader.header().part != Some(self.plan.part(node)) {
-                let message = format!("this is not part {} of the plan", node.number);
+                let message = format!("this is not the part of node {}", node.number);
                 return Err(Error::malformed(message).of_input(path.display().to_string()));
             }
             while reader.next_event()?.is_some() {}

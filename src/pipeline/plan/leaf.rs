@@ -1,7 +1,6 @@
 //! The points of one leaf of a plan.
 
 use std::io::Write;
-use std::path::PathBuf;
 
 use super::{FileCount, Node, Plan, PlannedFile, Work};
 use crate::finalize::{Budget, InRegions, Observer, Passes, Recipe};
@@ -30,11 +29,8 @@ pub(super) fn write_leaf(
     mut output: impl Write,
 ) -> Result<LeafCounts> {
     let files = plan.files_of(node);
-    let polygons: Vec<PathBuf> = recipe.clip.iter().chain(&recipe.drop_inside).cloned().collect();
-    let check = || {
-        files.iter().try_for_each(|file| file.check())?;
-        check_beside(plan, &polygons)
-    };
+    let beside: Vec<&PlannedFile> = plan.beside.iter().collect();
+    let check = || files.iter().chain(&beside).try_for_each(|file| file.check(&plan.roots));
     check()?;
     let header = plan.header(Kind::Points)?;
     if files.is_empty() {
@@ -43,7 +39,10 @@ pub(super) fn write_leaf(
     }
     let window = node.region.region();
     let mut recipe = recipe;
-    recipe.inputs = files.iter().map(|file| file.path()).collect();
+    // Polygons are those of the plan, in whatever folder the job runs.
+    let polygons = recipe.clip.iter_mut().chain(&mut recipe.drop_inside);
+    polygons.zip(&beside).for_each(|(path, planned)| *path = planned.path(&plan.roots));
+    recipe.inputs = files.iter().map(|file| file.path(&plan.roots)).collect();
     recipe.source = SourceOptions {
         attributes: AttributeChoice::of_names(&plan.attributes),
         encoding: Some(plan.coordinates()),
@@ -65,21 +64,9 @@ pub(super) fn write_leaf(
     // A file that changed while it was read may look whole.
     check()?;
     let in_box: u64 = input.counts().iter().sum();
-    let files = node.files.iter().zip(input.counts()).map(|(&file, &points)| FileCount { file, points });
+    let files = files.iter().zip(input.counts());
+    let files = files.map(|(file, &points)| FileCount { file: file.name(), points });
     Ok(LeafCounts { files: files.collect(), dropped: in_box - stats.points, notices: watch.notices })
-}
-
-/// Checks that polygons are those of the plan: the same files, unchanged.
-fn check_beside(plan: &Plan, polygons: &[PathBuf]) -> Result<()> {
-    for (path, planned) in polygons.iter().zip(&plan.beside) {
-        let absolute = std::path::absolute(path).map_err(|e| Error::io("finding", e))?;
-        if absolute != planned.path() {
-            let message = "is another file than when the plan was made: run jobs in the same folder";
-            return Err(Error::usage(message).of_input(absolute.display().to_string()));
-        }
-        planned.check()?;
-    }
-    Ok(())
 }
 
 /// The closed box of the world that holds the points of a window.
@@ -147,7 +134,7 @@ impl PointReader for WindowedReader<'_> {
             "point {point:?} (stored coordinates) lies outside of the box that the header states, so that other jobs \
              do not find it: write the file again with a right header, and plan again"
         );
-        Err(Error::malformed(message).of_input(&file.path))
+        Err(Error::malformed(message).of_input(file.name()))
     }
 
     fn rows(&self) -> &[u8] {

@@ -11,8 +11,7 @@ use super::leaf::{LeafCounts, write_leaf};
 use super::{FileSize, Node, NodeKind, NodeReport, Plan, hash_of_file};
 use crate::finalize::Recipe;
 use crate::reduce::{
-    Duplicates, Options, Outputs, Part, Stats, join_tetrahedra, join_triangles, tetrahedralize_part,
-    triangulate_part,
+    Options, Outputs, Part, Stats, join_tetrahedra, join_triangles, tetrahedralize_part, triangulate_part,
 };
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::inputs;
@@ -28,8 +27,6 @@ use spmesh_stream::model::bounds::Region;
 pub struct Work {
     /// Folder for the parts.
     pub folder: PathBuf,
-    /// Which elevation survives where points coincide. In space: `First` or `Error`.
-    pub duplicates: Duplicates,
     /// Threads of a node.
     pub threads: NonZeroUsize,
     /// Memory for points of a leaf that wait. Units: bytes.
@@ -44,8 +41,6 @@ pub struct Work {
 pub struct Maker<'a> {
     pub(super) folder: Folder<'a>,
     work: &'a Work,
-    /// What was asked for that changes the mesh.
-    options: String,
     recipe: &'a dyn Fn(&Plan) -> Result<Recipe>,
     pub(super) note: &'a dyn Fn(&str),
 }
@@ -57,30 +52,21 @@ struct Made {
     counts: LeafCounts,
 }
 
-/// What a report says of the options that change the mesh.
-pub(super) fn options_text(duplicates: Duplicates) -> String {
-    format!("duplicates {duplicates:?}").to_lowercase()
-}
-
 impl<'a> Maker<'a> {
     /// A maker of nodes, which makes the folder. `recipe` says how points were to be finalized when the plan
     /// was made, and `note` takes messages for the user.
     ///
     /// # Errors
-    /// Usage, if points of space are to get an elevation; I/O, if the folder cannot be made.
+    /// I/O, if the folder cannot be made.
     pub fn new(
         plan: &'a Plan,
         work: &'a Work,
         recipe: &'a dyn Fn(&Plan) -> Result<Recipe>,
         note: &'a dyn Fn(&str),
     ) -> Result<Self> {
-        if plan.dims() == 3 && !matches!(work.duplicates, Duplicates::First | Duplicates::Error) {
-            return Err(Error::usage("points of space have no elevation: --duplicates first or error"));
-        }
         create_folder(&work.folder)?;
-        remove_orphans(&work.folder);
         let folder = Folder { path: &work.folder, plan };
-        Ok(Maker { folder, work, options: options_text(work.duplicates), recipe, note })
+        Ok(Maker { folder, work, recipe, note })
     }
 
     /// Makes a node, and what it needs, unless it is complete.
@@ -90,8 +76,7 @@ impl<'a> Maker<'a> {
     /// made.
     pub fn run(&self, number: u32, is_forced: bool) -> Result<()> {
         let node = self.folder.plan.node(number)?;
-        let done = self.folder.complete(node)?;
-        if !is_forced && done.is_some_and(|report| report.options == self.options) {
+        if !is_forced && self.folder.complete(node)?.is_some() {
             return Ok(());
         }
         self.make(node)
@@ -99,9 +84,12 @@ impl<'a> Maker<'a> {
 
     /// Makes a node.
     pub(super) fn make(&self, node: &Node) -> Result<()> {
-        self.check_outputs(node.number)?;
+        let home = self.folder.home(node);
+        create_folder(&home)?;
+        remove_orphans(&home);
+        self.check_outputs(node)?;
         // Without its report, a node counts as incomplete while its files are replaced.
-        remove_earlier(&self.folder.report_path(node.number), "the report")?;
+        remove_earlier(&self.folder.report_path(node), "the report")?;
         if node.kind() == NodeKind::Inner {
             self.complete_children(node)?;
         }
@@ -109,26 +97,24 @@ impl<'a> Maker<'a> {
     }
 
     /// Refuses to replace files of the plan. There may be a million of them: they are looked at if there is a
-    /// file under a name of this node that is no part of this plan.
-    fn check_outputs(&self, number: u32) -> Result<()> {
+    /// file under a name of this node that is not its own.
+    fn check_outputs(&self, node: &Node) -> Result<()> {
         let folder = &self.folder;
-        let outputs = [folder.mesh(number), folder.residual(number), folder.report_path(number)];
-        if outputs.iter().any(|path| path.exists()) && !matches!(folder.report(number), Ok(Some(_))) {
+        let outputs = [folder.mesh(node), folder.residual(node), folder.report_path(node)];
+        if outputs.iter().any(|path| path.exists()) && !matches!(folder.report(node), Ok(Some(_))) {
             folder.plan.note_files()?;
         }
         outputs.iter().try_for_each(|path| inputs::check_output(path))
     }
 
-    /// Makes the children whose residuals are not there as they were written, or were made with other options.
+    /// Makes the children whose residuals are not there as they were written.
     fn complete_children(&self, node: &Node) -> Result<()> {
         for &child in &node.children {
-            let options = self.folder.report(child)?.map(|report| report.options);
-            if !self.folder.has_whole_residual(child)?
-                || options.is_some_and(|options| options != self.options)
-            {
-                let what = "is missing or damaged, or was made differently: making it first";
-                (self.note)(&format!("the residual of node {child} {what}"));
-                self.make(self.folder.plan.node(child)?)?;
+            let child = self.folder.plan.node(child)?;
+            if !self.folder.has_whole_residual(child)? {
+                let number = child.number;
+                (self.note)(&format!("the residual of node {number} is missing or damaged: making it first"));
+                self.make(child)?;
             }
         }
         Ok(())
@@ -155,7 +141,7 @@ impl<'a> Maker<'a> {
         report.cpu_seconds = system::cpu_seconds() - cpu;
         report.peak_memory_bytes = system::peak_memory();
         report.host = system::host_name();
-        let mut output = Output::create(&self.folder.report_path(node.number), false)?;
+        let mut output = Output::create(&self.folder.report_path(node), false)?;
         output.write_all(report.to_json()?.as_bytes()).map_err(|e| Error::io("writing the report", e))?;
         output.commit()?;
         let what = if self.folder.plan.dims() == 2 { "triangles" } else { "tetrahedra" };
@@ -180,7 +166,7 @@ impl<'a> Maker<'a> {
     ) -> Result<Made> {
         let (min, max) = (node.region.region().min, node.region.region().max);
         let options = Options::<D> {
-            duplicates: self.work.duplicates,
+            duplicates: self.folder.plan.duplicates,
             threads: self.work.threads.get(),
             part: Some(Part::Stored(Region::between(min, max))),
             name: Some(self.folder.plan.part(node)),
@@ -190,17 +176,30 @@ impl<'a> Maker<'a> {
         let outputs = self.outputs(node)?;
         match node.kind() {
             NodeKind::Inner => {
-                let children = node.children.iter().map(|&child| open_stream(&self.folder.residual(child)));
-                let (outputs, stats) = join(children.collect::<Result<Vec<_>>>()?, outputs, &options)?;
+                let (outputs, stats) = join(self.residuals(node)?, outputs, &options)?;
                 Ok(Made { outputs, stats, counts: LeafCounts::default() })
             }
             NodeKind::Leaf => self.leaf(node, |reader| reduce(reader, outputs, &options)),
         }
     }
 
+    /// The residuals that a node joins.
+    fn residuals(&self, node: &Node) -> Result<Vec<StreamReader<Plain<File>>>> {
+        let open = |&child: &u32| {
+            let child = self.folder.plan.node(child)?;
+            let reader = open_stream(&self.folder.residual(child))?;
+            if reader.header().part != Some(self.folder.plan.part(child)) {
+                let message = format!("this is not the residual of node {}", child.number);
+                return Err(Error::malformed(message).of_input(reader.name()));
+            }
+            Ok(reader)
+        };
+        node.children.iter().map(open).collect()
+    }
+
     fn outputs(&self, node: &Node) -> Result<Outputs<Output>> {
-        let mesh = Output::create(&self.folder.mesh(node.number), true)?;
-        let residual = (!node.is_root()).then(|| Output::create(&self.folder.residual(node.number), true));
+        let mesh = Output::create(&self.folder.mesh(node), true)?;
+        let residual = (!node.is_root()).then(|| Output::create(&self.folder.residual(node), true));
         Ok(Outputs { mesh, residual: residual.transpose()? })
     }
 
@@ -237,31 +236,29 @@ impl<'a> Maker<'a> {
     fn commit(&self, node: &Node, made: Made) -> Result<NodeReport> {
         let Made { outputs, stats, counts } = made;
         let is_leaf = node.kind() == NodeKind::Leaf;
-        let mut report = NodeReport::new(self.folder.plan.id(), node.number, node.stage, node.kind_name());
-        report.options.clone_from(&self.options);
+        let mut report = NodeReport::new(node);
         let size = |file: String, output: &Output| FileSize {
             file,
             bytes: output.bytes_written(),
             hash: String::new(),
         };
-        report.mesh = size(mesh_name(node.number), &outputs.mesh);
-        report.residual =
-            outputs.residual.as_ref().map(|residual| size(residual_name(node.number), residual));
+        report.mesh = size(mesh_name(node), &outputs.mesh);
+        report.residual = outputs.residual.as_ref().map(|residual| size(residual_name(node), residual));
         outputs.mesh.commit()?;
         outputs.residual.map_or(Ok(()), Output::commit)?;
         if let Some(residual) = &mut report.residual {
-            residual.hash = hash_of_file(&self.folder.residual(node.number))?;
+            residual.hash = hash_of_file(&self.folder.residual(node))?;
         }
         report.joined = self.folder.residual_hashes(node)?;
         report.residual_points = stats.residual;
         report.simplices = stats.simplices;
         report.vertices = stats.vertices - stats.shared;
         report.read_bytes = stats.input_bytes;
+        report.bounds = bounds_of(&self.folder.mesh(node))?;
         if is_leaf {
             (report.points, report.merged) = (stats.points, stats.merged);
             report.files = counts.files;
             report.dropped = counts.dropped;
-            report.bounds = bounds_of(&self.folder.mesh(node.number))?;
         }
         Ok(report)
     }

@@ -52,8 +52,12 @@ pub enum NodeKind {
 pub struct Node {
     /// Its number. Nodes are listed by it; it is greater than those of its children.
     pub number: u32,
+    /// Its name: a hash of all that its part depends on, in hexadecimal digits.
+    pub name: String,
     /// Its stage: 0 for leaves, and one more than the greatest stage of its children for others.
     pub stage: u32,
+    /// Number of all nodes below it.
+    pub below: u32,
     /// The node that takes what it leaves; none for the root.
     pub parent: Option<u32>,
     /// The nodes that it joins; none for leaves.

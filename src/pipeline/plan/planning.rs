@@ -7,20 +7,22 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::check;
-use super::files::PlannedFile;
+use super::files::{Naming, PlannedFile, Roots};
+use super::names::name_nodes;
 use super::node::Node;
 use super::tree::{Division, Share};
+use crate::reduce::Duplicates;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::limits::PLAN_LEN_MAX;
-use spmesh_formats::source::{Description, Extent, Survey};
+use spmesh_formats::source::{Description, Extent, SkippedFile, Survey};
 use spmesh_stream::{Coordinates, Crs, Header, Kind, PartName};
 
 /// What a plan says of itself, so that no other JSON is taken for one.
 const FORMAT: &str = "spmesh plan";
 
 /// Version of the layout.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// The extent of files that are not read for points.
 const NO_POINTS: Extent = Extent { points: 0, bounds: None };
@@ -28,7 +30,7 @@ const NO_POINTS: Extent = Extent { points: 0, bounds: None };
 /// The grid of integer coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Grid {
+pub(super) struct Grid {
     scale: [f64; 3],
     offset: [f64; 3],
 }
@@ -36,7 +38,7 @@ struct Grid {
 /// A coordinate reference system: text, or the three GeoTIFF records of LAS files in hexadecimal digits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum PlannedCrs {
+pub(super) enum PlannedCrs {
     Unknown,
     Wkt(String),
     GeoKeys([String; 3]),
@@ -68,7 +70,7 @@ impl PlannedCrs {
 }
 
 /// How to make a plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Planning<'a> {
     /// A box is divided if more points than this are expected in it.
     pub leaf_points: u64,
@@ -76,6 +78,12 @@ pub struct Planning<'a> {
     pub arguments: &'a [String],
     /// Files beside those of points that say which points count.
     pub beside: &'a [PathBuf],
+    /// Which elevation survives where points coincide. In space: `First` or `Error`.
+    pub duplicates: Duplicates,
+    /// How files are named, and what makes them the same.
+    pub naming: &'a Naming,
+    /// Files that are left out, and why.
+    pub skipped: &'a [SkippedFile],
 }
 
 /// A plan: the files, and the tree of nodes that triangulates them.
@@ -88,11 +96,13 @@ pub struct Plan {
     id: String,
     /// Arguments of `spfinalize` that say which points count, and how files are read.
     pub arguments: Vec<String>,
-    dims: u8,
+    /// Which elevation survives where points coincide.
+    pub duplicates: Duplicates,
+    pub(super) dims: u8,
     /// The grid of coordinates; none if they are numbers of 64 bits in world units.
-    grid: Option<Grid>,
-    elevation: bool,
-    crs: PlannedCrs,
+    pub(super) grid: Option<Grid>,
+    pub(super) elevation: bool,
+    pub(super) crs: PlannedCrs,
     /// Names of the attributes of points.
     pub attributes: Vec<String>,
     /// The number of points above which a box was divided.
@@ -103,6 +113,10 @@ pub struct Plan {
     pub stages: Vec<[u32; 2]>,
     /// Files beside those of points that say which points count, such as polygons.
     pub beside: Vec<PlannedFile>,
+    /// Where the roots of files are. They are no part of the hash: a plan may move with its files.
+    pub roots: Roots,
+    /// Files that are left out.
+    pub skipped: Vec<SkippedFile>,
     /// The nodes by number.
     pub nodes: Vec<Node>,
     /// The files, in the order in which points are read.
@@ -112,11 +126,16 @@ pub struct Plan {
 /// Makes a plan for surveyed files, which are at `paths`.
 ///
 /// # Errors
-/// Usage, if there would be too many nodes, or a file is no regular one; I/O, if one is gone.
+/// Usage, if there would be too many nodes, a file is no regular one, or points of space are to get an elevation; I/O,
+/// if a file is gone.
 pub fn plan_of(survey: &Survey, paths: &[PathBuf], planning: Planning) -> Result<Plan> {
     let Description { coordinates, dims, has_elevation, ref crs, ref attributes, .. } = survey.description;
+    if dims == 3 && !matches!(planning.duplicates, Duplicates::First | Duplicates::Error) {
+        return Err(Error::usage("points of space have no elevation: --duplicates first or error"));
+    }
+    let planned = |path: &PathBuf, extent: &Extent| PlannedFile::new(path, extent, planning.naming);
     let pairs = paths.iter().zip(&survey.extents);
-    let files = pairs.map(|(path, extent)| PlannedFile::new(path, extent)).collect::<Result<Vec<_>>>()?;
+    let files = pairs.map(|(path, extent)| planned(path, extent)).collect::<Result<Vec<_>>>()?;
     let shares: Vec<Share> = (0..)
         .zip(&survey.extents)
         .filter_map(|(file, extent)| Some(Share { file, points: extent.points, bounds: extent.bounds? }))
@@ -133,6 +152,7 @@ pub fn plan_of(survey: &Survey, paths: &[PathBuf], planning: Planning) -> Result
         version: VERSION,
         id: String::new(),
         arguments: planning.arguments.to_vec(),
+        duplicates: planning.duplicates,
         dims,
         grid,
         elevation: has_elevation,
@@ -142,15 +162,22 @@ pub fn plan_of(survey: &Survey, paths: &[PathBuf], planning: Planning) -> Result
         points: files.iter().map(|file| file.points).sum(),
         stages: stages_of(&nodes),
         nodes,
-        beside: planning
-            .beside
-            .iter()
-            .map(|path| PlannedFile::new(path, &NO_POINTS))
-            .collect::<Result<_>>()?,
+        beside: planning.beside.iter().map(|path| planned(path, &NO_POINTS)).collect::<Result<_>>()?,
+        roots: absolute(&planning.naming.roots)?,
+        skipped: planning.skipped.to_vec(),
         files,
     };
+    name_nodes(&mut plan)?;
     plan.id = plan.hash()?;
     Ok(plan)
+}
+
+fn absolute(roots: &Roots) -> Result<Roots> {
+    let absolute = |(name, folder): (&String, &PathBuf)| {
+        let folder = std::path::absolute(folder).map_err(|e| Error::io("finding", e))?;
+        Ok((name.clone(), folder))
+    };
+    roots.iter().map(absolute).collect()
 }
 
 /// A hash of bytes, in hexadecimal digits.
@@ -182,12 +209,38 @@ impl Plan {
         Plan::parse(&text).map_err(named)
     }
 
+    /// Says where roots are now.
+    ///
+    /// # Errors
+    /// Usage, if the plan has no root of this name.
+    pub fn move_roots(&mut self, roots: Roots) -> Result<()> {
+        for (name, folder) in absolute(&roots)? {
+            match self.roots.get_mut(&name) {
+                Some(place) => *place = folder,
+                None => return Err(Error::usage(format!("the plan has no root {name:?}"))),
+            }
+        }
+        Ok(())
+    }
+
     /// Takes note that the files of the plan are inputs, whichever node reads them.
     ///
     /// # Errors
     /// Usage, if one of them is an output of this run.
     pub(super) fn note_files(&self) -> Result<()> {
-        self.files.iter().chain(&self.beside).try_for_each(|file| inputs::note(&file.path()))
+        self.all_files().try_for_each(|file| inputs::note(&file.path(&self.roots)))
+    }
+
+    /// Checks that all files are as they were when the plan was made.
+    ///
+    /// # Errors
+    /// I/O, if one is gone; usage, if one has changed.
+    pub fn check_files(&self) -> Result<()> {
+        self.all_files().try_for_each(|file| file.check(&self.roots))
+    }
+
+    fn all_files(&self) -> impl Iterator<Item = &PlannedFile> {
+        self.files.iter().chain(&self.beside)
     }
 
     fn parse(text: &[u8]) -> Result<Plan> {
@@ -237,22 +290,12 @@ impl Plan {
         Ok(format!("{head}\"nodes\":[\n{nodes}\n],\n\"files\":[\n{files}\n]}}\n"))
     }
 
-    /// The hash of everything but the hash.
+    /// The hash of everything but the hash, and where roots are.
     fn hash(&self) -> Result<String> {
-        let bare = Plan { id: String::new(), ..self.clone() };
+        let bare = Plan { id: String::new(), roots: Roots::new(), ..self.clone() };
         let text = serde_json::to_vec(&bare)
             .map_err(|e| Error::malformed(format!("the plan cannot be written: {e}")))?;
         Ok(hash_of(&text))
-    }
-
-    /// The number by which streams name the plan.
-    pub fn number(&self) -> u64 {
-        u64::from_str_radix(&self.id, 16).unwrap_or_default()
-    }
-
-    /// The hash of the plan, in hexadecimal digits.
-    pub fn id(&self) -> &str {
-        &self.id
     }
 
     /// Dimensions of the geometry: 2 or 3.
@@ -281,7 +324,7 @@ impl Plan {
 
     /// The name of a node's part.
     pub fn part(&self, node: &Node) -> PartName {
-        PartName { plan: self.number(), number: node.number }
+        PartName { node: u64::from_str_radix(&node.name, 16).unwrap_or_default(), below: node.below }
     }
 
     /// The header of streams of points without attributes.

@@ -5,19 +5,20 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::Node;
 use super::planning::hash_of;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::REPORT_LEN_MAX;
 
 const FORMAT: &str = "spmesh node";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Points of one file in the box of a leaf.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FileCount {
-    /// Number of the file in the plan.
-    pub file: u32,
+    /// Name of the file, with its root.
+    pub file: String,
     /// Points of the file in the box of the leaf, before any filter.
     pub points: u64,
 }
@@ -56,10 +57,10 @@ pub struct NodeReport {
     version: u32,
     /// A hash of all else, in hexadecimal digits.
     checksum: String,
-    /// The hash of the plan.
-    pub plan: String,
-    /// The number of the node.
-    pub node: u32,
+    /// The name of the node.
+    pub name: String,
+    /// Number of all nodes below it.
+    pub below: u32,
     /// Its stage.
     pub stage: u32,
     /// Leaf, inner or root.
@@ -76,7 +77,7 @@ pub struct NodeReport {
     pub vertices: u64,
     /// Triangles or tetrahedra of the part.
     pub simplices: u64,
-    /// The bounding box of the points of a leaf, in stored coordinates.
+    /// A box that holds the points of the node, in stored coordinates.
     pub bounds: Option<[[f64; 3]; 2]>,
     /// The part of the mesh.
     pub mesh: FileSize,
@@ -86,10 +87,9 @@ pub struct NodeReport {
     pub residual_points: u64,
     /// Hashes of the residuals that the node has joined, in the order of its children.
     pub joined: Vec<String>,
-    /// Bytes that the node has read.
+    /// Bytes of points or residuals that the node has read, as they were passed on: of a LAZ file, those of its decoded
+    /// points.
     pub read_bytes: u64,
-    /// What was asked for that changes the mesh.
-    pub options: String,
     /// Time, processor time in seconds, and peak memory in bytes of the process.
     pub seconds: f64,
     /// Processor time of the process in seconds, with nodes that it made before.
@@ -102,16 +102,16 @@ pub struct NodeReport {
 
 impl NodeReport {
     /// An empty report.
-    pub fn new(plan: &str, node: u32, stage: u32, kind: &str) -> NodeReport {
+    pub fn new(node: &Node) -> NodeReport {
         let none = || FileSize { file: String::new(), bytes: 0, hash: String::new() };
         NodeReport {
             format: FORMAT.to_string(),
             version: VERSION,
             checksum: String::new(),
-            plan: plan.to_string(),
-            node,
-            stage,
-            kind: kind.to_string(),
+            name: node.name.clone(),
+            below: node.below,
+            stage: node.stage,
+            kind: node.kind_name().to_string(),
             files: Vec::new(),
             dropped: 0,
             points: 0,
@@ -124,7 +124,6 @@ impl NodeReport {
             residual_points: 0,
             joined: Vec::new(),
             read_bytes: 0,
-            options: String::new(),
             seconds: 0.0,
             cpu_seconds: 0.0,
             peak_memory_bytes: 0,

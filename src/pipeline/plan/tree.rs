@@ -1,13 +1,10 @@
-//! Divides the box of all points into leaves.
+//! Divides the cells of a lattice into leaves.
 
-use super::align::{Borders, borders_between};
+use super::lattice::{Cell, Lattice};
 use super::node::{Node, NodeBox, reaches};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::PartName;
 use spmesh_stream::model::bounds::{Bounds, Region};
-
-/// Most halvings of the box of all points.
-const LEVELS_MAX: u32 = 40;
 
 /// A file: its number, its points and where they are.
 #[derive(Debug, Clone, Copy)]
@@ -28,15 +25,6 @@ pub(super) struct Division {
     pub(super) are_whole: bool,
 }
 
-/// A box that is divided further, or a leaf: its part of the grid of borders, and its region, which at the
-/// outside is unbounded.
-#[derive(Debug, Clone, Copy)]
-struct Cell {
-    min: [f64; 3],
-    max: [f64; 3],
-    region: Region<3>,
-}
-
 /// A node without its numbers.
 struct Branch {
     region: Region<3>,
@@ -48,65 +36,53 @@ struct Branch {
 impl Division {
     /// The nodes for these files, by number: stage by stage, the root last.
     pub(super) fn nodes(&self, shares: &[Share]) -> Result<Vec<Node>> {
+        let boxes: Vec<Bounds> = shares.iter().map(|share| share.bounds).collect();
+        let lattice = Lattice::of(&boxes, self.dims, self.are_whole);
         let mut count = 0;
-        let root = match self.root(shares) {
-            Some(cell) => self.branch(cell, shares, 0, &mut count)?,
+        let root = match boxes.into_iter().reduce(Bounds::union) {
+            Some(all) => self.branch(&lattice, lattice.cell_around(&all), shares, &mut count)?,
             None => None,
         };
         let empty =
             || Branch { region: Region::EVERYTHING, points: 0.0, files: Vec::new(), children: Vec::new() };
         let mut root = root.unwrap_or_else(empty);
+        // At the root all is final.
         root.region = Region::EVERYTHING;
         Ok(self.numbered(&root))
     }
 
-    /// The box of all points, larger where that puts its halves on the borders of tiles.
-    fn root(&self, shares: &[Share]) -> Option<Cell> {
-        let all = shares.iter().map(|share| share.bounds).reduce(Bounds::union)?;
-        let (mut min, mut max) = (all.min, all.max);
-        let along = |axis: usize| -> Vec<(f64, f64)> {
-            shares.iter().map(|it| (it.bounds.min[axis], it.bounds.max[axis])).collect()
-        };
-        let borders: Vec<_> = (0..self.dims).map(|axis| borders_between(&along(axis))).collect();
-        // All axes are halved as often.
-        let columns = borders.iter().flatten().map(|borders| borders.columns).max().unwrap_or(1);
-        let halvings = f64::from(columns).log2().ceil();
-        for axis in 0..self.dims {
-            if let Some(Borders { origin, pitch, .. }) = borders[axis] {
-                (min[axis], max[axis]) = (origin, origin + pitch * halvings.exp2());
-            }
-        }
-        Some(Cell { min, max, region: Region::EVERYTHING })
-    }
-
     /// The node of a cell, with those below it; `None` if no file reaches into the cell. A cell with one child only
     /// is that child.
-    fn branch(&self, cell: Cell, shares: &[Share], level: u32, count: &mut u32) -> Result<Option<Branch>> {
-        let here: Vec<Share> =
-            shares.iter().filter(|it| reaches(&it.bounds, &cell.region)).copied().collect();
+    fn branch(
+        &self,
+        lattice: &Lattice,
+        cell: Cell,
+        shares: &[Share],
+        count: &mut u32,
+    ) -> Result<Option<Branch>> {
+        let region = lattice.region(&cell);
+        let here: Vec<Share> = shares.iter().filter(|it| reaches(&it.bounds, &region)).copied().collect();
         if here.is_empty() {
             return Ok(None);
         }
-        let points = here.iter().map(|share| self.expected(share, &cell.region)).sum();
-        let middle = self.middle(&cell).filter(|_| points > self.leaf_points as f64 && level < LEVELS_MAX);
-        let Some(middle) = middle else {
+        let points: f64 = here.iter().map(|share| self.expected(share, &region)).sum();
+        let halves = if points > self.leaf_points as f64 { lattice.children(&cell) } else { Vec::new() };
+        if halves.is_empty() {
             *count += 1;
             if *count > PartName::PARTS_MAX / 2 {
                 return Err(Error::usage("the plan has too many leaves: give more --leaf-points"));
             }
             let files = here.iter().map(|share| share.file).collect();
-            return Ok(Some(Branch { region: cell.region, points, files, children: Vec::new() }));
-        };
+            return Ok(Some(Branch { region, points, files, children: Vec::new() }));
+        }
         let mut children = Vec::new();
-        for corner in 0..1 << self.dims {
-            if let Some(child) = self.child(&cell, middle, corner) {
-                children.extend(self.branch(child, &here, level + 1, count)?);
-            }
+        for half in halves {
+            children.extend(self.branch(lattice, half, &here, count)?);
         }
         if let [_] = children[..] {
-            return Ok(children.pop().map(|only| Branch { region: cell.region, ..only }));
+            return Ok(children.pop().map(|only| Branch { region, ..only }));
         }
-        Ok(Some(Branch { region: cell.region, points, files: Vec::new(), children }))
+        Ok(Some(Branch { region, points, files: Vec::new(), children }))
     }
 
     /// Points of a file that are expected in a region, if they are spread evenly over its box.
@@ -119,40 +95,6 @@ impl Division {
             })
             .product();
         share.points as f64 * fraction
-    }
-
-    /// The border of boxes at a place: between integers no point lies, so borders are integers, too.
-    fn border(&self, at: f64) -> f64 {
-        if self.are_whole { at.ceil() } else { at }
-    }
-
-    /// The places at which a cell is divided; none along axes along which it is too small. `None` if it is too small
-    /// along all of them.
-    fn middle(&self, cell: &Cell) -> Option<[Option<f64>; 3]> {
-        let mut middle = [None; 3];
-        for (axis, middle) in middle.iter_mut().enumerate().take(self.dims) {
-            let at = cell.min[axis] / 2.0 + cell.max[axis] / 2.0;
-            let border = self.border(at);
-            // The region, too: each half must have room for a point.
-            let divides = self.border(cell.min[axis]) < border && border < self.border(cell.max[axis]);
-            let fits = cell.region.min[axis] < border && border < cell.region.max[axis];
-            *middle = (divides && fits).then_some(at);
-        }
-        middle.iter().any(Option::is_some).then_some(middle)
-    }
-
-    /// The child at a corner: bit k of `corner` says which half along axis k. `None` if there is no such half.
-    fn child(&self, cell: &Cell, middle: [Option<f64>; 3], corner: usize) -> Option<Cell> {
-        let mut child = *cell;
-        for (axis, middle) in middle.into_iter().enumerate().take(self.dims) {
-            match (middle, corner >> axis & 1 == 0) {
-                (Some(at), true) => (child.max[axis], child.region.max[axis]) = (at, self.border(at)),
-                (Some(at), false) => (child.min[axis], child.region.min[axis]) = (at, self.border(at)),
-                (None, true) => {}
-                (None, false) => return None,
-            }
-        }
-        Some(child)
     }
 
     /// The nodes with their numbers.
@@ -172,6 +114,7 @@ impl Division {
         for number in 0..nodes.len() {
             for child in nodes[number].children.clone() {
                 nodes[child as usize].parent = Some(number as u32);
+                nodes[number].below += nodes[child as usize].below + 1;
             }
         }
         nodes
@@ -183,7 +126,9 @@ impl Division {
         let stage = children.iter().map(|&child| listed[child as usize].stage + 1).max().unwrap_or(0);
         listed.push(Node {
             number: 0,
+            name: String::new(),
             stage,
+            below: 0,
             parent: None,
             children,
             region: NodeBox::of(&branch.region, self.dims as u8),

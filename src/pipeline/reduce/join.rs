@@ -27,7 +27,7 @@ const NODE: u64 = 0;
 
 /// Triangulates the residuals of the children of a node of a mesh in parts, and writes the triangles that
 /// become final in `options.part`, the box of the node, and what is left. Without an output for the residual,
-/// the node is the root, where all is final. `options.name` is the name of the part.
+/// the node is the root, where all is final. `options.name` is the name of the part, which counts all parts below.
 ///
 /// Cost and memory: those of one triangulation of the residuals.
 ///
@@ -81,10 +81,12 @@ fn join<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     let rules = Rules::<D>::new(&header, Duplicates::Error, outputs.residual.is_some());
     let mut stats = Stats { inner_nodes: 1, ..Stats::default() };
     let (mut residual, mut origins) = (Residual::<D>::default(), Origins::default());
+    let mut before = 0;
     for reader in &mut readers {
         origins.begin(reader.name());
-        let left = read_residual(reader, &mut origins, &mut stats)?;
+        let left = read_residual(reader, before, &mut origins, &mut stats)?;
         residual.unite(vec![left]);
+        before += parts_of(reader);
     }
     // Nothing is created before all inputs are known to be whole.
     let mut sequencer = begin::<B, W, D>(outputs, header, region)?;
@@ -115,13 +117,13 @@ fn header_of<B: Bulk<D>, R: Read, const D: usize>(
     let (Some(first), Some(name)) = (readers.first(), options.name) else {
         return Err(Error::usage("nothing to join: give the residuals of a node, and its name"));
     };
-    for reader in readers {
-        let header = reader.header();
-        let is_child = header.part.is_some_and(|part| part.plan == name.plan && part.number < name.number);
-        if header.kind != B::RESIDUAL || !is_child {
-            let message = format!("this is no residual of a node below node {} of this plan", name.number);
-            return Err(Error::usage(message).of_input(reader.name()));
-        }
+    if let Some(reader) = readers.iter().find(|reader| reader.header().kind != B::RESIDUAL) {
+        return Err(Error::usage("this is no residual of a part of a mesh").of_input(reader.name()));
+    }
+    let below: u64 = readers.iter().map(|reader| u64::from(parts_of(reader))).sum();
+    if below != u64::from(name.below) {
+        let message = format!("residuals of {below} parts, expected {}", name.below);
+        return Err(Error::usage(message).of_input(first.name()));
     }
     check_together::<R, D>(readers)?;
     let one = first.header();
@@ -135,6 +137,11 @@ fn header_of<B: Bulk<D>, R: Read, const D: usize>(
     Ok(header)
 }
 
+/// The number of parts that a residual is of: its own, and all below.
+fn parts_of<R: Read>(reader: &StreamReader<R>) -> u32 {
+    reader.header().part.map_or(0, |part| part.below + 1)
+}
+
 /// Checks that the boxes of the residuals lie in that of the node. They need not fill it: the plan leaves out
 /// boxes without points.
 fn check_boxes<R: Read, const D: usize>(readers: &[StreamReader<R>], region: &Region<D>) -> Result<()> {
@@ -146,9 +153,11 @@ fn check_boxes<R: Read, const D: usize>(readers: &[StreamReader<R>], region: &Re
     }
 }
 
-/// Reads a whole residual. Its vertices are those of other streams.
+/// Reads a whole residual. Its vertices are those of other streams; `before` parts are joined before those that it
+/// is of.
 fn read_residual<R: Read, const D: usize>(
     reader: &mut StreamReader<R>,
+    before: u32,
     origins: &mut Origins,
     stats: &mut Stats,
 ) -> Result<Residual<D>> {
@@ -156,7 +165,10 @@ fn read_residual<R: Read, const D: usize>(
     while let Some(event) = reader.next_event()? {
         origins.note(&event, D, reader);
         match event {
-            Event::ResidualPoints(points) => push_points(&mut residual, &points, reader.rows()),
+            Event::ResidualPoints(points) => {
+                let pushed = push_points(&mut residual, before, &points, reader.rows());
+                pushed.map_err(|e| reader.locate(e))?;
+            }
             Event::Walls(walls) => residual.walls.extend_from_slice(walls.as_chunks().0),
             Event::End(totals) => {
                 stats.points += totals.points;
@@ -169,10 +181,19 @@ fn read_residual<R: Read, const D: usize>(
     Ok(residual)
 }
 
-fn push_points<const D: usize>(residual: &mut Residual<D>, points: &[(Option<u64>, Point)], rows: &[u8]) {
+fn push_points<const D: usize>(
+    residual: &mut Residual<D>,
+    before: u32,
+    points: &[(Option<u64>, Point)],
+    rows: &[u8],
+) -> Result<()> {
     let row_len = rows.len().checked_div(points.len()).unwrap_or(0);
     for (i, &(id, point)) in points.iter().enumerate() {
-        let key = id.map_or(UNWRITTEN, |id| foreign_key(GlobalId(id)));
+        let key = match id {
+            Some(id) => foreign_key(GlobalId(id).moved(before)?),
+            None => UNWRITTEN,
+        };
         residual.push(point, &rows[i * row_len..][..row_len], key);
     }
+    Ok(())
 }

@@ -41,7 +41,7 @@ impl Shared {
         match self.vertices.binary_search_by_key(&id, |&(vertex, _)| vertex) {
             Ok(found) => Ok(self.vertices[found].1.0),
             Err(before) => {
-                let part = part.map_or(0, |part| part.number);
+                let part = part.map_or(0, |part| part.below);
                 Ok(GlobalId::new(part, id - before as u64)?.0)
             }
         }

@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::super::roots::RootFlags;
 use super::{Flags, TOOL, flags_of};
-use crate::plan::{NodeKind, Plan, Planning, plan_of};
+use crate::plan::{Naming, NodeKind, Plan, Planning, plan_of};
+use crate::reduce::Duplicates;
 use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_formats::source::Survey;
@@ -20,9 +22,19 @@ use spmesh_shell::say;
 const LEAF_POINTS: u64 = 50_000_000;
 
 /// Flags of this run alone, which are not part of the plan: so equal plans have equal names.
-const ALONE: [&str; 3] = ["-q", "--quiet", "--stats"];
-const WITH_VALUE: [&str; 8] =
-    ["--plan", "--leaf-points", "--lof", "--memory", "--threads", "--temp-dir", "--spool", "--progress"];
+const ALONE: [&str; 4] = ["-q", "--quiet", "--stats", "--hash"];
+const WITH_VALUE: [&str; 10] = [
+    "--plan",
+    "--leaf-points",
+    "--duplicates",
+    "--root",
+    "--lof",
+    "--memory",
+    "--threads",
+    "--temp-dir",
+    "--spool",
+    "--progress",
+];
 
 /// Most notices about files that are printed.
 const NOTICES_MAX: usize = 20;
@@ -37,6 +49,23 @@ pub(super) struct PlanFlags {
 
     #[arg(long, value_name = "N", requires = "plan", value_parser = clap::value_parser!(u64).range(1..), help = format!("With --plan: points of a leaf, a job, at most [default: {LEAF_POINTS}]"))]
     leaf_points: Option<u64>,
+
+    /// With --plan: elevation of a vertex where points coincide in x and y
+    #[arg(long, value_enum, default_value_t = Duplicates::First, value_name = "POLICY", requires = "plan")]
+    duplicates: Duplicates,
+
+    /// With --plan: know files by their contents, which are read for it, and not by their lengths and times
+    #[arg(long, requires = "plan")]
+    hash: bool,
+
+    #[command(flatten)]
+    roots: RootFlags,
+}
+
+impl PlanFlags {
+    fn naming(&self) -> Naming {
+        Naming { roots: self.roots.roots(), by_content: self.hash }
+    }
 }
 
 /// Makes a plan.
@@ -67,7 +96,15 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     let arguments = arguments_beside(&flags.inputs)?;
     check_arguments(flags, &arguments)?;
     let beside: Vec<PathBuf> = flags.areas.files().cloned().collect();
-    let plan = plan_of(&survey, &paths, Planning { leaf_points, arguments: &arguments, beside: &beside })?;
+    let planning = Planning {
+        leaf_points,
+        arguments: &arguments,
+        beside: &beside,
+        duplicates: flags.plan.duplicates,
+        naming: &flags.plan.naming(),
+        skipped: &[],
+    };
+    let plan = plan_of(&survey, &paths, planning)?;
     output.write_all(plan.to_json()?.as_bytes()).map_err(|e| Error::io("writing the plan", e))?;
     output.commit()?;
     if !flags.common.quiet {

@@ -1,0 +1,82 @@
+//! Removes what no node of a plan needs: the files of earlier plans in the same folder.
+
+use std::collections::HashSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::Plan;
+use super::folder::Folder;
+use spmesh_base::error::{Error, ErrorKind, Result, counted};
+
+/// A file of a node that is not in the plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Spent {
+    /// Its path.
+    pub path: PathBuf,
+    /// Its length in bytes.
+    pub bytes: u64,
+}
+
+/// The files in the folder of the parts that belong to no node of the plan, in the order of their names. Files that no
+/// node has written are not among them.
+///
+/// # Errors
+/// Usage, if a node of the plan is not complete: an earlier mesh may be all there is; I/O, if the folder cannot be read.
+pub fn spent(plan: &Plan, folder: &Path) -> Result<Vec<Spent>> {
+    let reading = |e| Error::io("reading", e).of_input(folder.display().to_string());
+    let parts = Folder { path: folder, plan };
+    let missing = plan.nodes.iter().try_fold(0, |missing, node| {
+        Ok::<u64, Error>(missing + u64::from(parts.complete(node)?.is_none()))
+    })?;
+    if missing > 0 {
+        let nodes = counted(missing, "node is", "nodes are");
+        return Err(Error::usage(format!(
+            "{nodes} not complete: nothing is removed before the new mesh is there"
+        )));
+    }
+    let names: HashSet<&str> = plan.nodes.iter().map(|node| node.name.as_str()).collect();
+    let mut found = Vec::new();
+    for home in fs::read_dir(folder).map_err(reading)? {
+        let home = home.map_err(reading)?.path();
+        if !home.file_name().and_then(|name| name.to_str()).is_some_and(|name| is_hexadecimal(name, 2)) {
+            continue;
+        }
+        for entry in fs::read_dir(&home).map_err(reading)? {
+            let entry = entry.map_err(reading)?;
+            let name = entry.file_name();
+            if name.to_str().and_then(node_of).is_some_and(|node| !names.contains(node)) {
+                let bytes = entry.metadata().map_err(reading)?.len();
+                found.push(Spent { path: entry.path(), bytes });
+            }
+        }
+    }
+    found.sort_unstable_by(|a, b| a.path.cmp(&b.path));
+    Ok(found)
+}
+
+/// Removes files. Those that are gone already do not matter.
+///
+/// # Errors
+/// I/O, if one cannot be removed.
+pub fn remove(files: &[Spent]) -> Result<()> {
+    for file in files {
+        match fs::remove_file(&file.path) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                return Err(Error::new(ErrorKind::Io, format!("removing: {e}"))
+                    .of_input(file.path.display().to_string()));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// The name of the node that a file with this name is of.
+fn node_of(file: &str) -> Option<&str> {
+    let endings = [".rest.spm", ".spm", ".json"];
+    endings.iter().find_map(|ending| file.strip_suffix(ending)).filter(|name| is_hexadecimal(name, 16))
+}
+
+fn is_hexadecimal(text: &str, len: usize) -> bool {
+    text.len() == len && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+}
