@@ -165,7 +165,7 @@ class Vector:
         if weighted is not None:
             records.append((b"wght", [(floats([weighted]), "greatest weight")]))
         if part is not None:
-            records.append((b"part", [(struct.pack("<Q", part[0]), "plan"), (struct.pack("<I", part[1]), "number")]))
+            records.append((b"part", [(struct.pack("<Q", part[0]), "name"), (struct.pack("<I", part[1]), "parts below")]))
         if producer:
             records.append((b"prod", [(producer.encode(), "producer")]))
         return records
@@ -814,7 +814,7 @@ def failing_regions():
     yield "regions-weights", "weights in a stream of kind points in regions", of(**WEIGHTED)
     yield "regions-region", "a region goes with a partial mesh or a residual", of(region=ALL)
     yield "regions-scales", "expected one scale", of(grid=CM)
-    yield "regions-part", "is no part of a mesh", of(part=(PLAN, 0))
+    yield "regions-part", "is no part of a mesh", of(part=(NODE, 0))
     one = lambda: Vector(**REGIONS)
     point = ("0",) * 3
     yield "regions-short", "region of 72 bytes, expected 80", one().block(b"REGN", [(bytes(72), "region")]).end()
@@ -857,19 +857,19 @@ def failing_regions():
     yield "regions-no-end", "truncated", both()
 
 
-PLAN = 0x0123456789ABCDEF
+NODE = 0x0123456789ABCDEF
 # Parts 0 and 1 are leaves, part 2 joins what they leave, and part 3 is the root.
-PART = lambda number, **more: dict(kind="triangle mesh", grid=HALF, elevation=1, part=(PLAN, number), **more)
-CLASSED = lambda number: PART(number, attributes=[CLASS])
-SPACE_PART = lambda number: dict(**TETRAHEDRAL, part=(PLAN, number))
+PART = lambda below, node=NODE, **more: dict(kind="triangle mesh", grid=HALF, elevation=1, part=(node, below), **more)
+CLASSED = lambda below, node=NODE: PART(below, node, attributes=[CLASS])
+SPACE_PART = lambda below: dict(**TETRAHEDRAL, part=(NODE, below))
 # Corners of the joined mesh by letters, in the order of the parts that have them first: A to C in part 0, D to F in
 # part 1, P in part 2, Q in part 3. Their classes count up.
 PLACES = dict(A=(0, 0, 0), B=(2, 0, 1), C=(0, 2, 1), D=(8, 0, 2), E=(8, 8, 9), F=(6, 4, 3), P=(3, 6, 5), Q=(0, 8, 7))
 GLOBAL = dict(A=(0, 0), B=(0, 1), C=(0, 2), D=(1, 0), E=(1, 1), F=(1, 2), P=(2, 0), Q=(3, 0))
 GLOBAL = {letter: (part << 40) + number for letter, (part, number) in GLOBAL.items()}
 CLASSES = {letter: ([number],) for number, letter in enumerate(PLACES)}
-REST = dict(kind="residual of a triangle mesh", grid=HALF, elevation=1, region=(0, 0, 8, 8), part=(PLAN, 2))
-REST_SPACE = dict(kind="residual of a tetrahedral mesh", dims=3, grid=EVEN, region=(0, 0, 0, 8, 8, 8), part=(PLAN, 2))
+REST = dict(kind="residual of a triangle mesh", grid=HALF, elevation=1, region=(0, 0, 8, 8), part=(NODE, 2))
+REST_SPACE = dict(kind="residual of a tetrahedral mesh", dims=3, grid=EVEN, region=(0, 0, 0, 8, 8, 8), part=(NODE, 2))
 
 
 def part_patch(vector, first, letters, own, imported=(), simplices=(), finalized=(), kept=None):
@@ -888,7 +888,7 @@ def leaf_part():
 
 
 def other_leaf_part():
-    vector = part_patch(Vector(**CLASSED(1)), 0, "DEF", "DEF", (), [(0, 1, 2)], (0, 1, 2), (0, 1, 2))
+    vector = part_patch(Vector(**CLASSED(0, NODE + 1)), 0, "DEF", "DEF", (), [(0, 1, 2)], (0, 1, 2), (0, 1, 2))
     return vector.end(5, vertices=3, simplices=1, merged=2)
 
 
@@ -917,11 +917,11 @@ def passing_parts():
     yield "parts-skipped", "Blocks without records, and skipped ones between those that belong together", Vector(**PART(1)).patch(
         0, SQUARE[:1], (), (), (0,), origins=[(0, 7)], kept=(), amid=b"note").skip().origins().kept().skip().patch(1).end(
         1, vertices=1)
-    yield "parts-greatest", "The greatest plan, part and global id", Vector(
+    yield "parts-greatest", "The greatest name, number of parts below, and global id", Vector(
         **{**PART(0), "part": (2**64 - 1, 2**22 - 1)}).patch(
         0, SQUARE[:1], (), (), (0,), origins=[(0, (2**22 - 1 << 40) - 1)], kept=(0,)).end(1, vertices=1)
     pair = struct.pack("<IQIQ", 0, 1, 1, 2)
-    yield "parts-compressed", "Compressed blocks of vertices of other parts", Vector(**COMPRESSED, kind="triangle mesh", part=(PLAN, 1)).instead(
+    yield "parts-compressed", "Compressed blocks of vertices of other parts", Vector(**COMPRESSED, kind="triangle mesh", part=(NODE, 1)).instead(
         *packed_records(12, 0, 24, bytes(pair[12 * record + at] for at in range(12) for record in range(2)))).patch(
         0, SQUARE[:2], (), (), (0, 1), origins=[(0, 1), (1, 2)]).end(2, vertices=2)
     yield "rest-plane", "The residual of a part: points of it and of earlier parts, and points that are no vertices yet", Vector(
@@ -933,7 +933,7 @@ def passing_parts():
     yield "rest-space", "The residual of a part in space", Vector(**REST_SPACE).residual(
         *[(number,) + corner for number, corner in enumerate(CORNERS[:3])], (2**41 + 5, 7, 7, 7)).walls(
         (0, 1, 2), (2, 1, 3)).end(9, residual=4, walls=2)
-    yield "rest-empty", "A residual without points", Vector(**{**REST, "part": (PLAN, 0)}, points=12).end(12, merged=12)
+    yield "rest-empty", "A residual without points", Vector(**{**REST, "part": (NODE, 0)}, points=12).end(12, merged=12)
 
 
 def failing_parts():
@@ -942,15 +942,15 @@ def failing_parts():
     header = lambda **fields: Vector(**{**PART(1), **fields}).end()
     yield "parts-short", 'header record "part": 11 bytes, expected 12', header(raw=dict(part=bytes(11)))
     yield "parts-long", 'header record "part": 13 bytes, expected 12', header(raw=dict(part=bytes(13)))
-    yield "parts-number", "part 4194304, expected less than 4194304", header(part=(PLAN, 2**22))
-    yield "parts-number-greatest", "part 4294967295, expected less than", header(part=(PLAN, 2**32 - 1))
+    yield "parts-below", "4194304 parts below, expected less than 4194304", header(part=(NODE, 2**22))
+    yield "parts-below-greatest", "4294967295 parts below, expected less than", header(part=(NODE, 2**32 - 1))
     yield "parts-constrained", "neither constrained nor weighted", header(constrained=(False, 0))
     yield "parts-weighted", "neither constrained nor weighted", Vector(
-        "tetrahedral mesh", **WEIGHTED, part=(PLAN, 1)).end()
+        "tetrahedral mesh", **WEIGHTED, part=(NODE, 1)).end()
     yield "parts-of-points", "a stream of kind points is no part of a mesh", header(kind="points")
-    yield "parts-partial", "is no part of a mesh", Vector(**PARTIAL, part=(PLAN, 1)).end()
-    yield "parts-partial-space", "is no part of a mesh", Vector(**PARTIAL_SPACE, part=(PLAN, 1)).end()
-    yield "parts-of-knots", "is no part of a mesh", Vector(**CONFIGURATIONS, part=(PLAN, 1)).end()
+    yield "parts-partial", "is no part of a mesh", Vector(**PARTIAL, part=(NODE, 1)).end()
+    yield "parts-partial-space", "is no part of a mesh", Vector(**PARTIAL_SPACE, part=(NODE, 1)).end()
+    yield "parts-of-knots", "is no part of a mesh", Vector(**CONFIGURATIONS, part=(NODE, 1)).end()
     yield "parts-region", "a region goes with a partial mesh or a residual", header(region=(0, 0, 8, 8))
     part = lambda number=1, **more: Vector(**PART(number, **more))
     two = lambda vector, origins=None, kept=None, finalized=(0, 1): vector.patch(
@@ -1015,7 +1015,7 @@ def failing_parts():
     one = [(0, 1, 1, 0)]
     yield "rest-without-part", "a residual without the part that it is of", rest(part=None).end()
     yield "rest-space-without-part", "a residual without the part that it is of", space(part=None).end()
-    yield "rest-number", "part 4194304, expected less than 4194304", rest(part=(PLAN, 2**22)).end()
+    yield "rest-below", "4194304 parts below, expected less than 4194304", rest(part=(NODE, 2**22)).end()
     yield "rest-without-region", "a region goes with a partial mesh or a residual", rest(region=None).end()
     yield "rest-space-without-region", "a region goes with a partial mesh or a residual", space(region=None).end()
     yield "rest-region-empty", "region is empty", rest(region=(0, 0, 0, 8)).end()
@@ -1029,7 +1029,7 @@ def failing_parts():
     yield "rest-space-scales", "expected one scale", space(grid=HALF).end()
     yield "rest-constrained", "is not constrained", rest(constrained=(False, 0)).end()
     yield "rest-weighted", "weights in a stream of kind residual of a tetrahedral mesh", Vector(
-        "residual of a tetrahedral mesh", **WEIGHTED, region=(0,) * 3 + (8,) * 3, part=(PLAN, 2)).end()
+        "residual of a tetrahedral mesh", **WEIGHTED, region=(0,) * 3 + (8,) * 3, part=(NODE, 2)).end()
     yield "rest-patch", 'may stand here', rest().patch().end()
     yield "rest-space-patch", 'may stand here', space().patch().end()
     yield "rest-points", 'may stand here', rest().points().end()
@@ -1038,7 +1038,7 @@ def failing_parts():
     yield "rest-labels", 'may stand here', space().labels().end()
     yield "rest-after-walls", 'may stand here', rest().residual((None, 0, 0, 0), (None, 1, 1, 0)).walls(
         (0, 1)).residual((None, 2, 2, 0)).end(3, residual=3, walls=1)
-    id_of = lambda vertex, number=2: rest(part=(PLAN, number)).residual((vertex, 1, 1, 0)).end(1, residual=1)
+    id_of = lambda vertex, number=2: rest(part=(NODE, number)).residual((vertex, 1, 1, 0)).end(1, residual=1)
     yield "rest-id-later-part", "residual point has the id %d of no vertex" % (3 << 40), id_of(3 << 40)
     yield "rest-id-first-part", "residual point has the id %d of no vertex" % 2**40, id_of(2**40, 0)
     yield "rest-id-beyond-bits", "residual point has the id %d of no vertex" % 2**62, id_of(2**62, 2**22 - 1)
@@ -1060,12 +1060,13 @@ def failing_parts():
 
 
 def whole_mesh(parts, merged=0, bounds=None):
-    """The manifest of parts: number, file, vector, own vertices and simplices."""
-    entries = [dict(number=number, file=file, bytes=len(vector.bytes()), vertices=vertices, simplices=simplices)
-               for number, file, vector, vertices, simplices in parts]
+    """The manifest of parts: file, vector, name, parts below, own vertices, simplices and box."""
+    entries = [dict(name="%016x" % node, below=below, file=file, bytes=len(vector.bytes()), vertices=vertices,
+                    simplices=simplices, box=box)
+               for file, vector, (node, below), vertices, simplices, box in parts]
     points = merged + sum(entry["vertices"] for entry in entries)
-    return dict(format="spmesh mesh in parts", version=1, plan="%016x" % PLAN, bounds=bounds, points=points,
-                merged=merged, parts=entries)
+    return dict(format="spmesh mesh in parts", version=2, bounds=bounds, points=points, merged=merged, skipped=[],
+                parts=entries)
 
 
 def two_parts():
@@ -1082,55 +1083,62 @@ def two_parts():
 
 def joined():
     """Name of a mesh in parts, its manifest, and either its text twin or the words of the error, with an exit code."""
-    parts = [(1, "../pass/parts-leaf-second.spm", other_leaf_part(), 3, 1), (0, "../pass/parts-leaf.spm", leaf_part(), 3, 1),
-             (2, "../pass/parts-inner.spm", inner_part(), 1, 2), (3, "../pass/parts-root.spm", root_part(), 1, 3)]
+    parts = [("../pass/parts-leaf.spm", leaf_part(), (NODE, 0), 3, 1, [[0, 0, 0], [2, 2, 1]]),
+             ("../pass/parts-leaf-second.spm", other_leaf_part(), (NODE + 1, 0), 3, 1, [[6, 0, 2], [8, 8, 9]]),
+             ("../pass/parts-inner.spm", inner_part(), (NODE, 2), 1, 2, [[0, 0, 0], [8, 8, 9]]),
+             ("../pass/parts-root.spm", root_part(), (NODE, 3), 1, 3, None)]
     whole = whole_mesh(parts, 2, [[0, 0, 0], [8, 8, 9]])
-    # Part 1 comes first, so its vertices have the least ids.
     vector = Vector("triangle mesh", grid=HALF, elevation=1, attributes=[CLASS], bounds=(0, 0, 0, 8, 8, 9))
     patch = lambda first, letters, *rest: vector.patch(
         first, [PLACES[letter] for letter in letters], *rest, rows=[CLASSES[letter] for letter in letters])
-    patch(0, "DEF", (), [(0, 1, 2)], ())
-    patch(3, "ABC", (), [(0, 1, 2)], (0,))
-    # D, F and B are imported in the order of their ids: 0, 2, 4. D is final.
-    patch(6, "P", (0, 2, 4), [(3, 1, 2), (3, 2, 0)], (1,))
-    # B, C and P: 4, 5, 6.
-    patch(7, "Q", (4, 5, 6), [(1, 3, 2), (2, 3, 0)], (0, 1, 2))
-    # E, F and P: 1, 2, 6.
-    patch(8, "", (1, 2, 6), [(1, 0, 2)], (0, 1, 2))
+    patch(0, "ABC", (), [(0, 1, 2)], (0,))
+    patch(3, "DEF", (), [(0, 1, 2)], ())
+    # B, D and F are imported in the order of their ids: 1, 3, 5. D is final.
+    patch(6, "P", (1, 3, 5), [(1, 2, 3), (1, 3, 0)], (2,))
+    # B, C and P: 1, 2, 6.
+    patch(7, "Q", (1, 2, 6), [(1, 3, 2), (2, 3, 0)], (0, 1, 2))
+    # E, F and P: 4, 5, 6.
+    patch(8, "", (4, 5, 6), [(1, 0, 2)], (0, 1, 2))
     yield "all", whole, vector.end(10, vertices=8, simplices=7, merged=2).text(), 0
 
     entries = whole["parts"]
     change = lambda at, **fields: dict(whole, parts=[dict(entry, **fields) if i == at else entry for i, entry in enumerate(entries)])
     order = lambda *places: dict(whole, parts=[entries[place] for place in places])
-    yield "version", dict(whole, version=2), "version 2 of a manifest", 6
+    none, other = "this is JSON, but no manifest of a mesh in parts", "this is another part than the manifest names"
+    yield "version", dict(whole, version=3), "version 3 of a manifest", 6
     yield "format", dict(whole, format="spmesh plan"), "", 3
-    yield "plan", dict(whole, plan="0123456789abcdee"), "this is not part 1 of the plan", 3
-    yield "plan-no-hash", dict(whole, plan="plan"), "is no hash of a plan", 3
+    yield "name-other", change(0, name="0123456789abcdee"), other, 3
+    yield "name-none", change(2, name="plan"), "is no name of a part", 3
     yield "no-parts", dict(whole, parts=[]), "a mesh without parts", 3
-    yield "unknown-field", dict(whole, colour=1), "this is JSON, but no manifest of a mesh in parts", 3
+    yield "unknown-field", dict(whole, colour=1), none, 3
     yield "box-not-ordered", dict(whole, bounds=[[0, 3, 0], [8, 2, 9]]), "bounding box is not ordered", 3
     yield "box-too-small", dict(whole, bounds=[[0, 0, 0], [7, 8, 9]]), "outside of the header's bounding box", 3
     yield "part-field-missing", dict(whole, parts=[{key: value for key, value in entry.items() if key != "vertices"}
-                                                   for entry in entries]), "this is JSON, but no manifest of a mesh in parts", 3
-    yield "part-twice", order(0, 1, 2, 2), "part 2 of 4 comes twice, or is none", 3
-    yield "part-missing", order(0, 1, 3), "part 3 of 3 comes twice, or is none", 3
-    yield "part-other", change(3, file=entries[2]["file"]), "this is not part 3 of the plan", 3
-    yield "part-of-none", change(3, file="../pass/mesh-two-patches.spm"), "this is not part 3 of the plan", 3
-    yield "part-residual", change(2, file="../pass/rest-plane.spm"), "this is not part 2 of the plan", 3
-    yield "part-malformed", change(0, file="../fail/parts-kept-order.spm"), "is kept for other parts", 3
+                                                   for entry in entries]), none, 3
+    yield "part-box-short", change(1, box=[[6, 0], [8, 8]]), none, 3
+    yield "skipped-field", dict(whole, skipped=[dict(file="bad.laz")]), none, 3
+    yield "part-twice", order(0, 1, 2, 2), "", 3
+    yield "part-missing", order(0, 1, 3), "part 2 comes before one of the 3 below it", 3
+    yield "part-other", change(3, file=entries[2]["file"]), other, 3
+    yield "part-of-none", change(3, file="../pass/mesh-two-patches.spm"), other, 3
+    yield "part-residual", change(2, file="../pass/rest-plane.spm"), other, 3
+    yield "below-other", change(2, below=1), other, 3
     yield "vertices-many", change(0, vertices=4), "3 vertices of its own, expected 4", 3
     yield "vertices-few", change(0, vertices=2), "3 vertices of its own, expected 2", 3
-    # Parts use vertices of parts that come later, or that have not kept them, or have fewer.
-    yield "order", order(0, 2, 1, 3), "", 3
+    yield "order", order(0, 2, 1, 3), "part 1 comes before one of the 2 below it", 3
+    # Parts use vertices of parts that have not kept them, or have fewer.
     two = two_parts()
-    pair = lambda first, second: whole_mesh([(0, first + ".spm", two[first], 3, 1), (1, second + ".spm", two[second], 1, 1)])
+    two["../fail/parts-kept-order"] = two["root"]
+    pair = lambda first, second: whole_mesh([(first + ".spm", two[first], (NODE, 0), 3, 1, None),
+                                             (second + ".spm", two[second], (NODE, 1), 1, 1, None)])
     vector = Vector("triangle mesh", grid=HALF, elevation=1).patch(
         0, [PLACES[letter] for letter in "ABC"], (), [(0, 1, 2)], (0,)).patch(
         3, [PLACES["F"]], (1, 2), [(1, 0, 2)], (0, 1, 2)).end(4, vertices=4, simplices=2)
-    yield "two", pair("leaf", "root"), vector.text(), 0
+    yield "two", dict(pair("leaf", "root"), skipped=[dict(file="bad.laz", reason="cut")]), vector.text(), 0
     yield "not-kept", pair("leaf-final", "root"), "", 3
     yield "kept-by-last", pair("leaf", "root-keeps"), "", 3
     yield "vertex-of-none", pair("leaf", "root-beyond"), "", 3
+    yield "part-malformed", pair("leaf", "../fail/parts-kept-order"), "is kept for other parts", 3
 
 
 def passing():

@@ -302,7 +302,7 @@ class Header:
         require(is_mesh or self.is_residual, "a stream of kind %s is no part of a mesh" % self.kind)
         is_plain = self.constrained is None and self.weighted is None
         require(is_plain, "a part of a mesh is neither constrained nor weighted")
-        require(self.part[1] < 2**PART_BITS, "part %d, expected less than %d" % (self.part[1], 2**PART_BITS))
+        require(self.part[1] < 2**PART_BITS, "%d parts below, expected less than %d" % (self.part[1], 2**PART_BITS))
 
     def row_length(self):
         return sum(attribute.row.size for attribute in self.attributes)
@@ -1680,8 +1680,13 @@ class Text:
 # --- Meshes in parts (formats/parts.md) ----------------------------------------------------------------------
 
 
-MANIFEST = {"format": str, "version": int, "plan": str, "bounds": (list, type(None)), "points": int, "merged": int, "parts": list}
-MANIFEST_PART = {"number": int, "file": str, "bytes": int, "vertices": int, "simplices": int}
+MANIFEST = {
+    "format": str, "version": int, "bounds": (list, type(None)), "points": int, "merged": int, "skipped": list, "parts": list
+}
+MANIFEST_PART = {
+    "name": str, "below": int, "file": str, "bytes": int, "vertices": int, "simplices": int, "box": (list, type(None))
+}
+SKIPPED = {"file": str, "reason": str}
 
 
 NO_MANIFEST = "this is JSON, but no manifest of a mesh in parts"
@@ -1705,6 +1710,17 @@ def fields_of(found, expected, what):
         require(not isinstance(value, int) or 0 <= value < 2**64, message)
 
 
+def box_of(corners):
+    """Six numbers: two corners, the lesser first; None if there is no box."""
+    if corners is None:
+        return None
+    corners = [side if type(side) is list else [] for side in corners]
+    is_box = [len(side) for side in corners] == [3, 3]
+    is_box = is_box and all(type(x) in (int, float) for side in corners for x in side)
+    require(is_box, NO_MANIFEST + ": a box")
+    return tuple(float(x) for side in corners for x in side)
+
+
 class Manifest:
     def __init__(self, path):
         with open(path, "rb") as file:
@@ -1719,33 +1735,25 @@ class Manifest:
             found.get("format") == "spmesh mesh in parts",
             "this is %r, expected a mesh in parts" % found.get("format"),
         )
-        if found.get("version") != 1:
-            raise TooNew("version %r of a manifest; this program reads 1" % found.get("version"))
+        if found.get("version") != 2:
+            raise TooNew("version %r of a manifest; this program reads 2" % found.get("version"))
         fields_of(found, MANIFEST, "the manifest")
-        require(len(found["plan"]) == 16 and set(found["plan"]) <= set("0123456789abcdef"), "%r is no hash of a plan" % found["plan"])
-        self.plan, self.parts = int(found["plan"], 16), found["parts"]
-        self.points, self.merged, self.bounds = found["points"], found["merged"], None
+        for file in found["skipped"]:
+            fields_of(file, SKIPPED, "a skipped file")
+        self.parts, self.points, self.merged = found["parts"], found["points"], found["merged"]
         require(self.parts, "a mesh without parts")
-        if found["bounds"] is not None:
-            corners = [side if type(side) is list else [] for side in found["bounds"]]
-            is_box = [len(side) for side in corners] == [3, 3]
-            is_box = is_box and all(type(x) in (int, float) for side in corners for x in side)
-            require(is_box, NO_MANIFEST + ": the bounding box")
-            self.bounds = tuple(float(x) for side in corners for x in side)
+        self.bounds = box_of(found["bounds"])
         folder = os.path.dirname(path)
-        # For each part the id of its first vertex in the joined mesh.
-        self.first, self.vertices, vertices = {}, {}, 0
-        for part in self.parts:
+        # For each part, the id of its first vertex in the joined mesh.
+        self.first = [0]
+        for place, part in enumerate(self.parts):
             fields_of(part, MANIFEST_PART, "a part")
-            number = part["number"]
-            require(
-                number < len(self.parts) and number not in self.first,
-                "part %d of %d comes twice, or is none" % (number, len(self.parts)),
-            )
-            self.first[number] = vertices
-            self.vertices[number] = part["vertices"]
-            vertices += part["vertices"]
-            part["path"] = os.path.join(folder, part["file"])
+            box_of(part["box"])
+            name, below = part["name"], part["below"]
+            require(len(name) == 16 and set(name) <= set("0123456789abcdef"), "%r is no name of a part" % name)
+            require(below <= place, "part %d comes before one of the %d below it" % (place, below))
+            part["place"], part["path"] = place, os.path.join(folder, part["file"])
+            self.first.append(self.first[-1] + part["vertices"])
 
 
 class Joined(Text):
@@ -1765,10 +1773,8 @@ class Joined(Text):
         self.ids, self.places = {}, {}
 
     def header(self, header):
-        require(
-            header.part == (self.manifest.plan, self.part["number"]) and not header.is_residual,
-            "this is not part %d of the plan" % self.part["number"],
-        )
+        is_it = header.part == (int(self.part["name"], 16), self.part["below"]) and not header.is_residual
+        require(is_it, "this is another part than the manifest names")
         attributes = [vars(attribute) for attribute in header.attributes]
         attributes = [{name: value for name, value in all.items() if name not in ("number", "row")} for all in attributes]
         common = (header.kind, header.scale, header.offset, header.has_elevation, attributes)
@@ -1789,8 +1795,9 @@ class Joined(Text):
     def id_of(self, vertex):
         """The id of a vertex in the joined mesh."""
         part, number = vertex >> NUMBER_BITS, vertex % 2**NUMBER_BITS
-        require(number < self.manifest.vertices.get(part, 0), "a vertex of no part")
-        return self.manifest.first[part] + number
+        place = self.part["place"] - self.part["below"] + part
+        require(number < self.manifest.parts[place]["vertices"], "a vertex of no part")
+        return self.manifest.first[place] + number
 
     def patch(self, first, new, simplices, sides, finalized, origins, kept):
         start, lines = self.total["vertices"], []

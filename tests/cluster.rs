@@ -58,6 +58,20 @@ impl Cluster {
         listed.lines().map(|line| line.split('\t').next().unwrap().to_string()).collect()
     }
 
+    /// The path of a file of a node.
+    fn file(&self, number: usize, ending: &str) -> String {
+        let listed = succeed(&run("spnode", &["list", &self.plan_path()], &[]));
+        let name = listed.lines().nth(number).unwrap().rsplit('\t').next().unwrap();
+        self.folder.path(&format!("parts/{}/{name}.{ending}", &name[..2]))
+    }
+
+    /// The nodes that are not complete.
+    fn missing(&self) -> Vec<String> {
+        let (plan, parts) = (self.plan_path(), self.folder.path("parts"));
+        let listed = succeed(&run("spnode", &["list", &plan, "-d", &parts, "--missing"], &[]));
+        listed.lines().map(|line| line.split('\t').next().unwrap().to_string()).collect()
+    }
+
     fn run(&self, nodes: &[String], flags: &[&str]) -> Output {
         let (plan, parts) = (self.plan_path(), self.folder.path("parts"));
         let mut arguments = vec!["run", &plan, "-d", &parts];
@@ -170,7 +184,6 @@ fn damage_is_repaired_by_running_the_same_command_again() {
     succeed(&cluster.run(&nodes, &[]));
     succeed(&cluster.collect(&[]));
     let (mesh, files) = (cluster.mesh(), cluster.files());
-    let root = nodes.last().unwrap().clone();
     let path = |name: &str| cluster.folder.path(&format!("parts/{name}"));
     let residuals: Vec<&String> =
         files.iter().map(|(name, _)| name).filter(|name| name.contains("rest")).collect();
@@ -183,9 +196,8 @@ fn damage_is_repaired_by_running_the_same_command_again() {
             Some(bytes) => fs::write(path(name), bytes).unwrap(),
             None => fs::remove_file(path(name)).unwrap(),
         }
-        fs::remove_file(path(&format!("{:0>6}.json", root))).unwrap();
-        let parent = nodes.iter().rev().take(5).rev().cloned().collect::<Vec<_>>();
-        succeed(&cluster.run(&parent, &["--force"]));
+        fs::remove_file(cluster.file(nodes.len() - 1, "json")).unwrap();
+        succeed(&cluster.run(&nodes[nodes.len() - 5..], &["--force"]));
         assert!(files == cluster.files(), "{name} is as it was");
     }
     let meshes: Vec<&String> =
@@ -234,20 +246,6 @@ fn plans_are_refused_when_files_or_points_changed() {
 }
 
 #[test]
-fn nodes_of_different_options_are_no_mesh() {
-    let cluster = Cluster::new(&[]);
-    let nodes = cluster.nodes();
-    succeed(&cluster.run(&nodes, &["--duplicates", "lowest"]));
-    succeed(&cluster.collect(&[]));
-    succeed(&cluster.run(&nodes[..1], &["--duplicates", "highest"]));
-    let (code, message) = outcome(&cluster.collect(&[]));
-    assert_eq!((code, message.contains("make all nodes with the same flags")), (Some(2), true), "{message}");
-    let (code, message) = outcome(&cluster.run(&nodes[..1], &["--duplicates", "lowest"]));
-    assert_eq!((code, message.contains("node 0:")), (Some(0), true), "{message}");
-    succeed(&cluster.collect(&[]));
-}
-
-#[test]
 fn bad_requests_are_named() {
     let folder = Folder::new();
     let (plan, text) = (folder.path("plan.json"), folder.write("points.txt", cloud(500)));
@@ -271,7 +269,9 @@ fn bad_requests_are_named() {
     let mesh = folder.path("mesh.json");
     // What is missing is made.
     assert_outcome("spnode", &["collect", &plan, "-d", &parts, "-o", &mesh], &[], 0, "all accounted for");
-    assert_outcome("spinfo", &["--audit", &folder.path("parts/000000.spm")], &[], 2, "audit the manifest");
+    let manifest: serde_json::Value = serde_json::from_slice(&fs::read(&mesh).unwrap()).unwrap();
+    let part = folder.path(manifest["parts"][1]["file"].as_str().unwrap());
+    assert_outcome("spinfo", &["--audit", &part], &[], 2, "audit the manifest");
     assert_outcome("spinfo", &["--audit", "--points", &text, &mesh], &[], 0, "");
     let manifest = fs::read_to_string(&mesh).unwrap();
     fs::write(&mesh, manifest.replacen("\"vertices\":", "\"vertices\":1", 1)).unwrap();
@@ -290,9 +290,8 @@ fn bad_requests_are_named() {
         assert_outcome("spdem", &["--columns", "9", &mesh, "-o", &raster], &[], code, part);
     }
     fs::write(&mesh, &manifest).unwrap();
-    let part = folder.path("parts/000001.spm");
     fs::remove_file(&part).unwrap();
-    assert_outcome("spinfo", &[&mesh], &[], 1, "000001.spm");
+    assert_outcome("spinfo", &[&mesh], &[], 1, ".spm");
     // A pipe that nothing writes to.
     rustix::fs::mkfifoat(rustix::fs::CWD, &part, Mode::RUSR | Mode::WUSR).unwrap();
     assert_outcome("spinfo", &[&mesh], &[], 3, "a part of a mesh is no regular file");
@@ -319,7 +318,7 @@ fn a_damaged_report_counts_as_none() {
         fs::read(cluster.folder.path("mesh.json")).unwrap()
     };
     let whole = manifest();
-    let path = cluster.folder.path("parts/000001.json");
+    let path = cluster.file(1, "json");
     let report = fs::read(&path).unwrap();
     for place in (0..report.len()).step_by(29) {
         let mut damaged = report.clone();
@@ -330,7 +329,7 @@ fn a_damaged_report_counts_as_none() {
 }
 
 #[test]
-fn plans_of_the_same_files_and_points_have_one_name() {
+fn nodes_of_the_same_files_and_points_have_one_name() {
     let cluster = Cluster::new(&["--keep-class", "2"]);
     let id = |name: &str, flags: &[&str]| -> String {
         let path = cluster.folder.path(name);
@@ -339,32 +338,27 @@ fn plans_of_the_same_files_and_points_have_one_name() {
         arguments.extend(cluster.tiles.iter().map(String::as_str));
         succeed(&run("spfinalize", &arguments, &[]));
         let plan: serde_json::Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
-        plan["id"].as_str().unwrap().to_string()
+        plan["nodes"].as_array().unwrap().last().unwrap()["name"].as_str().unwrap().to_string()
     };
     let one = id("plan.json", &["--keep-class", "2"]);
     assert_eq!(one, id("other.json", &["-q", "--threads=1", "--memory", "300M", "--keep-class", "2"]));
     assert_ne!(one, id("third.json", &["--keep-class", "5"]));
+    assert_ne!(one, id("fourth.json", &["--keep-class", "2", "--duplicates", "lowest"]));
 }
 
 #[test]
-fn parts_of_other_nodes_and_plans_are_made_again() {
+fn parts_of_other_nodes_are_made_again() {
     let cluster = Cluster::new(&[]);
     let nodes = cluster.nodes();
     succeed(&cluster.run(&nodes, &[]));
     succeed(&cluster.collect(&[]));
     let (mesh, files) = (cluster.mesh(), cluster.files());
-    let path = |name: &str| cluster.folder.path(&format!("parts/{name}"));
     // A residual of another node, with the length that is expected.
-    fs::copy(path("000003.rest.spm"), path("000000.rest.spm")).unwrap();
+    fs::copy(cluster.file(3, "rest.spm"), cluster.file(0, "rest.spm")).unwrap();
     succeed(&cluster.run(&nodes, &["--force"]));
-    fs::copy(path("000001.spm"), path("000000.spm")).unwrap();
+    fs::copy(cluster.file(1, "spm"), cluster.file(0, "spm")).unwrap();
     succeed(&cluster.collect(&["--verify"]));
     assert!(files == cluster.files() && mesh == cluster.mesh());
-    let (code, message) = {
-        let (plan, parts) = (cluster.plan_path(), cluster.folder.path("parts"));
-        outcome(&run("spnode", &["collect", &plan, "-d", &parts, "-o", &path("000000.json")], &[]))
-    };
-    assert_eq!((code, message.contains("the report of a node")), (Some(2), true), "{message}");
 }
 
 #[test]
@@ -390,4 +384,104 @@ fn polygons_are_those_of_the_plan() {
     assert_eq!((outcome(&output).0, outcome(&output).1.contains("./NAME")), (Some(2), true));
     let far = cluster.folder.write("far.txt", "-1e308 0 0\n1e308 0 0\n0 1 0\n");
     assert_outcome("spfinalize", &["--plan", &plan, "--leaf-points", "1", &far], &[], 0, "read to plan");
+}
+
+/// What is not the same in two plans has another name.
+#[test]
+fn plans_share_what_does_not_depend_on_a_change() {
+    let cluster = Cluster::new(&[]);
+    succeed(&cluster.run(&cluster.nodes(), &[]));
+    succeed(&cluster.collect(&[]));
+    let files = cluster.files();
+    // The last tile gets another elevation, and a later time.
+    let tile = cluster.tiles.last().unwrap();
+    let mut changed = fs::read(tile).unwrap();
+    let at = changed.len() - 20;
+    changed[at] ^= 1;
+    fs::write(tile, changed).unwrap();
+    let (plan, parts) = (cluster.plan_path(), cluster.folder.path("parts"));
+    let (code, message) = outcome(&cluster.collect(&[]));
+    assert_eq!((code, message.contains("plan again")), (Some(2), true), "{message}");
+    assert_outcome("spnode", &["list", &plan, "-d", &parts, "--missing"], &[], 2, "plan again");
+    cluster.plan();
+    let missing = cluster.missing();
+    let stages = succeed(&run("spnode", &["list", &plan, "--stages"], &[])).lines().count();
+    assert!(missing.len() < 4 * stages && missing.len() < cluster.nodes().len() / 2, "{missing:?}");
+    // Nothing is removed before the new mesh is there, and what is removed is said.
+    let clean = |flags: &[&str]| run("spnode", &[&["clean", &plan, "-d", &parts][..], flags].concat(), &[]);
+    assert_eq!(clean(&[]).status.code(), Some(2));
+    succeed(&run("spinfo", &["--audit", &cluster.folder.path("mesh.json")], &[]));
+    succeed(&cluster.run(&missing, &[]));
+    assert!(cluster.missing().is_empty());
+    succeed(&cluster.collect(&[]));
+    let piped = run("spconvert", &["-", "--to", "text"], &cluster.piped()).stdout;
+    assert_eq!(cluster.mesh(), simplices(&piped));
+    let listed = succeed(&clean(&["--dry-run"]));
+    assert_eq!(listed, succeed(&clean(&[])));
+    // Three files of each node that was made again, of which the root has no residual.
+    assert_eq!(listed.lines().count(), 3 * missing.len() - 1);
+    let kept = cluster.files().iter().filter(|file| files.contains(file)).count();
+    assert_eq!(kept, files.len() - (2 * missing.len() - 1), "no byte of the others is another one");
+    assert!(clean(&[]).stdout.is_empty());
+    succeed(&run("spinfo", &["--audit", &cluster.folder.path("mesh.json")], &[]));
+}
+
+/// Tiles outside of all others, and inside, leave boxes where they are.
+#[test]
+fn plans_grow_and_shrink_without_starting_again() {
+    let mut cluster = Cluster::new(&[]);
+    let mut tiles = cluster.tiles.clone();
+    let position = |i: i32| [i * 7919 % 101 - 700, i * 3571 % 101 + 400, i % 9];
+    let far = LasFile { scale: [0.01; 3], ..LasFile::of(&(0..400).map(position).collect::<Vec<_>>()) };
+    tiles.push(cluster.folder.write("far.las", far.bytes()));
+    succeed(&cluster.run(&cluster.nodes(), &[]));
+    for tiles in [tiles.clone(), tiles[1..].to_vec(), tiles] {
+        cluster.tiles = tiles;
+        cluster.plan();
+        let (missing, all) = (cluster.missing(), cluster.nodes());
+        assert!(missing.len() <= 8 && missing.len() < all.len() / 2, "{missing:?} of {all:?}");
+        succeed(&cluster.run(&missing, &[]));
+        succeed(&cluster.collect(&[]));
+        let piped = run("spconvert", &["-", "--to", "text"], &cluster.piped()).stdout;
+        assert_eq!(cluster.mesh(), simplices(&piped));
+    }
+}
+
+/// A plan moves with its files, and another time does not matter if it knows them by content.
+#[test]
+fn plans_move_with_their_roots() {
+    let folder = Folder::new();
+    let text = cloud(500);
+    let tile = folder.write("here/a.txt", &text);
+    let [here, there, plan, parts, mesh] =
+        ["here", "there", "plan.json", "parts", "mesh.json"].map(|name| folder.path(name));
+    let root = format!("survey={here}");
+    let planned = ["--plan", &plan, "--leaf-points", "100", "--hash", "--root", &root, "-q", &tile];
+    succeed(&run("spfinalize", &planned, &[]));
+    succeed(&run("spnode", &["collect", "-q", &plan, "-d", &parts, "-o", &mesh], &[]));
+    fs::rename(&here, &there).unwrap();
+    folder.write("there/a.txt", &text);
+    let list = ["list", &plan, "-d", &parts, "--missing", "--root"];
+    let missing = |root: &str| run("spnode", &[&list[..], &[root]].concat(), &[]);
+    assert_eq!(missing(&root).status.code(), Some(1));
+    let moved = format!("survey={there}");
+    assert_eq!(succeed(&missing(&moved)), "");
+    assert_eq!(missing("other=/").status.code(), Some(2));
+    folder.write("there/a.txt", text.replacen('1', "2", 1));
+    assert_eq!(missing(&moved).status.code(), Some(2));
+}
+
+#[test]
+fn nodes_are_divided_into_batches() {
+    let cluster = Cluster::new(&[]);
+    let batches = |points: &str, flags: &[&str]| -> Vec<Vec<String>> {
+        let plan = cluster.plan_path();
+        let listed = run("spnode", &[&["list", &plan, "--batch-points", points][..], flags].concat(), &[]);
+        succeed(&listed).lines().map(|line| line.split(' ').map(str::to_string).collect()).collect()
+    };
+    for points in ["0", "700", "100000"] {
+        assert_eq!(batches(points, &[]).concat(), cluster.nodes());
+    }
+    assert_eq!(batches("0", &[]).len(), cluster.nodes().len());
+    assert_eq!(batches("100000", &["--stage", "0"]).len(), 1);
 }

@@ -156,7 +156,7 @@ fn files_beside_inputs_are_kept() {
 fn files_of_plans_and_parts_are_kept() {
     let folder = Folder::new();
     let tile = fs::read(sample("point10.las")).unwrap();
-    folder.write("parts/000000.spm", &tile);
+    folder.write("tile.las", &tile);
     let polygon = r#"{"type":"Polygon","coordinates":[[[-1e9,-1e9],[1e9,-1e9],[1e9,1e9],[-1e9,-1e9]]]}"#;
     folder.write("area.geojson", polygon);
     let succeed = |command: &str| {
@@ -164,12 +164,18 @@ fn files_of_plans_and_parts_are_kept() {
         let (code, message) = run_in(folder.root(), &words[..1], &words[1..]);
         assert_eq!(code, Some(0), "{command}: {message}");
     };
-    succeed("spfinalize --plan plan.json --clip area.geojson parts/000000.spm");
-    assert_kept(&folder, "spnode run plan.json 0 -d parts", "parts/000000.spm");
-    fs::rename(folder.path("parts/000000.spm"), folder.path("tile.las")).unwrap();
-    succeed("spfinalize --plan parts/000000.json --clip area.geojson tile.las");
-    assert_kept(&folder, "spnode run parts/000000.json 0 -d parts", "parts/000000.json");
     succeed("spfinalize --plan plan.json --clip area.geojson tile.las");
+    let listed = run("spnode", &["list", &folder.path("plan.json")], &[]).stdout;
+    let name = String::from_utf8(listed).unwrap().trim_end().rsplit('\t').next().unwrap().to_string();
+    let files = ["spm", "json"].map(|ending| format!("{}/{name}.{ending}", &name[..2]));
+    // A tile, and a plan, under the names of what the node writes.
+    for (number, (file, input)) in files.iter().zip(["tile.las", "plan.json"]).enumerate() {
+        let place = format!("parts{number}/{file}");
+        folder.write(&place, "");
+        fs::remove_file(folder.path(&place)).unwrap();
+        fs::hard_link(folder.path(input), folder.path(&place)).unwrap();
+        assert_kept(&folder, &format!("spnode run plan.json 0 -d parts{number}"), &place);
+    }
     succeed("spnode run plan.json 0 -d other");
     for kept in ["area.geojson", "tile.las", "plan.json"] {
         let command = format!("spnode collect plan.json -d other -o {kept}");
@@ -181,11 +187,9 @@ fn files_of_plans_and_parts_are_kept() {
     }
     succeed("spnode collect plan.json -d other -o mesh.json");
     succeed("spnode run plan.json 0 -d other --force");
-    for command in [
-        "spconvert mesh.json -o other/000000.spm",
-        "spview mesh.json --format svg -o other/000000.spm",
-        "spconstrain --kill 9 mesh.json -o other/000000.spm",
-    ] {
-        assert_kept(&folder, command, "other/000000.spm");
+    let part = format!("other/{}", files[0]);
+    for command in ["spconvert mesh.json", "spview mesh.json --format svg", "spconstrain --kill 9 mesh.json"]
+    {
+        assert_kept(&folder, &format!("{command} -o {part}"), &part);
     }
 }

@@ -17,10 +17,9 @@ use spmesh_base::error::Result;
 use spmesh_reference::clouds::{FAMILIES, mixture, of};
 use spmesh_reference::sets::{DEGENERATE_FAMILIES, Random, degenerate};
 
-const PLAN: u64 = 0x1234_5678_9abc_def0;
-
 /// A part that was made: its mesh, its residual unless it is the root, and its vertices of its own.
 struct Made {
+    name: PartName,
     mesh: Vec<u8>,
     residual: Option<Vec<u8>>,
     own: u64,
@@ -82,6 +81,7 @@ impl<const D: usize> Tree<'_, D> {
     fn node(&mut self, region: Region<D>, depth: usize) -> Option<u32> {
         let inside = self.points.iter().filter(|&&point| region.contains(point)).count();
         let is_root = region == Region::EVERYTHING;
+        let first = self.made.len() as u32;
         if inside == 0 && !is_root {
             return None;
         }
@@ -90,11 +90,9 @@ impl<const D: usize> Tree<'_, D> {
             Some(halves) => halves.into_iter().filter_map(|half| self.node(half, depth - 1)).collect(),
         };
         let number = self.made.len() as u32;
-        let options = Options {
-            part: Some(Part::Stored(region)),
-            name: Some(PartName { plan: PLAN, number }),
-            ..self.options
-        };
+        let below = number - first;
+        let name = PartName { node: self.random.integer(0, 1 << 62) as u64, below };
+        let options = Options { part: Some(Part::Stored(region)), name: Some(name), ..self.options };
         let outputs = Outputs { mesh: Vec::new(), residual: (!is_root).then(Vec::new) };
         let ran = if children.is_empty() {
             leaf::<D>(self.input, outputs, &options)
@@ -108,7 +106,7 @@ impl<const D: usize> Tree<'_, D> {
             (self.read, self.merged) = (self.read + stats.points, self.merged + stats.merged);
         }
         let (own, simplices) = (stats.vertices - stats.shared, stats.simplices);
-        self.made.push(Made { mesh, residual, own, simplices });
+        self.made.push(Made { name, mesh, residual, own, simplices });
         Some(number)
     }
 
@@ -121,24 +119,25 @@ impl<const D: usize> Tree<'_, D> {
         (lower.min[axis] < border && border < upper.max[axis]).then_some([lower, upper])
     }
 
-    /// The parts as one stream.
-    fn joined(self) -> Vec<u8> {
-        let size =
-            |(number, made): (u32, &Made)| PartSize { number, vertices: made.own, simplices: made.simplices };
-        let sizes = (0..).zip(&self.made).map(size).collect();
+    /// Some of the parts as one stream.
+    fn joined(self, is_wanted: impl Fn(usize) -> bool) -> Vec<u8> {
+        let size = |(place, made): (usize, &Made)| {
+            let &Made { name, own: vertices, simplices, .. } = made;
+            PartSize { name, is_wanted: is_wanted(place), vertices, simplices }
+        };
+        let sizes: Vec<PartSize> = self.made.iter().enumerate().map(size).collect();
+        let wanted: Vec<bool> = sizes.iter().map(|size| size.is_wanted).collect();
         let stated = Totals { points: self.read, merged: self.merged, ..Totals::default() };
         let meshes: Arc<Vec<Vec<u8>>> = Arc::new(self.made.into_iter().map(|made| made.mesh).collect());
         let mut header = StreamReader::new(&meshes[0][..], "part").unwrap().header().clone();
         (header.part, header.bounds) = (None, None);
-        let open = move |number: u32| {
-            let bytes: Box<dyn Read + Send> = Box::new(Cursor::new(meshes[number as usize].clone()));
-            Ok((bytes, format!("part {number}")))
+        let open = move |place: usize| {
+            assert!(wanted[place], "a part that is not wanted is not opened");
+            let bytes: Box<dyn Read + Send> = Box::new(Cursor::new(meshes[place].clone()));
+            Ok((bytes, format!("part {place}")))
         };
         let mut bytes = Vec::new();
-        JoinedMesh::new(header, PLAN, sizes, stated, Box::new(open))
-            .unwrap()
-            .read_to_end(&mut bytes)
-            .unwrap();
+        JoinedMesh::new(header, sizes, stated, Box::new(open)).unwrap().read_to_end(&mut bytes).unwrap();
         bytes
     }
 }
@@ -151,6 +150,17 @@ fn in_parts<const D: usize>(
     threads: usize,
     random: &mut Random,
 ) -> Vec<u8> {
+    with_tree::<D, _>(points, coordinates, depth, threads, random, |tree| tree.joined(|_| true))
+}
+
+fn with_tree<const D: usize, T>(
+    points: &[Point],
+    coordinates: Coordinates,
+    depth: usize,
+    threads: usize,
+    random: &mut Random,
+    take: impl FnOnce(Tree<D>) -> T,
+) -> T {
     let tagging = [Tagging::None, Tagging::Chunked(2), Tagging::Ragged][random.integer(0, 2) as usize];
     let input = stream_of(D as u8, points, coordinates, tagging, random);
     let options = Options { threads, ..Options::default() };
@@ -160,7 +170,7 @@ fn in_parts<const D: usize>(
     assert_eq!(tree.read, points.len() as u64);
     let own: u64 = tree.made.iter().map(|made| made.own).sum();
     assert_eq!(own + tree.merged, points.len() as u64, "each point is a vertex of one part, or merged");
-    tree.joined()
+    take(tree)
 }
 
 fn assert_proven(bytes: &[u8]) {
@@ -218,6 +228,29 @@ fn parts_of_space_are_the_tetrahedra_of_one_run() {
     }
 }
 
+/// Some parts make a stream that keeps all rules, with their simplices alone.
+#[test]
+fn some_parts_are_a_mesh_of_their_simplices() {
+    for (seed, family) in (0..).zip((0..DEGENERATE_FAMILIES).cycle().take(40)) {
+        let mut random = Random::new(900 + seed);
+        let points = degenerate(&mut random, family, 40 + 9 * seed as usize);
+        let points: Vec<Point> =
+            points.iter().map(|p| [p[0] as f64, p[1] as f64, (p[0] ^ p[1]) as f64]).collect();
+        let mask = random.integer(0, 1 << 62) as u64;
+        let is_wanted = |place: usize| mask >> (place % 63) & 1 == 1;
+        let (joined, mut expected) = with_tree::<2, _>(&points, GRID, 5, 1, &mut random, |tree| {
+            let wanted = tree.made.iter().enumerate().filter(|(place, _)| is_wanted(*place));
+            let triangles = wanted.flat_map(|(_, made)| read_mesh(&made.mesh).triangles);
+            let triangles: Vec<_> = triangles.collect();
+            (tree.joined(is_wanted), triangles)
+        });
+        let mut found: Vec<_> = read_mesh(&joined).triangles.into_iter().collect();
+        found.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(found, expected, "seed {seed}");
+    }
+}
+
 #[test]
 fn few_points_are_meshes_in_parts_too() {
     let points: [Point; 5] = [[0.0; 3], [8.0, 0.0, 1.0], [0.0, 8.0, 2.0], [8.0, 8.0, 3.0], [3.0, 2.0, 9.0]];
@@ -234,15 +267,15 @@ fn few_points_are_meshes_in_parts_too() {
 }
 
 #[test]
-fn residuals_of_other_plans_or_places_are_refused() {
+fn residuals_of_other_places_are_refused() {
     let points: Vec<Point> =
         (0..200).map(|i| [f64::from(i * 37 % 101), f64::from(i * 53 % 97), 0.0]).collect();
     let input = stream_of(2, &points, GRID, Tagging::None, &mut Random::new(1));
-    let half = |low: f64, high: f64, plan: u64, number: u32| {
+    let half = |low: f64, high: f64, below: u32| {
         let region = Region { min: [low, f64::NEG_INFINITY], max: [high, f64::INFINITY] };
         let options: Options = Options {
             part: Some(Part::Stored(region)),
-            name: Some(PartName { plan, number }),
+            name: Some(PartName { node: 1, below }),
             ..Options::default()
         };
         let outputs = Outputs { mesh: Vec::new(), residual: Some(Vec::new()) };
@@ -252,19 +285,15 @@ fn residuals_of_other_plans_or_places_are_refused() {
     let root = |residuals: &[&[u8]]| {
         let options: Options = Options {
             part: Some(Part::Stored(Region::EVERYTHING)),
-            name: Some(PartName { plan: 1, number: 2 }),
+            name: Some(PartName { node: 3, below: 2 }),
             ..Options::default()
         };
         let outputs = Outputs { mesh: Vec::new(), residual: None };
         join::<2>(residuals, outputs, &options).map(|_| ()).map_err(|error| error.to_string())
     };
-    let (west, east) = (half(-inf, 50.0, 1, 0), half(50.0, inf, 1, 1));
+    let (west, east) = (half(-inf, 50.0, 0), half(50.0, inf, 0));
     assert!(root(&[&west, &east]).is_ok());
-    let refused = [
-        (half(50.0, inf, 9, 1), "no residual of a node below node 2 of this plan"),
-        (half(50.0, inf, 1, 2), "no residual of a node below node 2 of this plan"),
-        (half(40.0, inf, 1, 1), "overlap"),
-    ];
+    let refused = [(half(50.0, inf, 1), "residuals of 3 parts, expected 2"), (half(40.0, inf, 0), "overlap")];
     for (other, message) in refused {
         let error = root(&[&west, &other]).unwrap_err();
         assert!(error.contains(message), "{error}");

@@ -89,7 +89,11 @@ mod tests {
             (r#""parent":2"#, r#""parent":null"#, "node 0: it is not where"),
             ("[0,1],\"box", "[0,2],\"box", "node 2: parent and children"),
             ("[0,1],\"box", "[0,0,1],\"box", "node 2: parent and children"),
-            ("[0,1],\"box", "[1],\"box", "node 0: parent and children"),
+            (
+                "2,\"parent\":null,\"children\":[0,1]",
+                "1,\"parent\":null,\"children\":[1]",
+                "node 0: parent and children",
+            ),
             (r#""children":[]"#, r#""children":[0]"#, "node 0: parent and children"),
             (r#""below":2"#, r#""below":1"#, "node 2: it has another number"),
             ("1123456789abcdef", "1123456789abcdeF", "node 1: its name"),

@@ -92,7 +92,7 @@ class Header:
     constrained: tuple[bool, float] | None = None
     # Of weighted points of space: no weight is greater.
     weighted: float | None = None
-    # Of a part of a mesh, or of its residual: plan and number.
+    # Of a part of a mesh, or of its residual: its name, and the number of parts below it.
     part: tuple[int, int] | None = None
     producer: str = "spmesh (Python)"
 
@@ -227,9 +227,9 @@ class Header:
         require(meshes, f"a stream of kind {self.kind} is no part of a mesh")
         plain = self.constrained is None and self.weighted is None
         require(plain, "a part of a mesh is neither constrained nor weighted")
-        plan, number = self.part
-        require(0 <= plan < 2**64, f"plan {plan}, expected 64 bits")
-        require(0 <= number < 2**PART_BITS, f"part {number}, expected less than {2**PART_BITS}")
+        name, below = self.part
+        require(0 <= name < 2**64, f"name {name}, expected 64 bits")
+        require(0 <= below < 2**PART_BITS, f"{below} parts below, expected less than {2**PART_BITS}")
 
     def check_rows(self, rows: np.ndarray) -> None:
         """Checks the weights of points."""

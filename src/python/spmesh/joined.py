@@ -17,8 +17,10 @@ from .types import FilePath
 
 MANIFEST_MAX = 2**28
 NONE = "this is JSON, but no manifest of a mesh in parts"
-FIELDS = {"format": str, "version": int, "plan": str, "bounds": (list, type(None)), "points": int, "merged": int, "parts": list}
-PART_FIELDS = {"number": int, "file": str, "bytes": int, "vertices": int, "simplices": int}
+BOX = (list, type(None))
+FIELDS = {"format": str, "version": int, "bounds": BOX, "points": int, "merged": int, "skipped": list, "parts": list}
+PART_FIELDS = {"name": str, "below": int, "file": str, "bytes": int, "vertices": int, "simplices": int, "box": BOX}
+SKIPPED_FIELDS = {"file": str, "reason": str}
 
 
 def is_manifest(file: object) -> TypeGuard[FilePath]:
@@ -43,17 +45,14 @@ class Whole:
 class Join:
     def __init__(self, path: FilePath):
         manifest = _manifest(path)
-        self.folder, self.plan = os.path.dirname(os.fspath(path)), int(manifest["plan"], 16)
+        self.folder = os.path.dirname(os.fspath(path))
         self.parts, self.manifest = manifest["parts"], manifest
-        self.first, self.size, vertices = dict[int, int](), dict[int, int](), 0
+        # For each part, the id of its first vertex in the joined mesh.
+        self.first = [0]
         for part in self.parts:
-            number = part["number"]
-            twice = f"part {number} of {len(self.parts)} comes twice, or is none"
-            require(number < len(self.parts) and number not in self.first, twice)
-            self.first[number], self.size[number] = vertices, part["vertices"]
-            vertices += part["vertices"]
+            self.first.append(self.first[-1] + part["vertices"])
         self._header: Header | None = None
-        self.merged, self.done = 0, set[int]()
+        self.merged = 0
         # Ids of vertices that a part before has kept, and no part has finalized since.
         self.shared: set[int] = set()
         self.stored: list[np.ndarray] = []
@@ -67,14 +66,14 @@ class Join:
         return self._header
 
     def read(self, memory: bool) -> Whole:
-        for part in self.parts:
+        for place, part in enumerate(self.parts):
             path = os.path.join(self.folder, part["file"])
             # Opening a pipe waits for a writer, which may never come.
             require(os.path.isfile(path) or not os.path.exists(path), f"{path} is no regular file")
             with Reader(path, memory) as reader:
                 try:
-                    self._check_header(reader.header, part["number"])
-                    self._part(reader, part)
+                    self._check_header(reader.header, part)
+                    self._part(reader, place)
                 except MalformedError as error:
                     raise MalformedError(f"{path}: {error}") from None
         require(not self.shared, f"{len(self.shared)} vertices are kept for parts that do not come")
@@ -92,9 +91,9 @@ class Join:
         require((totals["points"], self.merged) == stated, "the parts do not have the points that the manifest states")
         return Whole(header, stored, simplices, np.concatenate(self.rows) if header.attributes else None, totals)
 
-    def _check_header(self, header: Header, number: int) -> None:
-        is_it = header.part == (self.plan, number) and header.has_patches
-        require(is_it, f"this is not part {number} of the plan")
+    def _check_header(self, header: Header, part: dict[str, Any]) -> None:
+        is_it = header.part == (int(part["name"], 16), part["below"]) and header.has_patches
+        require(is_it, "this is another part than the manifest names")
         if self._header is None:
             bounds = self.manifest["bounds"]
             bounds = None if bounds is None else tuple(map(float, bounds[0] + bounds[1]))
@@ -103,8 +102,9 @@ class Join:
         same = _common(header) == _common(self._header)
         require(same, "its grid or its attributes are not those of the other parts")
 
-    def _part(self, reader: Reader, part: dict[str, Any]) -> None:
-        start = own = self.first[part["number"]]
+    def _part(self, reader: Reader, place: int) -> None:
+        part = self.parts[place]
+        start = own = self.first[place]
         tables, kept = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
         simplices: list[np.ndarray] = [np.empty((0, self.header.corners), np.int64)]
         for block in reader:
@@ -115,7 +115,7 @@ class Join:
                 is_own[block.origins["local"]] = False
                 ids = np.empty(len(block.new), np.int64)
                 ids[is_own] = np.arange(own, own + is_own.sum(), dtype=np.int64)
-                ids[~is_own] = self._ids_of(block.origins["id"])
+                ids[~is_own] = self._ids_of(block.origins["id"], place - part["below"])
                 own += int(is_own.sum())
                 self.stored.append(block.new[is_own])
                 if block.rows is not None:
@@ -132,13 +132,13 @@ class Join:
         self.shared.update(table[np.concatenate(kept)].tolist())
         self.simplices.append(table[np.concatenate(simplices)])
         require(len(self.simplices[-1]) == part["simplices"], "another number of simplices than the manifest states")
-        self.done.add(part["number"])
 
-    def _ids_of(self, origins: np.ndarray) -> np.ndarray:
+    def _ids_of(self, origins: np.ndarray, lowest: int) -> np.ndarray:
+        """The ids in the joined mesh of vertices that a part names, whose first part below is at the place `lowest`."""
         ids = []
         for origin in origins.tolist():
-            part, number = origin >> NUMBER_BITS, origin % 2**NUMBER_BITS
-            require(part in self.done and number < self.size[part], "a vertex of no part before this one")
+            part, number = lowest + (origin >> NUMBER_BITS), origin % 2**NUMBER_BITS
+            require(number < self.parts[part]["vertices"], "a vertex of no part before this one")
             ids.append(self.first[part] + number)
         require(self.shared.issuperset(ids), "a vertex that no part before this one has kept")
         return np.array(ids, np.int64)
@@ -156,19 +156,27 @@ def _manifest(path: FilePath) -> dict[str, Any]:
             found: Any = json.load(file)
         except ValueError:
             raise MalformedError(NONE) from None
-    if found.get("version") != 1:
-        raise TooNewError(f"version {found.get('version')} of a manifest; this package reads 1")
+    if found.get("version") != 2:
+        raise TooNewError(f"version {found.get('version')} of a manifest; this package reads 2")
     _check_fields(found, FIELDS)
-    for part in found["parts"]:
+    for file in found["skipped"]:
+        _check_fields(file, SKIPPED_FIELDS)
+    for place, part in enumerate(found["parts"]):
         _check_fields(part, PART_FIELDS)
+        _check_box(part["box"])
+        name, below = part["name"], part["below"]
+        require(len(name) == 16 and set(name) <= set("0123456789abcdef"), f"{name!r} is no name of a part")
+        require(below <= place, f"part {place} comes before one of the {below} below it")
     require(found["parts"], "a mesh without parts")
-    digits = len(found["plan"]) == 16 and set(found["plan"]) <= set("0123456789abcdef")
-    require(digits, f"{found['plan']!r} is no hash of a plan")
-    if found["bounds"] is not None:
-        sides = [side for side in found["bounds"] if isinstance(side, list) and len(side) == 3]
-        numbers = all(type(x) in (int, float) for side in sides for x in side)
-        require(len(sides) == len(found["bounds"]) == 2 and numbers, NONE)
+    _check_box(found["bounds"])
     return dict(found)
+
+
+def _check_box(box: list[Any] | None) -> None:
+    if box is not None:
+        sides = [side for side in box if isinstance(side, list) and len(side) == 3]
+        numbers = all(type(x) in (int, float) for side in sides for x in side)
+        require(len(sides) == len(box) == 2 and numbers, NONE)
 
 
 def _check_fields(found: Any, fields: Mapping[str, Any]) -> None:

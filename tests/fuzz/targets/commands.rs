@@ -3,7 +3,7 @@
 //! A target has several lines. `put FILE` writes the bytes to a file; `seal FILE` does so with corrected
 //! checksums, and with the names of the folder (see [`Here`]); `prove FILE` audits a file, if it is there,
 //! and removes it. Every other line is a command. A file name begins with `HERE/`, the folder of the thread,
-//! or `DATA/`, the samples of the tests.
+//! or `DATA/`, the samples of the tests; `NODE2` stands for the name of node 2 of the plan, with its folder.
 
 use std::fs::{self, File};
 use std::path::PathBuf;
@@ -15,7 +15,8 @@ use spmesh_convert::flags::spconvert;
 use spmesh_formats::source::{SourceOptions, Survey};
 use spmesh_molecules::flags::tess3;
 use spmesh_pipeline::flags::{spdelaunay2d, spdelaunay3d, spfinalize, spnode};
-use spmesh_pipeline::plan::{NodeReport, Plan, Planning, hash_of_file, plan_of};
+use spmesh_pipeline::plan::{Naming, NodeReport, Plan, Planning, hash_of_file, plan_of};
+use spmesh_pipeline::reduce::Duplicates;
 use spmesh_spacetime::flags::dd4;
 use spmesh_splines::flags::{configgen, splinefit};
 use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spheight};
@@ -32,7 +33,7 @@ pub const PLAN: &[&str] = &[
 ];
 
 pub const REPORT: &[&str] = &[
-    "seal HERE/parts/000002.json",
+    "seal HERE/parts/NODE2.json",
     "spnode collect -d HERE/parts -o HERE/out.json HERE/plan.json",
     "spnode run --threads 1 -d HERE/parts HERE/plan.json 2 4",
 ];
@@ -163,14 +164,12 @@ ATOM      5  CB  ALA A   1       1.500   1.000   2.000  1.00  0.00           C
 /// A folder with the files that commands read.
 struct Here {
     folder: TempDir,
-    /// What plans, reports, manifests and summaries of this folder say of it, and what stands for that in
-    /// inputs: so an input means the same in every folder.
-    names: Vec<[String; 2]>,
+    /// Names of the nodes of the plan, with their folders.
+    nodes: Vec<String>,
 }
 
-/// From and to, among the names of a folder.
-const TO_INPUTS: [usize; 2] = [0, 1];
-const FROM_INPUTS: [usize; 2] = [1, 0];
+/// What stands for the folder in inputs: so an input means the same in every folder.
+const FOLDER: &str = "HERE";
 
 thread_local! {
     static HERE: Here = Here::new();
@@ -180,25 +179,25 @@ impl Here {
     fn new() -> Here {
         let folder = tempfile::tempdir().expect("a temporary folder");
         fs::write(folder.path().join("atoms.pdb"), ATOMS).expect("a writable folder");
-        let mut here = Here { folder, names: Vec::new() };
+        let mut here = Here { folder, nodes: Vec::new() };
         here.run_all(SETUP);
         for file in ["points.txt", "atoms.pdb"] {
             let file = File::options().append(true).open(here.path(file)).expect("a file of the folder");
             file.set_modified(UNIX_EPOCH + AGE).expect("a writable folder");
         }
-        let plan = here.write_plan();
+        here.nodes = here.write_plan();
         here.run_all(JOBS);
-        here.names = vec![[here.path(""), "HERE/".to_string()], [plan, "PLAN".to_string()]];
-        for node in 0..4 {
-            let rest = here.path(&format!("parts/00000{node}.rest.spm"));
-            let hash = hash_of_file(rest.as_ref()).expect("a file of the folder");
-            here.names.push([hash, format!("REST{node}")]);
-        }
         here
     }
 
     fn path(&self, name: &str) -> String {
-        format!("{}/{name}", self.folder.path().display())
+        let names = (0..).zip(&self.nodes);
+        let name = names.fold(name.to_string(), |text, (i, name)| text.replace(&format!("NODE{i}"), name));
+        format!("{}/{name}", self.root())
+    }
+
+    fn root(&self) -> String {
+        self.folder.path().display().to_string()
     }
 
     fn run_all(&self, lines: &[&str]) {
@@ -207,21 +206,33 @@ impl Here {
         }
     }
 
-    /// Writes a plan as of the program, which takes arguments from its process; returns its hash.
-    fn write_plan(&self) -> String {
+    /// Writes a plan as of the program, which takes arguments from its process; returns the names of its nodes. Its
+    /// files are relative to the folder, so these are the same in all folders.
+    fn write_plan(&self) -> Vec<String> {
         let paths = [PathBuf::from(self.path("points.txt"))];
         let options = SourceOptions { dims: 2, ..SourceOptions::default() };
         let survey = Survey::of(&paths, &options, |_| ()).expect("a file of points");
-        let planning = Planning { leaf_points: 4, arguments: &[], beside: &[] };
+        let roots = [("here".to_string(), PathBuf::from(self.root()))].into();
+        let planning = Planning {
+            leaf_points: 4,
+            arguments: &[],
+            beside: &[],
+            duplicates: Duplicates::First,
+            naming: &Naming { roots, by_content: false },
+            skipped: &[],
+        };
         let plan = plan_of(&survey, &paths, planning).expect("a plan");
         fs::write(self.path("plan.json"), plan.to_json().expect("a plan")).expect("a writable folder");
-        plan.id().to_string()
+        plan.nodes.iter().map(|node| format!("{}/{}", &node.name[..2], node.name)).collect()
     }
 
     /// Runs a line with some bytes.
     fn run(&self, line: &str, bytes: &[u8]) -> Result<(), String> {
         let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/");
-        let place = |word: &str| word.replace("HERE/", &self.path("")).replace("DATA/", data);
+        let place = |word: &str| match word.strip_prefix("HERE/") {
+            Some(name) => self.path(name),
+            None => word.replace("DATA/", data),
+        };
         let words: Vec<String> = line.split(' ').map(place).collect();
         match &words[..] {
             [put, path] if put == "put" => fs::write(path, bytes).expect("a writable folder"),
@@ -247,38 +258,35 @@ impl Here {
     /// The bytes with checksums that fit them, if they are a stream, a plan or a report.
     fn corrected(&self, bytes: &[u8]) -> Vec<u8> {
         sealed(bytes).unwrap_or_else(|| {
-            let bytes = self.renamed(bytes.to_vec(), FROM_INPUTS);
+            let bytes = renamed(bytes.to_vec(), FOLDER, &self.root());
             sealed_report(&bytes).or_else(|| self.sealed_plan(&bytes)).unwrap_or(bytes)
         })
     }
 
-    /// The bytes with other names, if they are text.
-    fn renamed(&self, bytes: Vec<u8>, [from, to]: [usize; 2]) -> Vec<u8> {
-        match String::from_utf8(bytes) {
-            Ok(text) => {
-                self.names.iter().fold(text, |text, name| text.replace(&name[from], &name[to])).into()
-            }
-            Err(binary) => binary.into_bytes(),
-        }
-    }
-
-    /// The hash of a plan is that of its text without the hash.
+    /// The hash of a plan is that of its text without the hash, and without the places of roots.
     fn sealed_plan(&self, bytes: &[u8]) -> Option<Vec<u8>> {
         let mut value: Value = serde_json::from_slice(bytes).ok()?;
         *value.get_mut("id")? = "".into();
+        let roots = std::mem::replace(value.get_mut("roots")?, serde_json::json!({}));
         let bare: Plan = serde_json::from_value(value.clone()).ok()?;
         let path = self.path("bare.json");
         fs::write(&path, serde_json::to_vec(&bare).ok()?).expect("a writable folder");
         value["id"] = hash_of_file(path.as_ref()).expect("a file that was just written").into();
+        value["roots"] = roots;
         serde_json::to_vec(&value).ok()
     }
+}
+
+/// The bytes with another name of the folder, if they are text.
+fn renamed(bytes: Vec<u8>, from: &str, to: &str) -> Vec<u8> {
+    String::from_utf8(bytes).map_or_else(|binary| binary.into_bytes(), |text| text.replace(from, to).into())
 }
 
 /// A file of the folder, such as `plan.json`, as an input for any folder.
 pub fn made(name: &str) -> Vec<u8> {
     HERE.with(|here| {
         let bytes = fs::read(here.path(name)).expect("a file of the folder");
-        here.renamed(bytes, TO_INPUTS)
+        renamed(bytes, &here.root(), FOLDER)
     })
 }
 
@@ -327,7 +335,7 @@ mod tests {
     /// Every thread has a folder of its own.
     #[test]
     fn an_input_means_the_same_in_every_folder() {
-        let load = || ["plan.json", "manifest.json", "parts/000002.json"].map(made);
+        let load = || ["plan.json", "manifest.json", "parts/NODE2.json"].map(made);
         let other = std::thread::spawn(load).join().expect("a folder");
         let [plan, manifest, report] = load();
         assert_eq!(other[..2], [plan, manifest]);
@@ -341,7 +349,7 @@ mod tests {
             let read =
                 |bytes| -> NodeReport { serde_json::from_slice(&here.corrected(bytes)).expect("a report") };
             let [own, other] = [&report, &other[2]].map(|bytes| read(bytes));
-            assert_eq!((own.plan, own.residual, own.joined), (other.plan, other.residual, other.joined));
+            assert_eq!((own.name, own.residual, own.joined), (other.name, other.residual, other.joined));
         });
     }
 }

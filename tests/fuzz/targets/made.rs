@@ -87,7 +87,7 @@ impl Made {
                 SYSTEMS.iter().map(|text| text.as_bytes().to_vec()).chain([keys, data("lines.prj")]).collect()
             }
             Made::Plan => vec![made("plan.json")],
-            Made::Report => vec![made("parts/000002.json"), made("parts/000004.json")],
+            Made::Report => vec![made("parts/NODE2.json"), made("parts/NODE4.json")],
             Made::Manifest => vec![made("manifest.json")],
             Made::Summary => vec![made("summary.tsv")],
             Made::Raster => vec![made("raster.tif")],
