@@ -185,6 +185,8 @@ fn damage_is_repaired_by_running_the_same_command_again() {
     succeed(&cluster.collect(&[]));
     let (mesh, files) = (cluster.mesh(), cluster.files());
     let path = |name: &str| cluster.folder.path(&format!("parts/{name}"));
+    let listed = succeed(&run("spnode", &["list", &cluster.plan_path(), "--stage", "0"], &[]));
+    let leaves = listed.lines().count();
     let residuals: Vec<&String> =
         files.iter().map(|(name, _)| name).filter(|name| name.contains("rest")).collect();
     for (number, &name) in residuals.iter().enumerate().step_by(3) {
@@ -197,7 +199,7 @@ fn damage_is_repaired_by_running_the_same_command_again() {
             None => fs::remove_file(path(name)).unwrap(),
         }
         fs::remove_file(cluster.file(nodes.len() - 1, "json")).unwrap();
-        succeed(&cluster.run(&nodes[nodes.len() - 5..], &["--force"]));
+        succeed(&cluster.run(&nodes[leaves..], &["--force"]));
         assert!(files == cluster.files(), "{name} is as it was");
     }
     let meshes: Vec<&String> =
@@ -205,7 +207,7 @@ fn damage_is_repaired_by_running_the_same_command_again() {
     for &name in meshes.iter().step_by(4) {
         fs::remove_file(path(name)).unwrap();
         let (code, message) = outcome(&cluster.collect(&[]));
-        assert_eq!((code, message.contains("is not complete: making it")), (Some(0), true), "{message}");
+        assert_eq!((code, message.contains("triangles, ")), (Some(0), true), "{message}");
         let mut bytes = fs::read(path(name)).unwrap();
         let middle = bytes.len() / 2;
         bytes[middle] ^= 1;
@@ -303,7 +305,7 @@ fn a_real_copc_file_is_read_in_parts() {
     let (plan, parts, mesh) = (folder.path("plan.json"), folder.path("parts"), folder.path("mesh.json"));
     let (tile, copc) = (sample("lareunion.laz"), sample("simple_with_page.copc.laz"));
     for file in [&tile, &copc] {
-        succeed(&run("spfinalize", &["--plan", &plan, "--leaf-points", "300", file], &[]));
+        succeed(&run("spfinalize", &["--plan", &plan, "--leaf-points", "3000", file], &[]));
         succeed(&run("spnode", &["collect", &plan, "-d", &parts, "-o", &mesh, "-q"], &[]));
         succeed(&run("spinfo", &["--audit", "--points", file, &mesh], &[]));
         fs::remove_dir_all(&parts).unwrap();
@@ -439,7 +441,7 @@ fn plans_grow_and_shrink_without_starting_again() {
         cluster.tiles = tiles;
         cluster.plan();
         let (missing, all) = (cluster.missing(), cluster.nodes());
-        assert!(missing.len() <= 8 && missing.len() < all.len() / 2, "{missing:?} of {all:?}");
+        assert!(missing.len() <= 12 && missing.len() < all.len() / 2, "{missing:?} of {all:?}");
         succeed(&cluster.run(&missing, &[]));
         succeed(&cluster.collect(&[]));
         let piped = run("spconvert", &["-", "--to", "text"], &cluster.piped()).stdout;

@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::roots::RootFlags;
 use super::spfinalize;
-use crate::plan::{Maker, Node, Plan, Work, batches, collect, expected, incomplete, remove, spent};
+use crate::plan::{Again, Maker, Node, Plan, Work, batches, collect, expected, incomplete, remove, spent};
 use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_shell::{Common, advise_on_memory, endings, notice, parse_size, parse_threads, threads};
@@ -109,6 +109,10 @@ struct RunFlags {
     #[arg(long)]
     force: bool,
 
+    /// Read the parts of nodes that are complete, and make those again whose checksums are wrong
+    #[arg(long, conflicts_with = "force")]
+    verify: bool,
+
     #[command(flatten)]
     work: WorkFlags,
 }
@@ -199,7 +203,12 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             let work = action.work.work();
             let maker = Maker::new(&plan, &work, &recipe, &note)?;
             action.nodes.iter().try_for_each(|&number| plan.node(number).map(|_| ()))?;
-            action.nodes.iter().try_for_each(|&number| maker.run(number, action.force))?;
+            let again = match (action.force, action.verify) {
+                (true, _) => Again::All,
+                (_, true) => Again::Damaged,
+                _ => Again::Incomplete,
+            };
+            action.nodes.iter().try_for_each(|&number| maker.run(number, again).map(|_| ()))?;
         }
         Action::Collect(CollectFlags { plan, output, verify, work }) => {
             endings::check(output, &[endings::JSON])?;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{Maker, NodeReport, Plan, Work};
+use super::{Again, Maker, NodeReport, Plan, Work};
 use crate::finalize::Recipe;
 use spmesh_base::error::{Error, ErrorKind, Result, counted};
 use spmesh_base::output::Output;
@@ -30,16 +30,9 @@ pub fn collect(
     plan.note_files()?;
     let mut output = Output::create(manifest, false)?;
     let order = plan.upwards();
+    let again = if is_verified { Again::Damaged } else { Again::Incomplete };
     for &number in &order {
-        let node = plan.node(number)?;
-        if maker.folder.complete(node)?.is_none() {
-            note(&format!("node {number} is not complete: making it"));
-            maker.make(node)?;
-        }
-        if is_verified && let Some(damage) = maker.folder.damage_of(node)? {
-            note(&format!("{damage}: making node {number} again"));
-            maker.make(node)?;
-        }
+        maker.run(number, again)?;
     }
     let mut reports = Vec::with_capacity(order.len());
     for &number in &order {

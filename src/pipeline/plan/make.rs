@@ -37,6 +37,17 @@ pub struct Work {
     pub compress: bool,
 }
 
+/// Which nodes are made again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Again {
+    /// Those that are not complete.
+    Incomplete,
+    /// Those, too, whose parts are damaged: all parts are read.
+    Damaged,
+    /// All.
+    All,
+}
+
 /// Makes nodes of a plan in a folder.
 pub struct Maker<'a> {
     pub(super) folder: Folder<'a>,
@@ -69,21 +80,24 @@ impl<'a> Maker<'a> {
         Ok(Maker { folder, work, recipe, note })
     }
 
-    /// Makes a node, and what it needs, unless it is complete.
+    /// Makes a node, and what it needs, if it is to be made `again` or is not complete; returns whether it has.
     ///
     /// # Errors
     /// Those of reading points, triangulating and writing; usage, if files have changed since the plan was
     /// made.
-    pub fn run(&self, number: u32, is_forced: bool) -> Result<()> {
+    pub fn run(&self, number: u32, again: Again) -> Result<bool> {
         let node = self.folder.plan.node(number)?;
-        if !is_forced && self.folder.complete(node)?.is_some() {
-            return Ok(());
+        if again != Again::All && self.folder.complete(node)?.is_some() {
+            let damage = if again == Again::Damaged { self.folder.damage_of(node)? } else { None };
+            let Some(damage) = damage else { return Ok(false) };
+            (self.note)(&format!("{damage}: making node {number} again"));
         }
-        self.make(node)
+        self.make(node)?;
+        Ok(true)
     }
 
     /// Makes a node.
-    pub(super) fn make(&self, node: &Node) -> Result<()> {
+    fn make(&self, node: &Node) -> Result<()> {
         let home = self.folder.home(node);
         create_folder(&home)?;
         remove_orphans(&home);

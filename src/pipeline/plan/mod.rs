@@ -26,7 +26,7 @@ mod tree;
 pub use clean::{Spent, remove, spent};
 pub use collect::collect;
 pub use files::{Naming, PlannedFile, Roots};
-pub use make::{Maker, Work};
+pub use make::{Again, Maker, Work};
 pub use node::{Node, NodeBox, NodeKind};
 pub use planning::{Plan, Planning, plan_of};
 pub use report::{FileCount, FileSize, NodeReport, hash_of_file};
