@@ -211,7 +211,7 @@ impl Here {
     fn write_plan(&self) -> String {
         let paths = [PathBuf::from(self.path("points.txt"))];
         let options = SourceOptions { dims: 2, ..SourceOptions::default() };
-        let survey = Survey::of(&paths, &options, |_| ()).expect("a file of points");
+        let survey = Survey::of(&paths, &options, false, |_| ()).expect("a file of points");
         let planning = Planning { leaf_points: 4, arguments: &[], beside: &[] };
         let plan = plan_of(&survey, &paths, planning).expect("a plan");
         fs::write(self.path("plan.json"), plan.to_json().expect("a plan")).expect("a writable folder");
