@@ -18,6 +18,7 @@ mod structure_damage;
 mod structure_pdb;
 mod structure_radii;
 mod structure_selection;
+mod survey;
 mod text;
 mod vtk_file;
 mod vtk_legacy;

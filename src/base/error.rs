@@ -128,6 +128,17 @@ impl Error {
         self
     }
 
+    /// Whether the machine has too little memory, disk or descriptors: no input is to blame.
+    pub fn is_shortage(&self) -> bool {
+        use io::ErrorKind::{OutOfMemory, QuotaExceeded, StorageFull};
+        self.kind == ErrorKind::Memory
+            || self.cause.as_ref().is_some_and(|cause| {
+                // ENFILE and EMFILE, which have no kind.
+                matches!(cause.kind(), OutOfMemory | QuotaExceeded | StorageFull)
+                    || matches!(cause.raw_os_error(), Some(23 | 24))
+            })
+    }
+
     /// Kind of the failure.
     pub fn kind(&self) -> ErrorKind {
         self.kind

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{assert_fails, decoded, flat, sample};
+use super::{assert_fails, decoded, flat, points_of, sample};
 use crate::allocation::largest_during;
 use crate::programs::Folder;
 use spmesh_base::error::ErrorKind;
@@ -257,6 +257,16 @@ fn errors_of_an_index_name_the_place_and_the_remedy() {
     fails(&|bytes| bytes[entry(9) + 28..entry(9) + 32].fill(0), &["no node has the points", "records"]);
     fails(&|bytes| bytes[INFO + 24..INFO + 32].fill(0), &["half a side of 0", "COPC record at byte 429"]);
     fails(&|bytes| bytes[INFO + 40..INFO + 48].fill(0xff), &["beyond the end of the file"]);
+    // Also where no box is wanted: a job of a plan may want one.
+    let mut cut = std::fs::read(sample(SAMPLE)).unwrap();
+    let first = cut.len() as u64 - ROOT[1] as u64;
+    for (first, is_there) in [(first, true), (first + 1, false), (u64::MAX, false)] {
+        cut[INFO + 40..INFO + 48].copy_from_slice(&first.to_le_bytes());
+        match is_there {
+            true => assert_eq!(points_of(&cut).unwrap().len() as u64, POINTS),
+            false => assert_fails(points_of(&cut), ErrorKind::Malformed, &["beyond the end of the file"]),
+        }
+    }
     // Without its record, the file is an ordinary LAZ file, read as a whole.
     assert_eq!(read_changed(|bytes| bytes[377] = b'C').unwrap(), POINTS);
 }

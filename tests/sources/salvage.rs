@@ -132,6 +132,48 @@ fn plans_name_files_that_were_cut_off() {
     }
 }
 
+/// A file whose writer could not seek back: the position of the chunk table follows the table.
+fn written_to_a_pipe(format: u8) -> Vec<u8> {
+    let mut bytes = file(format).compressed(1000);
+    let start = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+    let position: [u8; 8] = bytes[start..start + 8].try_into().unwrap();
+    bytes[start..start + 8].copy_from_slice(&(-1i64).to_le_bytes());
+    [&bytes[..], &position].concat()
+}
+
+#[test]
+fn a_chunk_table_that_the_last_bytes_should_state_was_cut_off() {
+    let folder = Folder::new();
+    for whole in [1, 6].map(written_to_a_pipe) {
+        let path = folder.write("cut.laz", &whole);
+        assert_outcome("spfinalize", &["--plan", &folder.path("plan.json"), &path], &[], 0, "");
+        for lost in [1, 8, 12, 200, whole.len() / 2] {
+            let path = folder.write("cut.laz", &whole[..whole.len() - lost]);
+            let parts = "cut.laz: chunk table stated by the last 8 bytes: truncated";
+            assert_outcome("spfinalize", &["--plan", &folder.path("plan.json"), &path], &[], 3, parts);
+        }
+        let path = folder.write("table.laz", &whole[..whole.len() - 1]);
+        assert_outcome("spfinalize", &["--salvage", &path], &[], 0, "");
+        let found = salvaged(&whole[..whole.len() / 2], &[], &[]);
+        assert!(!found.is_empty() && found == first(found.len()));
+    }
+}
+
+/// Only reading shows whether the points are whole where nothing states a chunk table.
+#[test]
+fn a_chunk_table_that_nothing_states_is_told_of() {
+    let folder = Folder::new();
+    let mut bytes = file(1).compressed(1000);
+    let start = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+    bytes[start..start + 8].fill(0);
+    let path = folder.write("unfinished.laz", &bytes);
+    let output = run("spfinalize", &["--preserve", &path], &[]);
+    let (code, message) = outcome(&output);
+    assert!(code == Some(0) && message.contains("the chunk table is missing"), "{message}");
+    let whole = folder.write("whole.laz", file(1).compressed(1000));
+    assert_eq!(output.stdout, run("spfinalize", &["--preserve", &whole], &[]).stdout);
+}
+
 /// All points of a COPC file are there, but not its index.
 #[test]
 fn points_before_a_cut_index_are_read() {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use laz::{DecompressionSelection, LazVlr};
 
 use crate::las::fields;
-use crate::las::index::Part;
+use crate::las::index::{Part, copc};
 use crate::las::laz_chunks::Chunks;
 use crate::las::laz_codec::Codec;
 use crate::las::laz_salvage;
@@ -170,7 +170,10 @@ impl LasHeader {
         }
         if let Some(laszip) = &self.laz {
             // How many points there are is known when they are decompressed.
-            return if room == 0 { Err(self.truncated(file)) } else { self.check_chunks(file, laszip) };
+            return match room {
+                0 => Err(self.truncated(file)),
+                _ => self.check_chunks(file, laszip, notices),
+            };
         }
         let whole = room / record_len;
         if whole < self.points {
@@ -190,15 +193,19 @@ impl LasHeader {
 
     /// Checks how points are compressed, and that the chunks and their table are in the file. Whether there
     /// are all points without a table is known when they are decompressed.
-    fn check_chunks(&self, file: &FileView, laszip: &Laszip) -> Result<()> {
+    fn check_chunks(&self, file: &FileView, laszip: &Laszip, notices: &mut Vec<String>) -> Result<()> {
         Codec::new(laszip.vlr.clone(), self, DecompressionSelection::all())?;
         if self.is_salvaged || !laszip.is_chunked {
             return Ok(());
         }
-        if let Some(table) = laz_table::stated_beyond(file, self.points_start)? {
-            return Err(self.truncated(file).at(format!("chunk table stated at byte {table}")));
+        if let Some(place) = laz_table::stated_missing(file, self.points_start)? {
+            return Err(self.truncated(file).at(format!("chunk table stated {place}")));
         }
-        Chunks::find(file, self, laszip).map(drop)
+        if let Chunks::Unknown { .. } = Chunks::find(file, self, laszip)? {
+            notices
+                .push("the chunk table is missing: only reading shows whether all points are there".into());
+        }
+        self.indices.copc.as_ref().map_or(Ok(()), |info| copc::check_root(file, info))
     }
 
     /// Keeps the first points, if there are any and they are wanted.

@@ -17,12 +17,17 @@ pub(crate) fn room(file: &FileView, points_start: u64, points_end: u64) -> Resul
     Ok(end.saturating_sub(start))
 }
 
-/// The position of the chunk table that is stated before the points, if it is beyond the end of the file and
-/// there is no other one: then the file was cut off.
-pub(crate) fn stated_beyond(file: &FileView, points_start: u64) -> Result<Option<u64>> {
-    let is_missing = table_position(file, points_start)?.is_none();
-    let stated = u64::try_from(stated_at(file, points_start)?).ok();
-    Ok(stated.filter(|&position| is_missing && position > points_start))
+/// Where the file states its chunk table, if none is there: then the file was cut off. `None` also if its
+/// writer stated no place.
+pub(crate) fn stated_missing(file: &FileView, points_start: u64) -> Result<Option<String>> {
+    if table_position(file, points_start)?.is_some() {
+        return Ok(None);
+    }
+    let stated = stated_at(file, points_start)?;
+    Ok(match u64::try_from(stated) {
+        Ok(position) => (position > points_start).then(|| format!("at byte {position}")),
+        Err(_) => Some("by the last 8 bytes".to_string()),
+    })
 }
 
 /// The position of the chunk table, read from before the points or, if the writer could not seek back, from

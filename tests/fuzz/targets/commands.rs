@@ -211,7 +211,7 @@ impl Here {
     fn write_plan(&self) -> Vec<String> {
         let paths = [PathBuf::from(self.path("points.txt"))];
         let options = SourceOptions { dims: 2, ..SourceOptions::default() };
-        let survey = Survey::of(&paths, &options, |_| ()).expect("a file of points");
+        let survey = Survey::of(&paths, &options, false, |_| ()).expect("a file of points");
         let roots = [("here".to_string(), PathBuf::from(self.root()))].into();
         let planning = Planning {
             leaf_points: 4,

@@ -17,6 +17,9 @@ use spmesh_stream::model::bounds::{Bounds, Point};
 /// Length of the info record.
 const INFO_LEN: usize = 160;
 
+/// Byte of it from which it states the place of the hierarchy.
+const ROOT_AT: u64 = 40;
+
 /// How many steps of the file's grid a point may lie outside of the cube of its node: writers round coordinates
 /// before or after they choose the node.
 const SLACK: Point = [1.0; 3];
@@ -51,6 +54,28 @@ pub(crate) fn find_parts(
         }
     }
     Ok(parts)
+}
+
+/// Checks that the first page of the hierarchy is in the file. Cost: one read, also where no box is wanted.
+pub(crate) fn check_root(file: &FileView, info: &Range<u64>) -> Result<()> {
+    if info.end - info.start != INFO_LEN as u64 {
+        return Ok(());
+    }
+    let mut bytes = [0; 16];
+    let at = |error: Error| error.at(format!("COPC record at byte {}", info.start));
+    file.read_at(info.start + ROOT_AT, &mut bytes).map_err(|e| at(Error::io("reading", e)))?;
+    let (numbers, _) = bytes.as_chunks::<8>();
+    root_page([0, 1].map(|index| u64::from_le_bytes(numbers[index])), file.len()).map(drop).map_err(at)
+}
+
+/// The bytes of the first page of the hierarchy, stated as the first one and their number.
+fn root_page([start, len]: [u64; 2], file_len: u64) -> Result<Range<u64>> {
+    let end = start.checked_add(len).filter(|&end| end <= file_len).ok_or_else(|| {
+        wrong_index(format!(
+            "a hierarchy of {len} bytes at byte {start}, beyond the end of the file at byte {file_len}"
+        ))
+    })?;
+    Ok(start..end)
 }
 
 /// The node of each chunk.
@@ -95,11 +120,8 @@ impl Info {
         if ![half_side, center[0], center[1], center[2]].iter().all(|x| x.is_finite()) || half_side <= 0.0 {
             return Err(at(wrong_index(format!("a cube around {center:?} with half a side of {half_side}"))));
         }
-        let (start, len) = (count(5), count(6));
-        let end = start.checked_add(len).ok_or_else(|| {
-            at(wrong_index(format!("a hierarchy of {len} bytes at byte {start}, beyond the end of the file")))
-        })?;
-        Ok(Info { center, half_side, root: start..end })
+        let root = root_page([count(5), count(6)], file.len()).map_err(at)?;
+        Ok(Info { center, half_side, root })
     }
 
     /// The cube of a node, in the world.

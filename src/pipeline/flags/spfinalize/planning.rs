@@ -79,7 +79,7 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     }
     let mut output = Output::create(path, false)?;
     let mut progress = Progress::counting("files", &flags.common, "headers", Some(paths.len() as u64));
-    let survey = Survey::of(&paths, &flags.source_options()?, |done| progress.set(done))?;
+    let survey = Survey::of(&paths, &flags.source_options()?, false, |done| progress.set(done))?;
     drop(progress);
     for message in survey.notices.iter().take(NOTICES_MAX) {
         notice(TOOL, &flags.common, message);
