@@ -1,5 +1,7 @@
 //! Plans, nodes and manifests: many jobs make the mesh that one pipe makes, and repair what was damaged.
 
+mod changes;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::process::Output;
@@ -42,9 +44,14 @@ impl Cluster {
     }
 
     fn plan(&self) {
+        self.plan_with(&[]);
+    }
+
+    fn plan_with(&self, flags: &[&str]) {
         let plan = self.plan_path();
         let mut arguments = vec!["--plan", &plan, "--leaf-points", "300"];
         arguments.extend(&self.flags);
+        arguments.extend(flags);
         arguments.extend(self.tiles.iter().map(String::as_str));
         succeed(&run("spfinalize", &arguments, &[]));
     }
@@ -70,6 +77,14 @@ impl Cluster {
         let (plan, parts) = (self.plan_path(), self.folder.path("parts"));
         let listed = succeed(&run("spnode", &["list", &plan, "-d", &parts, "--missing"], &[]));
         listed.lines().map(|line| line.split('\t').next().unwrap().to_string()).collect()
+    }
+
+    /// Makes what is missing.
+    fn complete(&self) {
+        match &self.missing()[..] {
+            [] => {}
+            missing => drop(succeed(&self.run(missing, &[]))),
+        }
     }
 
     fn run(&self, nodes: &[String], flags: &[&str]) -> Output {
@@ -386,104 +401,4 @@ fn polygons_are_those_of_the_plan() {
     assert_eq!((outcome(&output).0, outcome(&output).1.contains("./NAME")), (Some(2), true));
     let far = cluster.folder.write("far.txt", "-1e308 0 0\n1e308 0 0\n0 1 0\n");
     assert_outcome("spfinalize", &["--plan", &plan, "--leaf-points", "1", &far], &[], 0, "read to plan");
-}
-
-/// What is not the same in two plans has another name.
-#[test]
-fn plans_share_what_does_not_depend_on_a_change() {
-    let cluster = Cluster::new(&[]);
-    succeed(&cluster.run(&cluster.nodes(), &[]));
-    succeed(&cluster.collect(&[]));
-    let files = cluster.files();
-    // The last tile gets another elevation, and a later time.
-    let tile = cluster.tiles.last().unwrap();
-    let mut changed = fs::read(tile).unwrap();
-    let at = changed.len() - 20;
-    changed[at] ^= 1;
-    fs::write(tile, changed).unwrap();
-    let (plan, parts) = (cluster.plan_path(), cluster.folder.path("parts"));
-    let (code, message) = outcome(&cluster.collect(&[]));
-    assert_eq!((code, message.contains("plan again")), (Some(2), true), "{message}");
-    assert_outcome("spnode", &["list", &plan, "-d", &parts, "--missing"], &[], 2, "plan again");
-    cluster.plan();
-    let missing = cluster.missing();
-    let stages = succeed(&run("spnode", &["list", &plan, "--stages"], &[])).lines().count();
-    assert!(missing.len() < 4 * stages && missing.len() < cluster.nodes().len() / 2, "{missing:?}");
-    // Nothing is removed before the new mesh is there, and what is removed is said.
-    let clean = |flags: &[&str]| run("spnode", &[&["clean", &plan, "-d", &parts][..], flags].concat(), &[]);
-    assert_eq!(clean(&[]).status.code(), Some(2));
-    succeed(&run("spinfo", &["--audit", &cluster.folder.path("mesh.json")], &[]));
-    succeed(&cluster.run(&missing, &[]));
-    assert!(cluster.missing().is_empty());
-    succeed(&cluster.collect(&[]));
-    let piped = run("spconvert", &["-", "--to", "text"], &cluster.piped()).stdout;
-    assert_eq!(cluster.mesh(), simplices(&piped));
-    let listed = succeed(&clean(&["--dry-run"]));
-    assert_eq!(listed, succeed(&clean(&[])));
-    // Three files of each node that was made again, of which the root has no residual.
-    assert_eq!(listed.lines().count(), 3 * missing.len() - 1);
-    let kept = cluster.files().iter().filter(|file| files.contains(file)).count();
-    assert_eq!(kept, files.len() - (2 * missing.len() - 1), "no byte of the others is another one");
-    assert!(clean(&[]).stdout.is_empty());
-    succeed(&run("spinfo", &["--audit", &cluster.folder.path("mesh.json")], &[]));
-}
-
-/// Tiles outside of all others, and inside, leave boxes where they are.
-#[test]
-fn plans_grow_and_shrink_without_starting_again() {
-    let mut cluster = Cluster::new(&[]);
-    let mut tiles = cluster.tiles.clone();
-    let position = |i: i32| [i * 7919 % 101 - 700, i * 3571 % 101 + 400, i % 9];
-    let far = LasFile { scale: [0.01; 3], ..LasFile::of(&(0..400).map(position).collect::<Vec<_>>()) };
-    tiles.push(cluster.folder.write("far.las", far.bytes()));
-    succeed(&cluster.run(&cluster.nodes(), &[]));
-    for tiles in [tiles.clone(), tiles[1..].to_vec(), tiles] {
-        cluster.tiles = tiles;
-        cluster.plan();
-        let (missing, all) = (cluster.missing(), cluster.nodes());
-        assert!(missing.len() <= 12 && missing.len() < all.len() / 2, "{missing:?} of {all:?}");
-        succeed(&cluster.run(&missing, &[]));
-        succeed(&cluster.collect(&[]));
-        let piped = run("spconvert", &["-", "--to", "text"], &cluster.piped()).stdout;
-        assert_eq!(cluster.mesh(), simplices(&piped));
-    }
-}
-
-/// A plan moves with its files, and another time does not matter if it knows them by content.
-#[test]
-fn plans_move_with_their_roots() {
-    let folder = Folder::new();
-    let text = cloud(500);
-    let tile = folder.write("here/a.txt", &text);
-    let [here, there, plan, parts, mesh] =
-        ["here", "there", "plan.json", "parts", "mesh.json"].map(|name| folder.path(name));
-    let root = format!("survey={here}");
-    let planned = ["--plan", &plan, "--leaf-points", "100", "--hash", "--root", &root, "-q", &tile];
-    succeed(&run("spfinalize", &planned, &[]));
-    succeed(&run("spnode", &["collect", "-q", &plan, "-d", &parts, "-o", &mesh], &[]));
-    fs::rename(&here, &there).unwrap();
-    folder.write("there/a.txt", &text);
-    let list = ["list", &plan, "-d", &parts, "--missing", "--root"];
-    let missing = |root: &str| run("spnode", &[&list[..], &[root]].concat(), &[]);
-    assert_eq!(missing(&root).status.code(), Some(1));
-    let moved = format!("survey={there}");
-    assert_eq!(succeed(&missing(&moved)), "");
-    assert_eq!(missing("other=/").status.code(), Some(2));
-    folder.write("there/a.txt", text.replacen('1', "2", 1));
-    assert_eq!(missing(&moved).status.code(), Some(2));
-}
-
-#[test]
-fn nodes_are_divided_into_batches() {
-    let cluster = Cluster::new(&[]);
-    let batches = |points: &str, flags: &[&str]| -> Vec<Vec<String>> {
-        let plan = cluster.plan_path();
-        let listed = run("spnode", &[&["list", &plan, "--batch-points", points][..], flags].concat(), &[]);
-        succeed(&listed).lines().map(|line| line.split(' ').map(str::to_string).collect()).collect()
-    };
-    for points in ["0", "700", "100000"] {
-        assert_eq!(batches(points, &[]).concat(), cluster.nodes());
-    }
-    assert_eq!(batches("0", &[]).len(), cluster.nodes().len());
-    assert_eq!(batches("100000", &["--stage", "0"]).len(), 1);
 }

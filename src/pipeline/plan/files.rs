@@ -109,7 +109,7 @@ impl PlannedFile {
 }
 
 /// Length of a file in bytes, and when it was last changed in nanoseconds since 1970.
-fn state_of(path: &Path) -> Result<(u64, i64)> {
+pub(super) fn state_of(path: &Path) -> Result<(u64, i64)> {
     let (file, _) = file_and_layer(path);
     let metadata = fs::metadata(file).map_err(|e| Error::io("reading", e))?;
     if !metadata.is_file() {

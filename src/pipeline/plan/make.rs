@@ -236,7 +236,7 @@ impl<'a> Maker<'a> {
         let finalized = finalized.map_err(|_| Error::new(ErrorKind::Io, "a thread ended unexpectedly"))?;
         let counts = match (finalized, &reduced) {
             // The points ended early for a reason of their own.
-            (Err(error), _) if error.kind() != ErrorKind::ClosedPipe => return Err(error),
+            (Err(error), _) if error.kind() != ErrorKind::ClosedPipe => return Err(with_remedy(error)),
             (Err(error), Ok(_)) => return Err(error),
             (Err(_), Err(_)) => LeafCounts::default(),
             (Ok(counts), _) => counts,
@@ -276,6 +276,12 @@ impl<'a> Maker<'a> {
         }
         Ok(report)
     }
+}
+
+/// Says how to go on without a damaged file of points.
+fn with_remedy(error: Error) -> Error {
+    let remedy = "to go on without this file, add its path to the list of --skip-bad, and plan again";
+    if error.kind() == ErrorKind::Malformed { error.noting(remedy) } else { error }
 }
 
 /// The bounding box in the header of a stream.

@@ -20,6 +20,7 @@ mod names;
 mod node;
 mod planning;
 mod report;
+mod skipping;
 mod states;
 mod tree;
 
@@ -30,4 +31,5 @@ pub use make::{Again, Maker, Work};
 pub use node::{Node, NodeBox, NodeKind};
 pub use planning::{Plan, Planning, plan_of};
 pub use report::{FileCount, FileSize, NodeReport, hash_of_file};
+pub use skipping::SkipList;
 pub use states::{batches, expected, incomplete};

@@ -210,4 +210,30 @@ mod tests {
             }
         }
     }
+
+    /// A file more, near or far, moves no box but those that it reaches into, and that of the root before.
+    #[test]
+    fn boxes_stay_when_files_come_and_go() {
+        for (pitch, dims, are_whole) in [(1000.0, 2, true), (250.5, 2, false), (64.0, 3, true)] {
+            let tile = |file: u32, column: i32, row: i32| {
+                let min = [f64::from(column) * pitch, f64::from(row) * pitch, 3.0];
+                let max = [min[0] + pitch - 1.0, min[1] + pitch - 1.0, 40.0];
+                Share { file, points: 100, bounds: Bounds { min, max } }
+            };
+            let shares: Vec<Share> =
+                (0..70).map(|i| tile(i, (i % 10) as i32 - 4, (i / 10) as i32 - 3)).collect();
+            let regions = |shares: &[Share]| -> Vec<NodeBox> {
+                let nodes = Division { dims, leaf_points: 150, are_whole }.nodes(shares).unwrap();
+                nodes.into_iter().map(|node| node.region).collect()
+            };
+            let before = regions(&shares);
+            for (column, row) in [(6, 0), (-5, -4), (0, 9), (300, -80), (-9, 4000), (3, 3)] {
+                let after = regions(&[&shares[..], &[tile(70, column, row)]].concat());
+                let moved = before.iter().filter(|region| !after.contains(region)).count();
+                assert!(moved <= 1, "{column}, {row}: {moved} of {}", before.len());
+                let new = after.iter().filter(|region| !before.contains(region)).count();
+                assert!(new <= 5, "{column}, {row}: {new} new ones");
+            }
+        }
+    }
 }

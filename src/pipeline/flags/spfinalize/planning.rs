@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::super::roots::RootFlags;
 use super::{Flags, TOOL, flags_of};
-use crate::plan::{Naming, NodeKind, Plan, Planning, plan_of};
+use crate::plan::{Naming, NodeKind, Plan, Planning, SkipList, plan_of};
 use crate::reduce::Duplicates;
 use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
@@ -23,11 +23,12 @@ const LEAF_POINTS: u64 = 50_000_000;
 
 /// Flags of this run alone, which are not part of the plan: so equal plans have equal names.
 const ALONE: [&str; 4] = ["-q", "--quiet", "--stats", "--hash"];
-const WITH_VALUE: [&str; 10] = [
+const WITH_VALUE: [&str; 11] = [
     "--plan",
     "--leaf-points",
     "--duplicates",
     "--root",
+    "--skip-bad",
     "--lof",
     "--memory",
     "--threads",
@@ -58,6 +59,11 @@ pub(super) struct PlanFlags {
     #[arg(long, requires = "plan")]
     hash: bool,
 
+    /// With --plan: leave out files that cannot be read, and list them in FILE, one in each line. Files that it lists
+    /// already are left out, too, until they change; a job that finds a damaged file says its name for it
+    #[arg(long, value_name = "FILE", requires = "plan")]
+    skip_bad: Option<PathBuf>,
+
     #[command(flatten)]
     roots: RootFlags,
 }
@@ -72,14 +78,19 @@ impl PlanFlags {
 pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     endings::check(path, &[endings::JSON])?;
     check_flags(flags)?;
-    let paths = flags.paths()?;
+    let mut paths = flags.paths()?;
     if let Some(stdin) = paths.iter().find(|path| path.as_os_str() == "-") {
         let message = "plans need files, which jobs read later: give their names";
         return Err(Error::usage(message).of_input(stdin.display().to_string()).into());
     }
+    let mut bad = flags.plan.skip_bad.as_deref().map(SkipList::read).transpose()?;
+    let given = paths.clone();
+    if let Some(bad) = &bad {
+        paths.retain(|path| !bad.has(path));
+    }
     let mut output = Output::create(path, false)?;
     let mut progress = Progress::counting("files", &flags.common, "headers", Some(paths.len() as u64));
-    let survey = Survey::of(&paths, &flags.source_options()?, false, |done| progress.set(done))?;
+    let survey = Survey::of(&paths, &flags.source_options()?, bad.is_some(), |done| progress.set(done))?;
     drop(progress);
     for message in survey.notices.iter().take(NOTICES_MAX) {
         notice(TOOL, &flags.common, message);
@@ -92,6 +103,7 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
             &format!("{} like these", counted(more as u64, "more notice", "more notices")),
         );
     }
+    let skipped = leave_out(&mut paths, &survey, bad.as_mut())?.map_or(Vec::new(), |bad| bad.skipped(&given));
     let leaf_points = flags.plan.leaf_points.unwrap_or(LEAF_POINTS);
     let arguments = arguments_beside(&flags.inputs)?;
     check_arguments(flags, &arguments)?;
@@ -102,15 +114,39 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
         beside: &beside,
         duplicates: flags.plan.duplicates,
         naming: &flags.plan.naming(),
-        skipped: &[],
+        skipped: &skipped,
     };
     let plan = plan_of(&survey, &paths, planning)?;
     output.write_all(plan.to_json()?.as_bytes()).map_err(|e| Error::io("writing the plan", e))?;
     output.commit()?;
+    if let (Some(bad), Some(list)) = (&bad, &flags.plan.skip_bad) {
+        bad.write(list)?;
+        if !skipped.is_empty() {
+            let files = counted(skipped.len() as u64, "bad file is", "bad files are");
+            notice(TOOL, &flags.common, &format!("{files} left out: see {}", list.display()));
+        }
+    }
     if !flags.common.quiet {
         say(&summary(&plan));
     }
     Ok(())
+}
+
+/// Takes bad files out of `paths`, and lists them.
+fn leave_out<'a>(
+    paths: &mut Vec<PathBuf>,
+    survey: &Survey,
+    list: Option<&'a mut SkipList>,
+) -> Result<Option<&'a SkipList>> {
+    let Some(list) = list else { return Ok(None) };
+    for (number, error) in &survey.bad {
+        list.add(&paths[*number], error)?;
+    }
+    let bad: HashSet<usize> = survey.bad.iter().map(|(number, _)| *number).collect();
+    let mut number = 0..;
+    paths.retain(|_| !number.next().is_some_and(|number| bad.contains(&number)));
+    list.settle(paths);
+    Ok(Some(list))
 }
 
 /// Refuses what takes more than the points of one leaf.
