@@ -4,6 +4,12 @@
 /// Tiles on one axis make a grid only if there are at least this many columns.
 const COLUMNS_MIN: usize = 3;
 
+/// Most significant digits of a pitch.
+const DIGITS_MAX: i32 = 15;
+
+/// Most decimals of a border.
+const DECIMALS_MAX: i32 = 12;
+
 /// Most columns whose gaps are compared with each other.
 const COMPARED_MAX: usize = 500;
 
@@ -51,7 +57,10 @@ pub(super) fn borders_between(tiles: &[(f64, f64)]) -> Option<Borders> {
     let low = slopes.clone().map(|(a, b)| (b.after - a.before) / (b.column - a.column));
     let high = slopes.map(|(a, b)| (b.before - a.after) / (b.column - a.column));
     let (low, high) = (low.fold(0.0, f64::max), high.fold(f64::INFINITY, f64::min));
-    let exact = (low < high).then(|| if high.is_finite() { roundest_in(low, high) } else { mean });
+    // That near the mean with the fewest digits: it stays the same when columns come and go.
+    let near_mean = (1..=DIGITS_MAX).map(|digits| rounded(mean, digits));
+    let exact = (low < high)
+        .then(|| near_mean.into_iter().find(|&pitch| low < pitch && pitch <= high).unwrap_or(mean));
     // Otherwise some tile is none of the grid. Tiles have round widths, which their points do not quite fill.
     let candidates = exact.into_iter().chain((1..=6).map(|digits| rounded(mean, digits))).chain([mean]);
     let mut best: Option<(usize, f64, f64)> = None;
@@ -126,15 +135,18 @@ fn origin_of(gaps: &[Gap], pitch: f64) -> (usize, f64) {
     };
     let holding = moved.iter().filter(|&&(after, before)| after < top && top <= before);
     let bottom = holding.map(|&(after, _)| after).fold(f64::NEG_INFINITY, f64::max);
-    (count, roundest_in(bottom.max(top - pitch), top))
+    // Counted from the multiple of the pitch before it, so that the first column does not matter.
+    let base = (top / pitch).floor() * pitch;
+    (count, base + roundest_in(bottom.max(top - pitch) - base, top - base))
 }
 
 /// The number with the fewest digits that is above `low` and at most `high`.
 pub(super) fn roundest_in(low: f64, high: f64) -> f64 {
     let start = high.abs().max((high - low).abs()).max(1.0).log10().ceil() as i32;
-    let candidates = (0..=start).rev().map(|power| {
-        let unit = 10f64.powi(power);
-        (high / unit).floor() * unit
+    // Powers of ten below one are divided by, as they are no binary numbers.
+    let candidates = (-DECIMALS_MAX..=start).rev().map(|power| match power {
+        0.. => (high / 10f64.powi(power)).floor() * 10f64.powi(power),
+        _ => (high * 10f64.powi(-power)).floor() / 10f64.powi(-power),
     });
     candidates.into_iter().find(|&candidate| low < candidate && candidate <= high).unwrap_or(high)
 }

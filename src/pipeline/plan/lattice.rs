@@ -58,8 +58,7 @@ impl Lattice {
                 None if shared.is_some() => border_of(&along(axis), pitch),
                 None => 0.0,
             };
-            // The first tile must not matter.
-            lattice.origin[axis] = place - (place / lattice.pitch[axis]).floor() * lattice.pitch[axis];
+            lattice.origin[axis] = reduced(place, lattice.pitch[axis]);
         }
         lattice
     }
@@ -125,6 +124,13 @@ impl Lattice {
         };
         (0..1 << cut.len()).map(child).collect()
     }
+}
+
+/// The first border that is not negative: which tile is the first must not matter, nor how its place is rounded.
+fn reduced(place: f64, pitch: f64) -> f64 {
+    let rest = place - (place / pitch).floor() * pitch;
+    let is_multiple = rest.min(pitch - rest) <= 1e-9 * pitch;
+    if is_multiple { 0.0 } else { rest }
 }
 
 /// A border of files along an axis on which they make no grid.

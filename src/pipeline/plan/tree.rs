@@ -232,7 +232,7 @@ mod tests {
                 let moved = before.iter().filter(|region| !after.contains(region)).count();
                 assert!(moved <= 1, "{column}, {row}: {moved} of {}", before.len());
                 let new = after.iter().filter(|region| !before.contains(region)).count();
-                assert!(new <= 5, "{column}, {row}: {new} new ones");
+                assert!(new <= 1 + (1 << dims), "{column}, {row}: {new} new ones");
             }
         }
     }
