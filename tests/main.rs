@@ -7,6 +7,7 @@ mod bench;
 mod canopy;
 mod cli;
 mod cluster;
+mod cluster_windows;
 mod contours;
 mod convert;
 mod dem;

@@ -6,6 +6,7 @@ pub mod compression;
 pub mod crs;
 pub mod endings;
 mod files;
+mod meshes;
 pub mod messages;
 mod named;
 pub mod outline;
@@ -23,6 +24,8 @@ use std::process::ExitCode;
 use clap::builder::TypedValueParser;
 use clap::{Args, Parser};
 
+use meshes::Source;
+pub use meshes::{Mesh, MeshReader, Needs, open_within};
 pub use messages::{notice, say};
 pub use named::{Names, named, of_ending, value_name};
 pub use spmesh_base::allocator::Allocator;
@@ -35,7 +38,7 @@ use spmesh_base::system;
 pub use spmesh_base::system::peak_memory;
 use spmesh_base::temporary::remove_names_at_signals;
 use spmesh_formats::detect::BYTE_ORDER_MARK;
-use spmesh_formats::source::{Plain, is_manifest, name_of, open_manifest, open_stdin};
+use spmesh_formats::source::Plain;
 use spmesh_stream::StreamReader;
 use spmesh_stream::model::bounds::Bounds;
 pub use stats::{Report, StatsFlag};
@@ -140,7 +143,7 @@ pub fn parse_box(text: &str) -> Result<Bounds, String> {
     }
     let [x, y, max_x, max_y] =
         parse_numbers(text).map_err(|message| format!("{message}, or 6 with those of z"))?;
-    Ok(Bounds { min: [x, y, f64::NEG_INFINITY], max: [max_x, max_y, f64::INFINITY] })
+    Ok(Bounds::over([x, y], [max_x, max_y]))
 }
 
 /// Parses a number of threads.
@@ -162,7 +165,8 @@ pub fn threads(asked: Option<NonZeroUsize>) -> NonZeroUsize {
 /// # Errors
 /// If the file cannot be opened, or stdin is a terminal.
 pub fn open_input(path: &Path) -> spmesh_base::error::Result<(Box<dyn Read + Send>, String)> {
-    open_as(path, Plain::new)
+    let (source, name) = Source::open(path, Plain::new)?;
+    Ok((source.read()?, name))
 }
 
 /// Opens a stream, `-` for stdin.
@@ -179,26 +183,8 @@ pub fn open_stream(path: &Path) -> spmesh_base::error::Result<StreamReader<Box<d
 /// # Errors
 /// As [`open_input`].
 pub fn open_held(path: &Path) -> spmesh_base::error::Result<(Box<dyn Read + Send>, String)> {
-    open_as(path, Plain::held)
-}
-
-/// Opens an input, and decompresses it by `plain`.
-fn open_as(
-    path: &Path,
-    plain: impl Fn(Box<dyn Read + Send>) -> std::io::Result<Plain<Box<dyn Read + Send>>>,
-) -> spmesh_base::error::Result<(Box<dyn Read + Send>, String)> {
-    let name = name_of(path);
-    let reading = |e| Error::io("reading", e).of_input(&name);
-    if path.as_os_str() == "-" {
-        refuse_terminal()?;
-        let input = plain(Box::new(open_stdin()?)).map_err(reading)?;
-        return Ok((Box::new(input), name));
-    }
-    let file = inputs::open(path).map_err(|e| e.of_input(&name))?;
-    if is_manifest(&file) {
-        return Ok((Box::new(open_manifest(path, None)?), name));
-    }
-    Ok((Box::new(plain(Box::new(file)).map_err(reading)?), name))
+    let (source, name) = Source::open(path, Plain::held)?;
+    Ok((source.read()?, name))
 }
 
 /// The files that `--lof` lists, one per line; empty lines and lines that start with `#` do not

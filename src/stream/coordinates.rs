@@ -1,7 +1,11 @@
 //! How stored coordinates are encoded, and how they map to the world.
 
 use super::decimals::Axis;
-use crate::model::bounds::Point;
+use crate::model::bounds::{Bounds, Point};
+
+/// The most that sixteen roundings change a sum by, as a part of its terms. A conversion to the world and
+/// back has fewer.
+const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
 /// How stored coordinates are encoded, and how they map to the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +30,20 @@ impl Coordinates {
             Coordinates::I32 { scale, offset } => std::array::from_fn(|axis| {
                 Axis { scale: scale[axis], offset: offset[axis] }.world(stored[axis])
             }),
+        }
+    }
+
+    /// A box of the world, and what roundings may make of places in it on the way to stored coordinates and
+    /// back.
+    pub fn widened(&self, world: &Bounds) -> Bounds {
+        let offset = match self {
+            Coordinates::F64 => [0.0; 3],
+            Coordinates::I32 { offset, .. } => *offset,
+        };
+        let slack = |axis: usize, side: f64| ROUNDINGS * (side.abs() + offset[axis].abs());
+        Bounds {
+            min: std::array::from_fn(|axis| world.min[axis] - slack(axis, world.min[axis])),
+            max: std::array::from_fn(|axis| world.max[axis] + slack(axis, world.max[axis])),
         }
     }
 

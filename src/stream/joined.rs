@@ -134,6 +134,14 @@ impl JoinedMesh {
         })
     }
 
+    /// Counts of the mesh of all parts, if some of them are left out.
+    pub fn whole(&self) -> Option<Totals> {
+        let simplices = self.parts.iter().fold(0, |sum: u64, part| sum.saturating_add(part.simplices));
+        // The constructor has checked this sum.
+        let vertices = self.parts.iter().map(|part| part.vertices).sum();
+        (!self.shared.is_whole).then_some(Totals { vertices, simplices, ..self.stated })
+    }
+
     /// Writes the next block, or END.
     fn advance(&mut self) -> Result<()> {
         let Some(writer) = &mut self.writer else { return Ok(()) };

@@ -126,7 +126,7 @@ pub use points4::check_value;
 pub use reader::StreamReader;
 pub use regions::PointRegion;
 pub use rules4::{check_neighbour_count, check_vertex_count};
-pub use surface::check_surface;
+pub use surface::{check_part, check_surface};
 pub use tail::ends_with_end;
 pub use tally::Tally;
 pub use triangles::write_triangles;

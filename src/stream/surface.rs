@@ -22,3 +22,18 @@ pub fn check_surface(header: &Header, needs_elevation: bool) -> Result<()> {
     };
     Err(Error::usage(what))
 }
+
+/// Refuses a part of a mesh alone where a program looks at more than one triangle at a time: what lies beyond
+/// the border of the part would count as outside of the mesh. `beyond` is what looks there, such as a flag;
+/// nothing does if it is `None`.
+///
+/// # Errors
+/// Usage, if the stream is a part.
+pub fn check_part(header: &Header, beyond: Option<&str>) -> Result<()> {
+    let Some(what) = beyond.filter(|_| header.part.is_some()) else { return Ok(()) };
+    Err(Error::usage(format!(
+        "this is a part of a mesh, and {what} needs the triangles around it: give the manifest that spnode \
+         collect writes, of which only the parts in a window are read (--bounds, --mask, or the box of the \
+         points)"
+    )))
+}

@@ -340,13 +340,19 @@ impl<'a> Drawing<'a> {
         Scene::oblique_of(&bounds.unwrap_or(Bounds::of_point([0.0; 3])), corners(), self.options.width)
     }
 
+    /// Triangles and vertices so far, or those of the whole mesh.
+    fn counts(&self) -> [u64; 2] {
+        let whole = self.options.whole.map(|totals| [totals.simplices, totals.vertices]);
+        whole.unwrap_or([self.done, self.front.count()])
+    }
+
     /// The counts in the title.
     fn what(&self) -> String {
-        let done = self.done;
         if self.kind == Kind::Points {
-            return ticks::counted(done, "point", "points");
+            return ticks::counted(self.done, "point", "points");
         }
-        let vertices = ticks::counted(self.front.count(), "vertex", "vertices");
+        let [done, vertices] = self.counts();
+        let vertices = ticks::counted(vertices, "vertex", "vertices");
         // A hillshade has no legend to name it.
         let shade = if self.options.fill == Some(Fill::Hillshade) { ", hillshade" } else { "" };
         format!("{}, {vertices}{shade}", ticks::counted(done, "triangle", "triangles"))
@@ -369,7 +375,7 @@ impl<'a> Drawing<'a> {
             }
             None => triangles::vectors(&layer.kept, scene, &self.style, &colours),
         };
-        Ok((map, colours.legend().filter(|_| self.done > 0)))
+        Ok((map, colours.legend().filter(|_| self.counts()[0] > 0)))
     }
 
     fn map_of_points(&self, scene: &Scene) -> Result<(String, Option<Legend>)> {

@@ -6,7 +6,7 @@ use spmesh_base::error::{Error, Result};
 use spmesh_formats::raster::{Light, Window};
 use spmesh_formats::source::Mask;
 use spmesh_stream::model::bounds::Bounds;
-use spmesh_stream::{Crs, Header, Kind};
+use spmesh_stream::{Crs, Header, Kind, Totals};
 
 /// What triangles and points show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,6 +72,8 @@ pub struct Options {
     /// The box of the stream in the world, if its header does not state it and
     /// [`Extent::read`](crate::Extent::read) found it.
     pub extent: Option<Bounds>,
+    /// The counts in the title, if the stream is a window of a mesh.
+    pub whole: Option<Totals>,
     /// Seen obliquely, with elevations, rather than from above.
     pub oblique: bool,
     /// Whether the view is oblique, with elevations, rather than from above.
@@ -114,6 +116,7 @@ impl Options {
             width: 1_000,
             bounds: None,
             extent: None,
+            whole: None,
             oblique: false,
             light: Light::from(315.0, 45.0),
             kill: None,

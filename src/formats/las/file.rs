@@ -12,6 +12,7 @@ use crate::source::origin::{Admitted, FileView, Origin};
 use crate::source::record_reader::RecordReader;
 use crate::source::records::PlainRecords;
 use spmesh_base::error::{Error, Result};
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Crs};
 
 /// A LAS, LAZ or COPC file.
@@ -66,6 +67,13 @@ impl LasFile {
     /// The coordinate reference system that it states.
     pub fn crs(&self) -> &Crs {
         &self.header.crs
+    }
+
+    /// The box of its points that it states, in world coordinates; `None` if it makes no sense. It is not
+    /// verified.
+    pub fn stated_bounds(&self) -> Option<Bounds> {
+        let Bounds { min, max } = self.header.bounds?;
+        Some(Bounds { min: self.coordinates().to_world(min), max: self.coordinates().to_world(max) })
     }
 
     /// Number of its points.

@@ -1,6 +1,7 @@
 //! Masks: the union of polygons.
 
 use crate::lines::rings::Polygon;
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::model::points::Point2;
 
 /// An area of the plane: everything inside or on the border of one of its polygons, in world coordinates.
@@ -20,6 +21,14 @@ impl Mask {
             };
             polygon.iter().flat_map(ends)
         })
+    }
+
+    /// The box around all polygons, and `margin` beyond, infinitely high; none for polygons without corners.
+    pub fn window(&self, margin: f64) -> Option<Bounds> {
+        let corners = self.polygons.iter().flatten().flatten().map(|&[x, y]| Bounds::of_point([x, y, 0.0]));
+        let Bounds { min, max } = corners.reduce(Bounds::union)?;
+        let [x, y] = [0, 1].map(|axis| [min[axis] - margin, max[axis] + margin]);
+        Some(Bounds::over([x[0], y[0]], [x[1], y[1]]))
     }
 }
 

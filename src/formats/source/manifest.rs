@@ -118,46 +118,80 @@ pub fn is_manifest(file: &File) -> bool {
     found.take(start.len()).eq(start.as_bytes())
 }
 
-/// Opens a mesh in parts as one stream. With a `window`, a closed box of the world, parts that have no vertex there, and
-/// no simplex that reaches in, may be left out.
-///
-/// Memory: the manifest, and that of [`JoinedMesh`].
-///
-/// # Errors
-/// If the manifest or the first part cannot be read.
-pub fn open_manifest(path: &Path, window: Option<&Bounds>) -> Result<JoinedMesh> {
-    joined(path, window).map_err(|e| e.of_input(path.display().to_string()))
+/// A mesh in parts of which nothing but a header was read.
+#[derive(Debug)]
+pub struct MeshInParts {
+    manifest: Manifest,
+    path: PathBuf,
+    /// That of the joined mesh.
+    header: Header,
 }
 
-fn joined(path: &Path, window: Option<&Bounds>) -> Result<JoinedMesh> {
-    let manifest = Manifest::parse(&inputs::read(path, "a manifest of", MANIFEST_LEN_MAX)?)?;
-    let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-    let files: Vec<PathBuf> = manifest.parts.iter().map(|part| folder.join(&part.file)).collect();
-    let Some(first) = files.first() else { return Err(Error::malformed("a mesh without parts")) };
-    let (input, name) = open_part(first)?;
+impl MeshInParts {
+    /// Opens the mesh of the manifest at `path`.
+    ///
+    /// Memory: the manifest.
+    ///
+    /// # Errors
+    /// If the manifest or the header of a part cannot be read.
+    pub fn open(path: &Path) -> Result<MeshInParts> {
+        let read = || -> Result<MeshInParts> {
+            let manifest = Manifest::parse(&inputs::read(path, "a manifest of", MANIFEST_LEN_MAX)?)?;
+            let header = header_of(&manifest, path)?;
+            Ok(MeshInParts { manifest, path: path.to_path_buf(), header })
+        };
+        read().map_err(|e| e.of_input(path.display().to_string()))
+    }
+
+    /// The header of the whole mesh.
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// The mesh as one stream. Of a `window`, a closed box of the world, parts are left out that have no
+    /// vertex there, and no simplex that reaches in.
+    ///
+    /// Memory: that of [`JoinedMesh`].
+    ///
+    /// # Errors
+    /// Malformed, if the parts of the manifest cannot be those of a mesh.
+    pub fn join(self, window: Option<&Bounds>) -> Result<JoinedMesh> {
+        let MeshInParts { manifest, path, header } = self;
+        let files: Vec<PathBuf> = manifest.parts.iter().map(|part| file_of(part, &path)).collect();
+        let is_wanted =
+            |part: &ManifestPart| window.is_none_or(|window| reaches(part, window, &header.coordinates));
+        let stated = Totals { points: manifest.points, merged: manifest.merged, ..Totals::default() };
+        let joined = || -> Result<JoinedMesh> {
+            let sizes = manifest.parts.iter().map(|part| size_of(part, is_wanted(part)));
+            let sizes = sizes.collect::<Result<Vec<PartSize>>>()?;
+            JoinedMesh::new(header.clone(), sizes, stated, Box::new(move |place| open_part(&files[place])))
+        };
+        joined().map_err(|e| e.of_input(path.display().to_string()))
+    }
+}
+
+/// The header of the joined mesh.
+fn header_of(manifest: &Manifest, path: &Path) -> Result<Header> {
+    // All parts have the same grid. The last one joins all others, so nearly every window needs it.
+    let Some(last) = manifest.parts.last() else { return Err(Error::malformed("a mesh without parts")) };
+    let (input, name) = open_part(&file_of(last, path))?;
     let header = StreamReader::new(input, name)?.header().clone();
     let bounds = manifest.bounds.map(|[min, max]| Bounds { min, max });
     let header = Header { bounds, tree: None, part: None, points: None, ..header };
     header.check().map_err(Error::malformed)?;
-    let is_wanted =
-        |part: &ManifestPart| window.is_none_or(|window| reaches(part, window, &header.coordinates));
-    let sizes = manifest.parts.iter().map(|part| size_of(part, is_wanted(part)));
-    let sizes = sizes.collect::<Result<Vec<PartSize>>>()?;
-    let stated = Totals { points: manifest.points, merged: manifest.merged, ..Totals::default() };
-    JoinedMesh::new(header, sizes, stated, Box::new(move |place| open_part(&files[place])))
+    Ok(header)
+}
+
+/// The file of a part of the manifest at `path`.
+fn file_of(part: &ManifestPart, path: &Path) -> PathBuf {
+    path.parent().map_or_else(|| PathBuf::from(&part.file), |folder| folder.join(&part.file))
 }
 
 /// Whether a part may have simplices in a window.
 fn reaches(part: &ManifestPart, window: &Bounds, coordinates: &Coordinates) -> bool {
     let Some([min, max]) = part.bounds.filter(|_| part.simplices > 0) else { return false };
-    // A step more, as coordinates of the world are rounded.
-    let step = match coordinates {
-        Coordinates::I32 { scale, .. } => *scale,
-        Coordinates::F64 => [0.0; 3],
-    };
-    let (min, max) = (coordinates.to_world(min), coordinates.to_world(max));
-    (0..3)
-        .all(|axis| min[axis] - step[axis] <= window.max[axis] && window.min[axis] <= max[axis] + step[axis])
+    let world = Bounds { min: coordinates.to_world(min), max: coordinates.to_world(max) };
+    coordinates.widened(&world).meets(window)
 }
 
 fn size_of(part: &ManifestPart, is_wanted: bool) -> Result<PartSize> {

@@ -57,7 +57,7 @@ pub use fill_values::FillValues;
 pub use filters::{DropReason, Dropped, Filters, Interval};
 pub use gzip::Plain;
 pub use input::Input;
-pub use manifest::{Manifest, ManifestPart, SkippedFile, is_manifest, open_manifest};
+pub use manifest::{Manifest, ManifestPart, MeshInParts, SkippedFile, is_manifest};
 pub use opened::{Opened, open_knots, open_planar};
 pub use options::{InvalidAdvice, SourceOptions};
 pub use origin::{name_of, open_stdin};

@@ -22,7 +22,7 @@ use spmesh_formats::source::{Input, SourceOptions};
 use spmesh_shell::messages::escaped_json;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::{Common, Names, advise_on_memory, named, notice, open_input};
-use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader};
+use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader, check_part};
 
 const INPUT_BUFFER_LEN: usize = 1 << 18;
 
@@ -171,6 +171,7 @@ impl Proof {
             let audit = Audit::new(header, standard, given_points(flags, header)?)?;
             return Ok(Proof::Audit(Box::new(audit)));
         }
+        check_part(header, Some("a count of violations"))?;
         if header.kind != Kind::TetrahedralMesh {
             let message =
                 format!("--count-violations goes with a tetrahedral mesh, not with {}", header.kind.name());

@@ -1,5 +1,7 @@
 //! Axis-parallel boxes: the closed bounding box of points, and the half-open region of a tile.
 
+use super::points::Point2;
+
 /// A point in stored coordinates: x, y and z. Two-dimensional points without an elevation have z = 0.
 ///
 /// Streams of integer coordinates carry integer values; [`crate::Coordinates`] tells how
@@ -60,6 +62,17 @@ impl Bounds {
             bounds.max[axis] = bounds.max[axis].min(max);
         }
         (0..D).all(|axis| bounds.min[axis] <= bounds.max[axis]).then_some(bounds)
+    }
+
+    /// The box over a rectangle of the plane: infinitely high, and infinitely deep.
+    pub fn over(min: Point2, max: Point2) -> Self {
+        let ([x, y], [max_x, max_y]) = (min, max);
+        Bounds { min: [x, y, f64::NEG_INFINITY], max: [max_x, max_y, f64::INFINITY] }
+    }
+
+    /// Whether two closed boxes have a point in common.
+    pub fn meets(&self, other: &Bounds) -> bool {
+        (0..3).all(|axis| self.min[axis] <= other.max[axis] && other.min[axis] <= self.max[axis])
     }
 
     /// Whether `point` lies in the closed box.

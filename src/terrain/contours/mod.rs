@@ -35,6 +35,7 @@ use spmesh_base::limits::{CONTOURS_PER_TRIANGLE_MAX, CONTOURS_PER_TRIANGLE_MEAN_
 use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2};
 use spmesh_formats::outline::{ConcaveOutline, EdgeLimit, Waiting};
 use spmesh_formats::source::Mask;
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Crs, Event, Header, LiveVertices, Patch, StreamReader};
 
 /// The lines to make.
@@ -81,6 +82,17 @@ impl Options {
             is_smooth: false,
             crs: None,
         }
+    }
+
+    /// The closed box of the world whose triangles decide the lines, in a mesh of which only these may be
+    /// read; `None` if all triangles do.
+    ///
+    /// A line follows triangle by triangle, and is cut at the mask. What a smoothed line is like depends on
+    /// all of its points, where it is cut on the order of all triangles, and a concave outline on the border
+    /// of the mesh.
+    pub fn window(&self) -> Option<Bounds> {
+        let needs_all = self.is_smooth || self.points.is_some() || self.concave.is_some();
+        self.mask.as_ref().filter(|_| !needs_all).and_then(|mask| mask.window(0.0))
     }
 }
 

@@ -11,6 +11,7 @@ use spmesh_formats::raster::{
 };
 use spmesh_formats::source::Mask;
 use spmesh_stream::Crs;
+use spmesh_stream::model::bounds::Bounds;
 
 /// How values between vertices follow from those of the vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,6 +114,44 @@ impl Options {
             );
         }
         reference
+    }
+
+    /// The closed box of the world whose triangles decide the raster, in a mesh of which only these may be
+    /// read; `None` if all triangles do.
+    ///
+    /// A cell follows from the triangle at its centre, or from those over all of it. Slopes and holes that
+    /// are filled follow from other cells of the raster, which has none beyond its border, so they need
+    /// nothing more.
+    pub fn window(&self, grid: &Grid) -> Option<Bounds> {
+        // The way of a concave outline begins at the border of the mesh, however far away that is.
+        if self.concave.is_some() {
+            return None;
+        }
+        let reach = if self.sample.is_whole() { 0.5 * grid.step } else { 0.0 };
+        let [left, bottom] = grid.center(0, grid.rows - 1).map(|centre| centre - reach);
+        let [right, top] = grid.center(grid.columns - 1, 0).map(|centre| centre + reach);
+        let cells = Bounds::over([left, bottom], [right, top]);
+        // Elevations outside of the mask are taken away before slopes are found, and before holes are filled.
+        let Some(mask) = self.mask.as_ref().and_then(|mask| mask.window(reach)) else { return Some(cells) };
+        Some(Bounds {
+            min: [0, 1, 2].map(|axis| cells.min[axis].max(mask.min[axis])),
+            max: [0, 1, 2].map(|axis| cells.max[axis].min(mask.max[axis])),
+        })
+    }
+
+    /// What of the raster needs the triangles around a triangle, so that it is wrong at the border of a part
+    /// of a mesh; `None` if rasters of parts are parts of one raster.
+    pub fn beyond(&self) -> Option<&'static str> {
+        if self.differences().is_some() {
+            return Some("a value that follows from neighbouring cells");
+        }
+        if self.fill.is_some() {
+            return Some("a hole that is filled");
+        }
+        if self.concave.is_some() {
+            return Some("a concave outline");
+        }
+        self.sample.is_whole().then_some("the surface over a whole cell")
     }
 
     /// The raster file.

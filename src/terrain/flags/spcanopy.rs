@@ -17,15 +17,15 @@ use spmesh_formats::source::{Filters, Input, SourceOptions};
 use spmesh_pipeline::finalize::Budget;
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
 use spmesh_shell::endings;
-use spmesh_shell::open_stream;
 use spmesh_shell::outline::{OutlineFlags, length};
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
 use spmesh_shell::{
-    Common, Report, StatsFlag, advise_on_memory, notice, of_ending, parse_size, parse_threads, peak_memory,
-    read_list, threads,
+    Common, Mesh, MeshReader, Needs, Report, StatsFlag, advise_on_memory, notice, of_ending, parse_size,
+    parse_threads, peak_memory, read_list, threads,
 };
 use spmesh_stream::Crs;
+use spmesh_stream::model::bounds::Bounds;
 
 const TOOL: &str = "spcanopy";
 
@@ -74,7 +74,8 @@ pub struct Flags {
     #[arg(long, value_name = "LIST", conflicts_with = "inputs")]
     lof: Option<PathBuf>,
 
-    /// Stream of the triangle mesh of the ground; - is stdin
+    /// Stream of the triangle mesh of the ground; - is stdin. Of a mesh in parts, only those below the points
+    /// are read
     #[arg(long, value_name = "STREAM")]
     ground: PathBuf,
 
@@ -153,10 +154,13 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut bottom = flags.surface_options(format)?;
     let settings = flags.settings(&grid)?;
 
-    let mut reader = open_stream(&flags.ground)?;
+    let stated = window(&input).ok().map(|Window { min, max }| Bounds::over(min, max));
+    let needs = Needs { window: stated, beyond: Some("a height above the ground") };
+    let MeshReader { mut reader, window } = Mesh::open(&flags.ground)?.read(&needs)?;
     let mut progress = Progress::new(&flags.common, "reading the ground", reader.header().points);
     let temp_dir = flags.raster.temp_dir();
     let ground = Ground::read(&mut reader, temp_dir, flags.memory, |vertices| progress.set(vertices))?;
+    let ground = ground.within(window);
     flags.check_systems(&ground, &input)?;
     // The system of the ground stands in where points state none.
     let crs = &input.description().crs;

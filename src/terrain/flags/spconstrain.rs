@@ -13,11 +13,12 @@ use spmesh_pipeline::flags::lines::{LineFlags, summary};
 use spmesh_pipeline::lines::{self, ABOUT_FAR, Lines, Sources, Target, write_report};
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
-use spmesh_shell::open_stream;
 use spmesh_shell::outline::length;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
-use spmesh_shell::{Common, Report, StatsFlag, advise_on_memory, notice, parse_size, peak_memory};
+use spmesh_shell::{
+    Common, Mesh, Needs, Report, StatsFlag, advise_on_memory, notice, parse_size, peak_memory,
+};
 
 const TOOL: &str = "spconstrain";
 
@@ -118,7 +119,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     flags.check()?;
     let report = flags.lines.create_report()?;
     let output = Output::create(&flags.output, true)?;
-    let mut reader = open_stream(&flags.input)?;
+    let needs = Needs { window: None, beyond: Some("a mesh with lines") };
+    let mut reader = Mesh::open(&flags.input)?.read(&needs)?.reader;
     let target = Target::of(reader.header());
     let sources = Sources { lines: &flags.lines.files, hull: &flags.hull, holes: &flags.holes, water: &[] };
     system::give_back_large_blocks();

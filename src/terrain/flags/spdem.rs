@@ -20,12 +20,12 @@ use spmesh_formats::raster::RasterFormat;
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
-use spmesh_shell::open_stream;
 use spmesh_shell::outline::OutlineFlags;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
 use spmesh_shell::{
-    Common, Names, Report, StatsFlag, advise_on_memory, named, notice, of_ending, parse_size, peak_memory,
+    Common, Mesh, Names, Needs, Report, StatsFlag, advise_on_memory, named, notice, of_ending, parse_size,
+    peak_memory,
 };
 
 const TOOL: &str = "spdem";
@@ -76,7 +76,8 @@ const NOTES: &str = "
 A cell has the value of the mesh at its centre; outside the mesh there is no data (-9999). Triangles are \
 drawn as they arrive. A tile of 256 by 256 cells is written as soon as it is full, so only incomplete tiles \
 take memory. Tiles beyond --memory wait in a temporary file. ESRI grids are written after the last triangle, \
-from the top, with 256 rows in memory.
+from the top, with 256 rows in memory. Of a mesh in parts, only the parts in the window of --bounds, --like \
+or --mask are read, but all with --concave.
 
 The outline is the convex hull. With --concave L, triangles are outside if a chain of triangles leads to them \
 from the hull in which every crossed edge, first one of the hull, is longer than L; all others stay, also with \
@@ -228,12 +229,14 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "take larger cells, or less --memory");
     let mut options = flags.options()?;
     let mut output = flags.sheets.create(&flags.output, options.raster.format, &flags.cells)?;
-    let mut reader = open_stream(&flags.input)?;
-    dem::check(reader.header(), &options.quantity).map_err(|e| e.of_input(reader.name()))?;
-    let window = || dem::window(reader.header()).map_err(|e| e.of_input(reader.name()));
-    let crs = options.crs.as_ref().unwrap_or(&reader.header().crs);
+    let mesh = Mesh::open(&flags.input)?;
+    dem::check(mesh.header(), &options.quantity).map_err(|e| e.of_input(mesh.name()))?;
+    let window = || dem::window(mesh.header()).map_err(|e| e.of_input(mesh.name()));
+    let crs = options.crs.as_ref().unwrap_or(&mesh.header().crs);
     let grid = flags.cells.grid(crs, window)?;
     options.mask = flags.outline.mask(crs, |text| notice(TOOL, &flags.common, text))?;
+    let needs = Needs { window: options.window(&grid), beyond: options.beyond() };
+    let mut reader = mesh.read(&needs)?.reader;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
     let done = |vertices| progress.set(vertices);
     let stats = dem::rasterize(&mut reader, output.destination(), &grid, &options, done)?;

@@ -12,13 +12,13 @@ use spmesh_base::inputs;
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::check_apart;
 use spmesh_formats::las::LasFile;
-use spmesh_shell::open_stream;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
 use spmesh_shell::{
-    Common, Names, Report, StatsFlag, advise_on_memory, named, notice, of_ending, parse_size, parse_threads,
-    peak_memory, read_list, threads,
+    Common, Mesh, MeshReader, Names, Needs, Report, StatsFlag, advise_on_memory, named, notice, of_ending,
+    parse_size, parse_threads, peak_memory, read_list, threads,
 };
+use spmesh_stream::model::bounds::Bounds;
 
 const TOOL: &str = "spheight";
 
@@ -68,7 +68,8 @@ pub struct Flags {
     #[arg(long, value_name = "LIST", conflicts_with = "inputs")]
     lof: Option<PathBuf>,
 
-    /// Stream of the triangle mesh of the ground; - is stdin
+    /// Stream of the triangle mesh of the ground; - is stdin. Of a mesh in parts, only those below the points
+    /// are read
     #[arg(long, value_name = "STREAM")]
     ground: PathBuf,
 
@@ -153,12 +154,14 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     check_apart([], &named)?;
     // All headers are looked at before the work begins.
     let files: Vec<LasFile> = paths.iter().map(|path| flags.open(path)).collect::<Result<_>>()?;
-    let mut reader = open_stream(&flags.ground)?;
+    let needs = Needs { window: flags.window(&files), beyond: Some("a height above the ground") };
+    let MeshReader { mut reader, window } = Mesh::open(&flags.ground)?.read(&needs)?;
     outputs.iter().try_for_each(|output| inputs::check_output(output))?;
     let mut progress = Progress::new(&flags.common, "reading the ground", reader.header().points);
     let ground = Ground::read(&mut reader, flags.temp_dir.as_deref(), flags.memory, |vertices| {
         progress.set(vertices)
-    })?;
+    })?
+    .within(window);
     drop(progress);
     let total = files.iter().map(LasFile::points).sum();
     let mut progress = Progress::new(&flags.common, "finding heights", Some(total));
@@ -242,6 +245,18 @@ impl Flags {
         let file = LasFile::open(input, self.temp_dir.as_deref())?;
         file.notices().iter().for_each(|text| self.notice(text));
         Ok(file)
+    }
+
+    /// The box that the headers of the files state; `None` if the ground is needed beyond it: the place
+    /// nearest to a point may be anywhere.
+    fn window(&self, files: &[LasFile]) -> Option<Bounds> {
+        if self.outside() == Outside::Nearest {
+            return None;
+        }
+        let stated = files.iter().filter(|file| file.points() > 0).map(LasFile::stated_bounds);
+        let Bounds { min: [x, y, _], max: [max_x, max_y, _] } =
+            stated.collect::<Option<Vec<Bounds>>>()?.into_iter().reduce(Bounds::union)?;
+        Some(Bounds::over([x, y], [max_x, max_y]))
     }
 
     /// Writes one file; returns its counts, and the bytes of the output.

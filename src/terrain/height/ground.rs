@@ -5,10 +5,12 @@ use std::path::Path;
 
 use super::block_writer::BlockWriter;
 use super::blocks::Blocks;
+use super::boxes::Box2;
 use crate::surface::is_counterclockwise;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::FiniteFloatPredicates;
 use spmesh_formats::crs::{System, differences};
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Crs, Event, LiveVertices, StreamReader, check_surface};
 
 /// Memory for vertices that are not final, at least. Units: bytes.
@@ -24,6 +26,8 @@ pub struct Ground {
     coordinates: Coordinates,
     crs: Crs,
     name: String,
+    /// The box of the world in which all of its triangles were read; everywhere if `None`.
+    window: Option<Bounds>,
 }
 
 impl Ground {
@@ -64,7 +68,31 @@ impl Ground {
         }
         let blocks = blocks.finish()?;
         let name = reader.name().to_string();
-        Ok(Ground { blocks, coordinates: header.coordinates, crs: header.crs, name })
+        Ok(Ground { blocks, coordinates: header.coordinates, crs: header.crs, name, window: None })
+    }
+
+    /// The same ground, of which all triangles were read in this box of the world alone: the one that headers
+    /// of points state.
+    #[must_use]
+    pub fn within(self, window: Option<Bounds>) -> Ground {
+        Ground { window: window.map(|window| self.coordinates.widened(&window)), ..self }
+    }
+
+    /// Refuses a box of points that leaves the window: triangles below them may be missing.
+    ///
+    /// # Errors
+    /// Malformed, as a header states another box.
+    pub(super) fn check_window(&self, points: &Box2) -> Result<()> {
+        let Some(window) = self.window else { return Ok(()) };
+        let [min, max] = [points.min, points.max].map(|[x, y]| self.coordinates.to_world([x, y, 0.0]));
+        let is_inside = (0..2).all(|axis| window.min[axis] <= min[axis] && max[axis] <= window.max[axis]);
+        if is_inside {
+            return Ok(());
+        }
+        Err(Error::malformed(
+            "points lie outside of the box that the header states, where parts of the ground were not read: \
+             write the file again with a right header, or make one stream of the ground with spconvert",
+        ))
     }
 
     /// How its stored coordinates are encoded.

@@ -53,7 +53,7 @@ pub enum Outside {
 /// triangles for each thread.
 #[derive(Debug)]
 pub struct Heights<'g> {
-    blocks: &'g Blocks,
+    ground: &'g Ground,
     unit: Unit,
     outside: Outside,
     threads: NonZeroUsize,
@@ -64,8 +64,8 @@ pub struct Heights<'g> {
 impl<'g> Heights<'g> {
     /// Prepares to find heights above `ground` on `threads` threads.
     pub fn new(ground: &'g Ground, unit: Unit, outside: Outside, threads: NonZeroUsize) -> Heights<'g> {
-        let (blocks, grid) = (ground.blocks(), PointGrid::default());
-        Heights { blocks, unit, outside, threads, grid, nearest: Nearest::new(blocks) }
+        let (grid, nearest) = (PointGrid::default(), Nearest::new(ground.blocks()));
+        Heights { ground, unit, outside, threads, grid, nearest }
     }
 
     /// Replaces `heights` with those of points in stored coordinates of the ground, which may be between its
@@ -75,14 +75,19 @@ impl<'g> Heights<'g> {
     /// triangle counts, whatever the number of threads. Which triangles these are is decided exactly.
     ///
     /// # Errors
-    /// If the temporary file fails; usage, if coordinates are too great or too small to interpolate between.
+    /// If the temporary file fails; usage, if coordinates are too great or too small to interpolate between;
+    /// malformed, if points are where not all of the ground was read.
     pub fn of(&mut self, points: &[Point], heights: &mut Vec<f64>) -> Result<u64> {
-        if !points.is_empty() && !Box2::of(points).has_sides() {
-            return Err(beyond_numbers());
+        if !points.is_empty() {
+            let bounds = Box2::of(points);
+            if !bounds.has_sides() {
+                return Err(beyond_numbers());
+            }
+            self.ground.check_window(&bounds)?;
         }
         self.grid.fill(points);
         let parts = self.threads.get().min(points.len() / SHARE_MIN).max(1);
-        let (blocks, unit) = (self.blocks, self.unit);
+        let (blocks, unit) = (self.ground.blocks(), self.unit);
         let work = |(share, points)| search(blocks, &share, points, unit);
         parallel::map(self.threads, self.grid.split(parts), work)?;
         heights.clear();

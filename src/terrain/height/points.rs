@@ -82,7 +82,8 @@ impl HeightPoints {
             }
             placed.clear();
             placed.extend(batch.iter().map(|&point| alignment.place(point)));
-            points.outside += heights_above.of(&placed, &mut heights)?;
+            let outside = heights_above.of(&placed, &mut heights);
+            points.outside += outside.map_err(|e| e.of_input(input.name()))?;
             points.add(&batch, &heights, per_unit)?;
             done += batch.len() as u64;
             progress(done);

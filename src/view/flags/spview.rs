@@ -17,8 +17,9 @@ use spmesh_shell::cells::window_of;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::outline::OutlineFlags;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::{Common, Names, advise_on_memory, named, notice, open_input, parse_numbers};
-use spmesh_stream::{Kind, StreamReader};
+use spmesh_shell::{Common, Names, advise_on_memory, named, notice, open_input, open_within, parse_numbers};
+use spmesh_stream::model::bounds::Bounds;
+use spmesh_stream::{Header, Kind, StreamReader, check_part};
 use tee::{Passed, Tee};
 
 const TOOL: &str = "spview";
@@ -146,7 +147,8 @@ pub struct Flags {
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(320..=8192))]
     width: u32,
 
-    /// The part of the plane to draw, in world coordinates [default: all]
+    /// The part of the plane to draw, in world coordinates; of a mesh in parts, only the parts there are read
+    /// [default: all]
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_numbers::<4>, allow_hyphen_values = true)]
     bounds: Option<[f64; 4]>,
 
@@ -222,10 +224,11 @@ const FILLS: Names<Fill> = &[
 /// As [`crate::draw`], and if the input or an output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "take less --width, or --raster");
-    let options = flags.options()?;
+    let mut options = flags.options()?;
     let is_numbered = flags.snapshot.is_some();
     let mut outputs = Outputs::new(&flags.output, flags.format, is_numbered, flags.tee)?;
-    let (mut input, name) = open_input(&flags.input)?;
+    let (mut input, name, whole) = open_within(&flags.input, |header| flags.needed(header))?;
+    options.whole = whole;
     let head = solid::head(&mut input).map_err(|e| Error::io("reading", e).of_input(&name))?;
     let is_surface = solid::is_surface(&head);
     let input = Cursor::new(head).chain(input);
@@ -255,6 +258,8 @@ fn draw_stream(
         None => Box::new(input),
     };
     let mut reader = StreamReader::new(input, name)?;
+    let beyond = options.concave.map(|_| "a concave outline");
+    check_part(reader.header(), beyond).map_err(|e| e.of_input(reader.name()))?;
     // The header is right.
     passed.iter().for_each(Passed::confirm);
     let extent = flags.extent(&reader)?;
@@ -326,6 +331,21 @@ impl Flags {
             apart: self.apart,
             ..defaults
         })
+    }
+
+    /// The box whose triangles a picture of `--bounds` shows; `None` if other triangles decide what it shows:
+    /// moments and colours of time count all of them, and a concave outline begins at the border of the mesh.
+    fn needed(&self, header: &Header) -> Option<Bounds> {
+        let shows_all = self.outline.concave().is_ok_and(|length| length.is_some())
+            || self.at.is_some()
+            || self.snapshot.is_some()
+            || self.tee
+            || self.fill == Some(Fill::Time)
+            || self.colour_by.is_some();
+        // Colours span the elevations that the header states. Without elevations, they may be those of time.
+        let is_known = header.bounds.is_some() && header.has_elevation;
+        let [x, y, max_x, max_y] = self.bounds.filter(|_| is_known && !shows_all)?;
+        Some(Bounds::over([x, y], [max_x, max_y]))
     }
 
     /// Reads a file to its end, if the header lacks the bounds or counts that the flags need.

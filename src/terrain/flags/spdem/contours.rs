@@ -8,11 +8,10 @@ use clap::Args;
 use crate::contours::{self, Levels, LineFormat, Options, Stats, epsg_code};
 use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
-use spmesh_shell::open_stream;
 use spmesh_shell::outline::{OutlineFlags, length};
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
-use spmesh_shell::{Common, Names, Report, StatsFlag, peak_memory};
+use spmesh_shell::{Common, Mesh, Names, Needs, Report, StatsFlag, peak_memory};
 use spmesh_stream::Crs;
 
 /// The advice when memory runs out.
@@ -123,9 +122,10 @@ pub(super) fn run(
     notice: impl Fn(&str),
 ) -> anyhow::Result<()> {
     let mut output = Output::create(job.output, false)?;
-    let mut reader = open_stream(job.input)?;
-    let crs = options.crs.as_ref().unwrap_or(&reader.header().crs);
-    options.mask = job.outline.mask(crs, &notice)?;
+    let mesh = Mesh::open(job.input)?;
+    options.mask = job.outline.mask(options.crs.as_ref().unwrap_or(&mesh.header().crs), &notice)?;
+    let needs = Needs { window: options.window(), beyond: Some("a contour line") };
+    let mut reader = mesh.read(&needs)?.reader;
     let mut progress = Progress::new(job.common, "contouring", reader.header().points);
     let stats = contours::contour(&mut reader, &mut output, job.format, &options, |done| progress.set(done))?;
     drop(progress);
