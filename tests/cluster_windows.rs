@@ -73,9 +73,12 @@ impl Mesh {
         self.folder.path(part["file"].as_str().unwrap())
     }
 
-    /// Another folder that has the manifest, and only the parts that reach into the cells of a window.
-    fn only(&self, window: Window) -> (Folder, usize) {
+    /// Another folder that has the manifest, and only the parts that reach into the cells of a window, and into `reach`
+    /// cells around them.
+    fn only(&self, window: Window, reach: i32) -> (Folder, usize) {
         let (folder, [left, bottom, right, top]) = (Folder::new(), cells_of(window));
+        let [left, bottom] = [left, bottom].map(|side| side - reach * CELL);
+        let [right, top] = [right, top].map(|side| side + reach * CELL);
         let meets = |[x, y, max_x, max_y]: Window| x <= right && left <= max_x && y <= top && bottom <= max_y;
         let wanted: Vec<&Value> = self.parts().filter(|part| box_of(part).is_some_and(meets)).collect();
         for part in &wanted {
@@ -161,8 +164,9 @@ fn products(mesh: &str, window: Window, folder: &Folder) -> BTreeMap<String, Vec
 fn products_of_a_window_are_those_of_the_whole_mesh() {
     let mesh = Mesh::new();
     for window in mesh.windows() {
-        let (few, count) = mesh.only(window);
-        assert!(count < mesh.parts().count(), "{window:?}");
+        // Holes are filled from four cells away, and slopes there follow from the next ones.
+        let (few, count) = mesh.only(window, 5);
+        assert!(count <= mesh.parts().count(), "{window:?}");
         let expected = products(&mesh.piped, window, &few);
         for (flags, found) in products(&few.path("mesh.json"), window, &few) {
             assert!(found == expected[&flags], "{window:?} {flags}: {}", String::from_utf8_lossy(&found));
@@ -175,7 +179,7 @@ fn the_inside_of_a_leaf_needs_the_parts_above_it_alone() {
     let mesh = Mesh::new();
     for [left, bottom, right, top] in mesh.windows() {
         let window = [left + 2 * CELL, bottom + 2 * CELL, right - 2 * CELL, top - 2 * CELL];
-        let (few, count) = mesh.only(window);
+        let (few, count) = mesh.only(window, 0);
         let is_across = right - left < SIDE / 2;
         assert!(is_across || count <= 4, "{count} of {} parts", mesh.parts().count());
         succeed(
@@ -186,7 +190,7 @@ fn the_inside_of_a_leaf_needs_the_parts_above_it_alone() {
     }
     // There is nothing to read where the mesh is not.
     let far = [-900, -900, -800, -800];
-    let (few, count) = mesh.only(far);
+    let (few, count) = mesh.only(far, 0);
     assert_eq!(count, 0);
     let last = mesh.parts().last().unwrap();
     few.file(last["file"].as_str().unwrap(), fs::read(mesh.file_of(last)).unwrap());
@@ -196,38 +200,56 @@ fn the_inside_of_a_leaf_needs_the_parts_above_it_alone() {
     assert!(text.lines().skip(6).flat_map(str::split_whitespace).all(|cell| cell == "-9999"), "{text}");
 }
 
-/// Slopes have no value at the border of a raster, so each window needs a cell more on each side.
+/// Rows of cells of an ESRI grid.
+fn rows_of(text: &[u8]) -> Vec<Vec<String>> {
+    let text = String::from_utf8_lossy(text);
+    text.lines().skip(6).map(|line| line.split_whitespace().map(str::to_string).collect()).collect()
+}
+
+/// The cells of a window are those of the whole raster, also at its border: of a mesh in parts, and of one stream.
 #[test]
-fn slopes_of_windows_are_one_raster() {
+fn rasters_of_windows_are_one_raster() {
     let mesh = Mesh::new();
     let all = [0, 0, TILES * SIDE, TILES * SIDE];
-    let cells = |input: &str, [left, bottom, right, top]: Window| -> Vec<Vec<String>> {
-        // From centre to centre, so that no rounding adds a cell.
-        let bounds = text_of([left + 1, bottom + 1, right - 1, top - 1]);
-        let flags =
-            ["-q", "--kind", "slope", "--step", CELL_SIDE, "--bounds", &bounds, "--format", "asc", input];
-        let text = String::from_utf8(succeed("spdem", &flags, &[])).unwrap();
-        let row = |line: &str| line.split_whitespace().map(str::to_string).collect();
-        text.lines().skip(6).map(row).collect()
-    };
-    let whole = cells(&mesh.piped, all);
-    let mut known = 0;
-    for window in mesh.windows().into_iter().map(cells_of) {
-        let [left, bottom, right, top] = window;
-        let wider = [left - CELL, bottom - CELL, right + CELL, top + CELL];
-        let (few, _) = mesh.only(wider);
-        let found = cells(&few.path("mesh.json"), wider);
-        for (row, y) in (bottom..top).step_by(CELL as usize).rev().enumerate() {
-            for (column, x) in (left..right).step_by(CELL as usize).enumerate() {
-                let from_top = ((all[3] - y) / CELL - 1) as usize;
-                let expected = whole.get(from_top).and_then(|cells| cells.get((x / CELL) as usize));
-                let expected = expected.map_or("-9999", String::as_str);
-                assert_eq!(found[row + 1][column + 1], expected, "{window:?}: {x}, {y}");
-                known += usize::from(expected != "-9999");
+    for flags in [
+        &["--kind", "slope"][..],
+        &["--kill", "0.1", "--fill", "4"],
+        &["--kill", "0.1", "--fill", "3", "--kind", "slope", "--method", "triangle"],
+        &["--kill", "0.1", "--fill", "2", "--kind", "hillshade"],
+    ] {
+        let drawn = |[left, bottom, right, top]: Window, others: &[&str]| {
+            // From centre to centre, so that no rounding adds a cell.
+            let bounds = text_of([left + 1, bottom + 1, right - 1, top - 1]);
+            let grid = ["-q", "--step", CELL_SIDE, "--bounds", &bounds, "--format", "asc"];
+            succeed("spdem", &[&grid[..], flags, others].concat(), &[])
+        };
+        let whole = rows_of(&drawn(all, &[&mesh.piped]));
+        let mut known = 0;
+        for window in mesh.windows().into_iter().map(cells_of) {
+            let [left, bottom, right, top] = window;
+            let (few, _) = mesh.only(window, 5);
+            let bytes = drawn(window, &[&few.path("mesh.json")]);
+            let found = rows_of(&bytes);
+            for (row, y) in (bottom..top).step_by(CELL as usize).rev().enumerate() {
+                for (column, x) in (left..right).step_by(CELL as usize).enumerate() {
+                    let from_top = ((all[3] - y) / CELL - 1) as usize;
+                    let expected = whole.get(from_top).and_then(|cells| cells.get((x / CELL) as usize));
+                    let expected = expected.map_or("-9999", String::as_str);
+                    assert_eq!(found[row][column], expected, "{flags:?} {window:?}: {x}, {y}");
+                    known += usize::from(expected != "-9999");
+                }
             }
+            assert!(drawn(window, &[&mesh.piped]) == bytes, "{flags:?} {window:?}");
+            let sheet = few.path("sheet.asc");
+            drawn(window, &[&mesh.piped, "--tiles", "1,1", "-o", &sheet]);
+            assert!(fs::read(few.path("sheet_0_0.asc")).unwrap() == bytes, "{flags:?} {window:?}");
+            drawn(window, &[&mesh.piped, "--tiles", "2,1", "-o", &sheet]);
+            let [west, east] =
+                ["sheet_0_0.asc", "sheet_1_0.asc"].map(|name| rows_of(&fs::read(few.path(name)).unwrap()));
+            assert!(west.into_iter().zip(east).map(|(west, east)| [west, east].concat()).eq(found));
         }
+        assert!(known > 15_000, "{flags:?}: {known}");
     }
-    assert!(known > 15_000, "{known}");
 }
 
 #[test]
@@ -238,7 +260,7 @@ fn pictures_of_a_window_are_those_of_the_whole_mesh() {
     let whole = Folder::new();
     let whole = whole.file("mesh.json", joined).display().to_string();
     for window in mesh.windows().into_iter().step_by(3) {
-        let (few, _) = mesh.only(window);
+        let (few, _) = mesh.only(window, 0);
         for flags in [&[][..], &["--raster"], &["--fill", "none"]] {
             let bounds = text_of(window);
             let picture = |input: &str| {
@@ -255,7 +277,7 @@ fn pictures_of_a_window_are_those_of_the_whole_mesh() {
 fn products_that_need_everything_read_everything() {
     let mesh = Mesh::new();
     let window = mesh.windows()[4];
-    let (few, bounds) = (mesh.only(window).0, text_of(window));
+    let (few, bounds) = (mesh.only(window, 0).0, text_of(window));
     let (manifest, las) = (few.path("mesh.json"), few.write("points.las", points_in(window).bytes()));
     let output = few.path("heights.las");
     let near = ["--ground", &manifest, &las, "--outside", "nearest", "-o", &output];

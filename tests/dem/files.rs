@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use spmesh_formats::raster::{NoData, RasterFormat, RasterOptions, TILE};
+use spmesh_formats::raster::{Grid, NoData, RasterFormat, RasterOptions, TILE};
 use spmesh_terrain::dem::{Options, Quantity};
 use tiff::decoder::Decoder;
 
@@ -33,11 +33,16 @@ fn filled(values: &[f32], columns: usize, at: [usize; 2], reach: i64) -> f32 {
 
 #[test]
 fn holes_are_filled_from_what_is_near() {
-    let (stream, grid) = mesh_and_grid();
+    let (stream, _) = mesh_and_grid();
+    // Centres of cells are not rounded, so they are the same in both rasters.
+    let grid = Grid { left: -19.5, top: 900.25, step: 1.625, columns: 640, rows: 566 };
     let whole = Options { kill: Some(150.0), ..options(Quantity::Elevation) };
-    let drawn = raster(&stream, &grid, &whole);
+    // The mesh goes on above the raster, and cells there count, too.
+    let above = 80;
+    let wide = Grid { top: grid.top + f64::from(above) * grid.step, rows: grid.rows + above, ..grid };
+    let drawn = raster(&stream, &wide, &whole);
     // Cells outside of the convex hull stay empty.
-    let covered = raster(&stream, &grid, &options(Quantity::Elevation));
+    let covered = raster(&stream, &wide, &options(Quantity::Elevation));
     let columns = grid.columns as usize;
     for reach in [1, 40] {
         for memory in [1 << 30, 600_000] {
@@ -48,7 +53,8 @@ fn holes_are_filled_from_what_is_near() {
             assert!(is_same(&found, &tiff_values(&bytes, &grid)), "{reach}");
             assert_eq!((stats.known, stats.filled), (of_tiff.known, of_tiff.filled));
             let mut count = 0;
-            for (number, (&value, &before)) in found.iter().zip(&drawn).enumerate() {
+            for (&value, number) in found.iter().zip(above as usize * columns..) {
+                let before = drawn[number];
                 let is_inside = !covered[number].is_nan();
                 let nearest = filled(&drawn, columns, [number % columns, number / columns], i64::from(reach));
                 let expected = if is_inside { nearest } else { before };
@@ -71,7 +77,7 @@ fn complete_tiles_are_sources_for_their_neighbours() {
     let triangles = vec![[0, 1, 4], [0, 4, 5], [1, 6, 4], [1, 2, 6], [4, 6, 3]];
     let mesh = super::Mesh { points, triangles };
     let stream = mesh.stream(spmesh_stream::Coordinates::F64);
-    let grid = spmesh_formats::raster::Grid { left: 0.0, top: 256.0, step: 1.0, columns: 512, rows: 256 };
+    let grid = Grid { left: 0.0, top: 256.0, step: 1.0, columns: 512, rows: 256 };
     let options = Options { fill: Some(100), kill: Some(500.0), ..options(Quantity::Elevation) };
     let (bytes, stats) = file(&stream, RasterFormat::GeoTiff, &grid, &options).unwrap();
     let found = tiff_values(&bytes, &grid);

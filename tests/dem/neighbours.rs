@@ -222,12 +222,12 @@ fn filled_cells_count_as_neighbours() {
 }
 
 #[test]
-fn small_and_empty_rasters_have_no_slopes() {
+fn small_rasters_have_slopes_where_the_mesh_goes_on() {
     let mesh =
         Mesh { points: vec![[0.0, 0.0, 1.0], [9.0, 0.0, 2.0], [0.0, 9.0, 3.0]], triangles: vec![[0, 1, 2]] };
     let stream = mesh.stream(Coordinates::F64);
     let slopes = Options { method: Method::Cells(Differences::Horn), ..options(Quantity::Slope) };
-    for (columns, rows, known) in [(1, 1, 0), (1, 5, 0), (5, 2, 0), (3, 3, 1)] {
+    for (columns, rows, known) in [(1, 1, 0), (1, 5, 0), (5, 2, 4), (3, 3, 4), (9, 9, 15)] {
         let grid = Grid { left: 0.0, top: rows as f64, step: 1.0, columns, rows };
         let found = raster(&stream, &grid, &slopes);
         assert_eq!(found.iter().filter(|value| !value.is_nan()).count(), known, "{columns} {rows}");

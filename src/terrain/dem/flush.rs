@@ -5,6 +5,7 @@ use super::fill::Filler;
 use super::options::Options;
 use super::rasterizer::Rasterizer;
 use super::stages::Stages;
+use super::surroundings::Surroundings;
 use super::tile::WORD;
 use super::tile_cache::{TileCache, blank_others};
 use crate::files::{TilePlace, places};
@@ -32,18 +33,19 @@ enum Holes {
 /// The final pass over the tiles, which fills holes.
 pub(super) struct Flush<'a> {
     cache: &'a mut TileCache,
+    around: &'a Surroundings,
     holes: Holes,
     /// Number of filled cells.
     pub(super) filled: u64,
 }
 
 impl<'a> Flush<'a> {
-    /// A pass over the tiles of a rasterizer; `step` is the side of a cell.
+    /// A pass over the tiles of a rasterizer.
     pub(super) fn new(
         rasterizer: &'a mut Rasterizer,
         filler: Option<Filler>,
         options: &Options,
-        step: f64,
+        around: &'a Surroundings,
     ) -> Result<Flush<'a>> {
         let temp_dir = options.raster.temp_dir.as_deref();
         let holes = match (filler, rasterizer.heights.take()) {
@@ -51,11 +53,11 @@ impl<'a> Flush<'a> {
             (Some(filler), None) => Holes::Filled(filler),
             (Some(mut filler), Some(heights)) => {
                 let quantity = options.quantity.clone();
-                let step = step / rasterizer.unit_of_z;
+                let step = around.drawn.step / rasterizer.unit_of_z;
                 Holes::Derived(Box::new(Derived::new(heights, &mut filler, quantity, step, temp_dir)?))
             }
         };
-        Ok(Flush { cache: &mut rasterizer.cache, holes, filled: 0 })
+        Ok(Flush { cache: &mut rasterizer.cache, around, holes, filled: 0 })
     }
 
     /// Reads the final values of a tile; returns false for one without values. `read_written` reads tiles that
@@ -64,7 +66,7 @@ impl<'a> Flush<'a> {
         if !self.cache.read(at, values)? {
             return Ok(false);
         }
-        let drawn = count_known(values);
+        let drawn = self.around.count_known(at, values);
         match &mut self.holes {
             Holes::Kept => {}
             Holes::Filled(filler) => {
@@ -72,9 +74,8 @@ impl<'a> Flush<'a> {
             }
             Holes::Derived(derived) => derived.set(at, values)?,
         }
-        let known = count_known(values);
-        self.filled += known - drawn;
-        Ok(known > 0)
+        self.filled += self.around.count_known(at, values) - drawn;
+        Ok(values.iter().any(|value| !value.is_nan()))
     }
 
     /// Passes the tiles that were not written to `stages`, row by row, except blank ones.

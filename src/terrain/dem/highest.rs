@@ -3,6 +3,7 @@
 use std::io::{Read, Seek, Write};
 
 use super::options::Options;
+use super::surroundings::Surroundings;
 use super::{Run, Stats, check};
 use crate::files::{CELLS, Destination, TilePlace, TileSource, TileStore, TileTarget, places, tiles_of};
 use spmesh_base::error::Result;
@@ -39,8 +40,8 @@ impl Highest {
     pub fn add<R: Read>(&mut self, reader: &mut StreamReader<R>, options: &Options) -> Result<Stats> {
         let header = reader.header().clone();
         let column = check(&header, &options.quantity).map_err(|e| e.of_input(reader.name()))?;
-        let (system, grid) = (System::of(&header.crs), self.grid);
-        let run = Run { grid: &grid, options, column, system: &system };
+        let (system, around) = (System::of(&header.crs), Surroundings::new(&self.grid, 0, None));
+        let run = Run { around: &around, options, column, system: &system };
         run.draw(reader, self, options.memory / 2, |_| {})
     }
 

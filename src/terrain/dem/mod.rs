@@ -26,6 +26,7 @@ mod relief;
 mod search;
 mod span;
 mod stages;
+mod surroundings;
 mod tile;
 mod tile_cache;
 
@@ -51,6 +52,7 @@ use spmesh_stream::model::attributes::Column;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, Header, LiveVertices, Patch, StreamReader};
 use stages::Stages;
+use surroundings::Surroundings;
 
 /// Counts of a run.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -125,15 +127,18 @@ pub fn rasterize<R: Read, W: Write + Seek>(
 ) -> Result<Stats> {
     let header = reader.header().clone();
     let column = check(&header, &options.quantity).map_err(|e| e.of_input(reader.name()))?;
+    let around = options.surroundings(grid, &header);
     // Before anything is made for each tile.
-    tiles_of(grid)?;
+    tiles_of(&around.drawn)?;
     let system = System::of(options.crs.as_ref().unwrap_or(&header.crs));
     let reference = options.reference(&system);
     let file = options.file(*grid, &reference);
-    let run = Run { grid, options, column, system: &system };
+    let run = Run { around: &around, options, column, system: &system };
     let draw = |target: &mut dyn TileTarget, memory| run.draw(reader, target, memory, progress);
-    let (stats, [spilled, spilled_bytes]) = output.write(&file, options.memory, draw)?;
+    let place = (&around.drawn, &around.raster);
+    let (stats, [spilled, spilled_bytes]) = output.write_part(&file, place, options.memory, draw)?;
     Ok(Stats {
+        cells: grid.cells(),
         spilled: stats.spilled + spilled,
         spilled_bytes: stats.spilled_bytes + spilled_bytes,
         notices: reference.notices,
@@ -143,7 +148,7 @@ pub fn rasterize<R: Read, W: Write + Seek>(
 
 /// What the tiles of a raster follow from.
 struct Run<'r> {
-    grid: &'r Grid,
+    around: &'r Surroundings,
     options: &'r Options,
     /// The attribute that is drawn.
     column: Option<Column>,
@@ -159,13 +164,13 @@ impl Run<'_> {
         memory: u64,
         progress: impl FnMut(u64),
     ) -> Result<Stats> {
-        let options = self.options;
+        let (options, grid) = (self.options, self.around.drawn);
         let filler = options.fill.map(Filler::new).transpose()?;
         let differences = options.differences();
         let for_drawing = if differences.is_some() { memory / 2 } else { memory };
         let temp_dir = options.raster.temp_dir.as_deref();
         let coordinates = reader.header().coordinates;
-        let mut rasterizer = Rasterizer::new(*self.grid, &coordinates, options, self.system, for_drawing)?;
+        let mut rasterizer = Rasterizer::new(grid, &coordinates, options, self.system, for_drawing)?;
         if options.sample.is_whole() {
             // The header states nothing of attributes.
             let bounds = reader.header().bounds.filter(|_| self.column.is_none());
@@ -174,13 +179,12 @@ impl Run<'_> {
                     [bounds.min, bounds.max].map(|corner| coordinates.to_world(corner)[2].abs());
                 low.max(high)
             });
-            let (grid, sample) = (*self.grid, options.sample);
-            let coverage = Coverage::new(sample, &grid, greatest, for_drawing, temp_dir)?;
+            let coverage = Coverage::new(options.sample, &grid, greatest, for_drawing, temp_dir)?;
             rasterizer.covering = Some(Covering::start(coverage, grid, coordinates)?);
         }
         let neighbours = differences.map(|differences| -> Result<Neighbours> {
             let store = TileStore::new(1, memory - for_drawing, temp_dir);
-            let gradient = Gradient::new(differences, self.grid.step / rasterizer.unit_of_z);
+            let gradient = Gradient::new(differences, grid.step / rasterizer.unit_of_z);
             let derivation = Derivation::new(&options.quantity, gradient, reader.header())?;
             Ok(Neighbours::new(derivation, rasterizer.cache.tiles(), store))
         });
@@ -188,7 +192,7 @@ impl Run<'_> {
         // Holes are filled from the elevations around them, so these stay until the end.
         let is_written_early =
             rasterizer.heights.is_none() && (neighbours.is_none() || options.fill.is_none());
-        let mut stages = Stages::new(neighbours, target);
+        let mut stages = Stages::new(neighbours, target, self.around);
         let mut complete = |at: TilePlace, values: &[f32]| stages.take(at, values);
         let sink: Option<&mut TileSink> = if is_written_early { Some(&mut complete) } else { None };
         let width =
@@ -197,7 +201,7 @@ impl Run<'_> {
         if let Some(covering) = rasterizer.covering.take() {
             covered = covering.finish()?.finish(&rasterizer.cache, &mut stages)?;
         }
-        let mut flush = Flush::new(&mut rasterizer, filler, options, self.grid.step)?;
+        let mut flush = Flush::new(&mut rasterizer, filler, options, self.around)?;
         flush.write_rest(&mut stages)?;
         let filled = flush.filled;
         let [known, spilled, spilled_bytes] = stages.finish()?;
@@ -209,7 +213,6 @@ impl Run<'_> {
             unknown: rasterizer.unknown,
             outside: rasterizer.outside,
             width,
-            cells: self.grid.cells(),
             known,
             filled,
             spilled: rasterizer.cache.spilled + spilled + covered[0],
@@ -217,6 +220,7 @@ impl Run<'_> {
             input_bytes: reader.bytes_read(),
             predicates: *rasterizer.predicates.counts(),
             notices: Vec::new(),
+            cells: 0,
         })
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::facet::out_of_range;
+use super::surroundings::Surroundings;
 use spmesh_base::error::Result;
 use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::crs::{Horizontal, System};
@@ -10,8 +11,8 @@ use spmesh_formats::raster::{
     self, Differences, Gradient, Grid, RasterFile, RasterOptions, Reduction, Reference, Samples, Shading,
 };
 use spmesh_formats::source::Mask;
-use spmesh_stream::Crs;
 use spmesh_stream::model::bounds::Bounds;
+use spmesh_stream::{Crs, Header};
 
 /// How values between vertices follow from those of the vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,10 +120,10 @@ impl Options {
     /// The closed box of the world whose triangles decide the raster, in a mesh of which only these may be
     /// read; `None` if all triangles do.
     ///
-    /// A cell follows from the triangle at its centre, or from those over all of it. Slopes and holes that
-    /// are filled follow from other cells of the raster, which has none beyond its border, so they need
-    /// nothing more.
-    pub fn window(&self, grid: &Grid) -> Option<Bounds> {
+    /// A cell follows from the triangle at its centre, or from those over all of it; slopes and holes that are
+    /// filled, from cells around it. `header` is that of the mesh.
+    pub fn window(&self, grid: &Grid, header: &Header) -> Option<Bounds> {
+        let grid = self.surroundings(grid, header).drawn;
         // The way of a concave outline begins at the border of the mesh, however far away that is.
         if self.concave.is_some() {
             return None;
@@ -137,6 +138,13 @@ impl Options {
             min: [0, 1, 2].map(|axis| cells.min[axis].max(mask.min[axis])),
             max: [0, 1, 2].map(|axis| cells.max[axis].min(mask.max[axis])),
         })
+    }
+
+    /// What is drawn for a raster of the mesh with this header.
+    pub(super) fn surroundings(&self, grid: &Grid, header: &Header) -> Surroundings {
+        let is_derived = self.quantity.is_derived() && (self.fill.is_some() || self.differences().is_some());
+        let reach = self.fill.unwrap_or(0).saturating_add(is_derived.into());
+        Surroundings::new(grid, reach, super::window(header).ok())
     }
 
     /// What of the raster needs the triangles around a triangle, so that it is wrong at the border of a part

@@ -1,8 +1,8 @@
 //! What tiles go through after they are complete: derivation from their neighbours, then the target.
 
-use super::flush::count_known;
 use super::neighbours::Neighbours;
-use crate::files::{CELLS, TilePlace, TileSource, TileTarget};
+use super::surroundings::Surroundings;
+use crate::files::{TilePlace, TileSource, TileTarget};
 use spmesh_base::error::Result;
 
 /// Takes complete tiles in any order, each once.
@@ -11,18 +11,19 @@ pub(super) struct Stages<'t> {
     counted: Counted<'t>,
 }
 
-/// A target, and how many cells of its tiles have a value. Tiles without any are skipped.
+/// A target, and how many cells of the raster have a value. Tiles without any are skipped.
 struct Counted<'t> {
     target: &'t mut dyn TileTarget,
+    around: &'t Surroundings,
     known: u64,
 }
 
 impl TileTarget for Counted<'_> {
     fn put(&mut self, at: TilePlace, values: &[f32]) -> Result<()> {
-        let known = count_known(values);
-        self.known += known / (values.len() / CELLS) as u64;
+        self.known += self.around.count_known(at, values);
         // A tile may be outside of the mask.
-        if known > 0 { self.target.put(at, values) } else { self.target.skip(at) }
+        let has_data = values.iter().any(|value| !value.is_nan());
+        if has_data { self.target.put(at, values) } else { self.target.skip(at) }
     }
 
     fn skip(&mut self, at: TilePlace) -> Result<()> {
@@ -38,8 +39,12 @@ impl TileSource for Counted<'_> {
 
 impl<'t> Stages<'t> {
     /// The way to a target; through `neighbours`, if there are any.
-    pub(super) fn new(neighbours: Option<Neighbours>, target: &'t mut dyn TileTarget) -> Stages<'t> {
-        Stages { neighbours, counted: Counted { target, known: 0 } }
+    pub(super) fn new(
+        neighbours: Option<Neighbours>,
+        target: &'t mut dyn TileTarget,
+        around: &'t Surroundings,
+    ) -> Stages<'t> {
+        Stages { neighbours, counted: Counted { target, around, known: 0 } }
     }
 
     /// Takes the values of a tile; NaN marks cells without data.

@@ -11,13 +11,15 @@ mod tile_store;
 mod tiles;
 
 use std::io::{Seek, Write};
+use std::ops::Range;
 
 pub(crate) use dependencies::Dependencies;
 pub use division::{Division, SheetSize};
+use part::Part;
 use sheets::Cutter;
 pub use sheets::Sheets;
 use spmesh_base::error::Result;
-use spmesh_formats::raster::{self, RasterFile, RasterFormat};
+use spmesh_formats::raster::{self, Grid, RasterFile, RasterFormat};
 pub(crate) use tile_store::TileStore;
 pub(crate) use tiles::{CELLS, TilePlace, TileSource, TileTarget, places, tiles_of};
 
@@ -53,7 +55,35 @@ impl<W: Write + Seek> Destination<'_, W> {
                 Ok((drawn, [store.spilled, store.spill_len()]))
             }
             Destination::Sheets(sheets) => {
-                let mut cutter = Cutter::new(sheets, file, half)?;
+                let mut cutter = Cutter::new(sheets, file, &file.grid, [0; 2], half)?;
+                let drawn = draw(&mut cutter, half)?;
+                Ok((drawn, cutter.finish()?))
+            }
+        }
+    }
+
+    /// Writes a raster as [`Destination::write`] does, which has these columns and rows of the grid whose tiles
+    /// `draw` supplies.
+    pub(crate) fn write_part<T>(
+        self,
+        file: &RasterFile,
+        (grid, cells): (&Grid, &[Range<u32>; 2]),
+        memory: u64,
+        draw: impl FnOnce(&mut dyn TileTarget, u64) -> Result<T>,
+    ) -> Result<(T, [u64; 2])> {
+        let half = memory / 2;
+        match self {
+            _ if *grid == file.grid => self.write(file, memory, draw),
+            Destination::File(output) => {
+                let mut store = TileStore::new(file.samples.bands(), half, file.options.temp_dir.as_deref());
+                let drawn = draw(&mut store, half)?;
+                let file = RasterFile { is_staged: false, ..*file };
+                part::write(output, &file, &mut Part::new(&mut store, cells.clone(), file.samples.bands()))?;
+                Ok((drawn, [store.spilled, store.spill_len()]))
+            }
+            Destination::Sheets(sheets) => {
+                let first = cells.each_ref().map(|cells| cells.start);
+                let mut cutter = Cutter::new(sheets, file, grid, first, half)?;
                 let drawn = draw(&mut cutter, half)?;
                 Ok((drawn, cutter.finish()?))
             }

@@ -81,22 +81,32 @@ pub(super) struct Cutter<'s> {
     sheets: &'s mut Sheets,
     file: RasterFile<'s>,
     strips: [Strips; 2],
+    /// The first column and row of the raster among those of the tiles.
+    first: [u32; 2],
     tiles: [usize; 2],
     dependencies: Dependencies,
     store: TileStore,
 }
 
 impl<'s> Cutter<'s> {
-    /// A cutter of a raster; tiles beyond `memory` wait in a temporary file.
-    pub(super) fn new(sheets: &'s mut Sheets, file: &RasterFile<'s>, memory: u64) -> Result<Cutter<'s>> {
-        let tiles = tiles_of(&file.grid)?;
+    /// A cutter of a raster, which starts at the cell `first` of the grid that tiles are of; tiles beyond `memory`
+    /// wait in a temporary file.
+    pub(super) fn new(
+        sheets: &'s mut Sheets,
+        file: &RasterFile<'s>,
+        grid: &Grid,
+        first: [u32; 2],
+        memory: u64,
+    ) -> Result<Cutter<'s>> {
+        let tiles = tiles_of(grid)?;
         let strips = sheets.division.strips(&file.grid)?;
         sheets.check_apart(&strips)?;
-        let needs =
-            strips.each_ref().map(|strips| strips.iter().map(|strip| tiles_of_cells(&strip.cells)).collect());
+        let needs = [0, 1].map(|axis| {
+            strips[axis].iter().map(|strip| tiles_of_cells(&behind(&strip.cells, first[axis]))).collect()
+        });
         let dependencies = Dependencies::new(tiles, needs);
         let store = TileStore::new(file.samples.bands(), memory, file.options.temp_dir.as_deref());
-        Ok(Cutter { sheets, file: *file, strips, tiles, dependencies, store })
+        Ok(Cutter { sheets, file: *file, strips, first, tiles, dependencies, store })
     }
 
     /// Writes the sheets that are left. Returns the number of tiles and the bytes that were in temporary
@@ -125,7 +135,7 @@ impl<'s> Cutter<'s> {
         let path = self.sheets.path_of([&columns.name, &rows.name]);
         let cells = [columns.cells.clone(), rows.cells.clone()];
         // Most sheets without data have no tiles either, and a file takes much longer than this test.
-        let [columns, rows] = cells.each_ref().map(tiles_of_cells);
+        let [columns, rows] = self.drawn(&cells).each_ref().map(tiles_of_cells);
         let has_tiles =
             rows.into_iter().any(|row| columns.clone().any(|column| self.store.holds([column, row])));
         if has_tiles && self.write_file(&path, cells)? {
@@ -135,11 +145,17 @@ impl<'s> Cutter<'s> {
         remove_earlier(&path, "the raster")
     }
 
+    /// Columns and rows of the raster as those of the tiles.
+    fn drawn(&self, cells: &[Range<u32>; 2]) -> [Range<u32>; 2] {
+        [0, 1].map(|axis| behind(&cells[axis], self.first[axis]))
+    }
+
     /// Writes the file of a sheet, if it has data; returns whether it has.
     fn write_file(&mut self, path: &Path, cells: [Range<u32>; 2]) -> Result<bool> {
         let of_path = |error: Error| error.of_input(path.display().to_string());
         let file = RasterFile { grid: window(&self.file.grid, &cells), is_staged: false, ..self.file };
-        let mut part = Part::new(&mut self.store, cells, file.samples.bands());
+        let drawn = self.drawn(&cells);
+        let mut part = Part::new(&mut self.store, drawn, file.samples.bands());
         let mut output = Output::create(path, file.options.format == RasterFormat::GeoTiff)?;
         write(&mut output, &file, &mut part).map_err(of_path)?;
         if !part.has_data {
@@ -151,6 +167,11 @@ impl<'s> Cutter<'s> {
         output.commit()?;
         Ok(true)
     }
+}
+
+/// Cells along an axis that begins `first` cells earlier.
+fn behind(cells: &Range<u32>, first: u32) -> Range<u32> {
+    cells.start + first..cells.end + first
 }
 
 /// The tiles along an axis that hold these cells.

@@ -235,7 +235,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let crs = options.crs.as_ref().unwrap_or(&mesh.header().crs);
     let grid = flags.cells.grid(crs, window)?;
     options.mask = flags.outline.mask(crs, |text| notice(TOOL, &flags.common, text))?;
-    let needs = Needs { window: options.window(&grid), beyond: options.beyond() };
+    let needs = Needs { window: options.window(&grid, mesh.header()), beyond: options.beyond() };
     let mut reader = mesh.read(&needs)?.reader;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
     let done = |vertices| progress.set(vertices);
