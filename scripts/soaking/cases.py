@@ -9,7 +9,7 @@ import time
 from soaking import inputs, processes
 
 # What a job of a plan leaves.
-PART = re.compile(r"\d{6}(\.json|\.spm|\.rest\.spm)")
+PART = re.compile(r"[0-9a-f]{16}(\.json|\.spm|\.rest\.spm)")
 
 
 class Fault(Exception):
@@ -182,7 +182,8 @@ def plan(trial):
         trial.pipe(["spnode", "-q", "run", plan, row.split("\t")[0], "-d", parts, "--threads", trial.threads])
     trial.pipe(["spnode", "-q", "collect", plan, "-d", parts, "-o", manifest])
     trial.pipe(["spconvert", "-q", manifest, "--to", "spm"], audit("--points", points))
-    if left := [path.name for path in parts.iterdir() if not PART.fullmatch(path.name)]:
+    files = [path for path in parts.rglob("*") if path.is_file()]
+    if left := [path.name for path in files if not PART.fullmatch(path.name)]:
         raise Fault(f"files left by jobs: {sorted(left)}")
 
 

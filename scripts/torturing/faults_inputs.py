@@ -27,7 +27,7 @@ def choose(case, endings=None, can_be_part=True, is_own=False):
     names = [name for name in case.job.inputs(case.stage) if name not in ("-", "parts")]
     if can_be_part and "parts" in case.job.needs and case.numbers.random() < 0.7:
         folder = case.world.folder / "in" / "parts"
-        names = [f"parts/{path.name}" for path in sorted(folder.iterdir()) if path.suffix == ".spm"]
+        names = [f"parts/{path.relative_to(folder)}" for path in sorted(folder.glob("*/*.spm"))]
     names = [name for name in names if endings is None or name.endswith(endings)]
     if is_own:
         read = [name for stage in range(len(case.job.stages)) for name in case.job.inputs(stage)]

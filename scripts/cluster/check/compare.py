@@ -25,6 +25,11 @@ def output_of(*command, **more):
     return done.stdout.decode()
 
 
+def file_of(parts, name, ending):
+    """A file of a node: .spm, .rest.spm or .json."""
+    return parts / name[:2] / (name + ending)
+
+
 # --- Meshes ---------------------------------------------------------------------------------------------------
 
 
@@ -94,13 +99,13 @@ def accounted(plan_path, parts):
     plan = json.loads(pathlib.Path(plan_path).read_text())
     found = collections.Counter()
     for node in plan["nodes"]:
-        report = json.loads((parts / f"{node['number']:06}.json").read_text())
+        report = json.loads(file_of(parts, node["name"], ".json").read_text())
         counted = sum(count["points"] for count in report["files"])
         if counted != report["points"] + report["dropped"]:
             raise Difference(f"node {node['number']}: {counted} points are not those triangulated and dropped")
         for count in report["files"]:
             found[count["file"]] += count["points"]
-    pairs = [(file["points"], found[number]) for number, file in enumerate(plan["files"])]
+    pairs = [(file["points"], found[file["path"]]) for file in plan["files"]]
     return sum(max(0, a - b) for a, b in pairs), sum(max(0, b - a) for a, b in pairs)
 
 

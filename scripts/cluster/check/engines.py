@@ -5,6 +5,8 @@ import pathlib
 import shutil
 import subprocess
 
+import compare
+
 CLUSTER = pathlib.Path(__file__).resolve().parents[1]
 LIMIT_S = 3600
 
@@ -22,9 +24,9 @@ if [ "$1" = run ]; then
         case $kind in
             kill)
                 # In the middle of its work: as soon as it has opened a file.
-                before=$(ls -a "{parts}" 2> /dev/null)
+                before=$(find "{parts}" 2> /dev/null)
                 "{real}" "$@" & child=$!
-                while [ "$(ls -a "{parts}" 2> /dev/null)" = "$before" ] && kill -0 $child 2> /dev/null; do :; done
+                while [ "$(find "{parts}" 2> /dev/null)" = "$before" ] && kill -0 $child 2> /dev/null; do :; done
                 kill -9 $child 2> /dev/null
                 wait $child
                 code=$?
@@ -66,6 +68,17 @@ class Work:
     @property
     def mesh(self):
         return self.results / "mesh.json"
+
+    def file_of(self, node, ending):
+        """A file of the node with this number."""
+        return compare.file_of(self.parts, self.survey.nodes(self.plan)[node][5], ending)
+
+    def complete(self):
+        """Numbers of the nodes that have reports."""
+        return [int(node[0]) for node in self.survey.nodes(self.plan) if self.has_report(node[5])]
+
+    def has_report(self, name):
+        return compare.file_of(self.parts, name, ".json").exists()
 
     def remove(self):
         shutil.rmtree(self.folder)
@@ -130,7 +143,6 @@ class Snakemake:
             "batch_points": 2 * survey.leaf_points,
             "filters": " ".join(survey.filters),
             "dem_step": survey.step,
-            "dem_tile": 128,
             "contours": survey.interval,
             "threads": 1,
         }
@@ -160,7 +172,7 @@ class Arrays:
     def command(self, work):
         return [
             CLUSTER / "slurm-array", work.plan, "-d", work.parts, "-o", work.mesh, "--wait", "--threads", 1,
-            "--batch-points", work.survey.leaf_points,
+            "--batch-points", work.survey.leaf_points, "--verify",
         ]  # fmt: skip
 
 
@@ -179,5 +191,5 @@ class Parallel:
     def command(self, work):
         return [
             CLUSTER / "parallel", work.plan, "-d", work.parts, "-o", work.mesh,
-            "--batch-points", 2 * work.survey.leaf_points, "--parallel", "--jobs 2",
+            "--batch-points", 2 * work.survey.leaf_points, "--parallel", "--jobs 2", "--verify",
         ]  # fmt: skip

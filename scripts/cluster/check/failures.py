@@ -1,5 +1,6 @@
 """What goes wrong in long runs, and whether the same command again repairs it."""
 
+import dataclasses
 import json
 import os
 import pathlib
@@ -27,16 +28,24 @@ def cut(path, share=0.5):
     os.truncate(path, int(path.stat().st_size * share))
 
 
+def spoil(path):
+    """Spoils the points of a LAZ file in its middle, and leaves its header."""
+    data = bytearray(path.read_bytes())
+    middle = len(data) // 2
+    data[middle : middle + 64] = bytes(byte ^ 0x55 for byte in data[middle : middle + 64])
+    path.write_bytes(data)
+
+
 def part_of(work, node):
-    return work.parts / f"{node:06}.spm"
+    return work.file_of(node, ".spm")
 
 
 def residual_of(work, node):
-    return work.parts / f"{node:06}.rest.spm"
+    return work.file_of(node, ".rest.spm")
 
 
 def report_of(work, node):
-    return work.parts / f"{node:06}.json"
+    return work.file_of(node, ".json")
 
 
 def made(work, node):
@@ -132,7 +141,7 @@ class Failures:
         """The folder of the parts is full in the middle of the upper stages."""
         what = "a full disk"
         work, _ = self.leaves("full-disk")
-        used = sum(path.stat().st_blocks * 512 for path in work.parts.iterdir())
+        used = sum(path.stat().st_blocks * 512 for path in work.parts.rglob("*") if path.is_file())
         aside = work.folder / "aside"
         work.parts.rename(aside)
         work.parts.mkdir()
@@ -142,8 +151,7 @@ class Failures:
             aside.rename(work.parts)
             return self.limited_files(work, what)
         try:
-            for path in aside.iterdir():
-                shutil.copy2(path, work.parts)
+            shutil.copytree(aside, work.parts, dirs_exist_ok=True)
             code, said = work.run(self.engine.command(work))
             self.expect(code != 0, f"{what}: the command exits with 0")
             self.expect("No space left" in said, f"{what}: no message says so; see {work.folder / 'log.txt'}")
@@ -168,13 +176,13 @@ class Failures:
         work = self.work("killed-engine")
         process = work.start(self.engine.command(work))
         end = time.monotonic() + WAIT_S
-        while process.poll() is None and len(list(work.parts.glob("[0-9]*.json"))) < 3:
+        while process.poll() is None and len(list(work.parts.glob("??/*.json"))) < 3:
             self.expect(time.monotonic() < end, f"{what}: no node is complete after {WAIT_S} s")
             time.sleep(0.01)
         self.expect(process.poll() is None, f"{what}: it ended before, with {process.poll()}")
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-        complete = sorted(int(path.stem) for path in work.parts.glob("[0-9]*.json") if path.stem.isdigit())
+        complete = work.complete()
         part_of(work, complete[0]).unlink()
         flip(residual_of(work, complete[1]))
         before = {node: made(work, node) for node in complete[:2]}
@@ -186,3 +194,25 @@ class Failures:
         self.finish(work, what, before, complete[:2])
         self.say(f"{what} after {len(complete)} nodes, a part deleted and a residual damaged: repaired")
         return work
+
+    def bad_tile(self):
+        """A tile whose header is right and whose points are not: it alone fails, is named, and is replaced later."""
+        what = "a bad tile"
+        work = self.work("bad-tile")
+        tiles = work.folder / "tiles"
+        tiles.mkdir()
+        own = dataclasses.replace(self.survey, tiles=[pathlib.Path(shutil.copy2(tile, tiles)) for tile in self.survey.tiles])
+        bad = own.tiles[len(own.tiles) // 2]
+        whole = bad.read_bytes()
+        spoil(bad)
+        own.plan(work.plan)
+        code, said = work.run(self.engine.command(work))
+        self.expect(code != 0, f"{what}: the command exits with 0")
+        self.expect(str(bad) in said.split("failed: ")[-1], f"{what}: it is not named; see {work.folder / 'log.txt'}")
+        reads = [node for node in json.loads(work.plan.read_text())["nodes"] if own.tiles.index(bad) in node["files"]]
+        missing = [node for node in own.nodes(work.plan) if node[1] == "0" and not work.has_report(node[5])]
+        self.expect(len(missing) == len(reads), f"{what}: {len(missing)} leaves are not complete, {len(reads)} read it")
+        bad.write_bytes(whole)
+        own.plan(work.plan)
+        self.finish(work, what)
+        self.say(f"{what}: named, and {len(reads)} leaves that read it failed alone; repaired after planning again")

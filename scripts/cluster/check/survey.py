@@ -58,7 +58,7 @@ class Survey:
         return self.nodes(path)
 
     def nodes(self, path):
-        """Fields of each node: number, stage, kind, children, points."""
+        """Fields of each node: number, stage, kind, children, points, name."""
         listed = compare.output_of(self.programs / "spnode", "list", path)
         return [line.split() for line in listed.splitlines()]
 
@@ -71,7 +71,7 @@ class Survey:
 
     def check_parts(self, plan, parts):
         """Compares the parts, which the independent reader reads one by one, with the mesh of the pipe."""
-        names = [parts / f"{int(node[0]):06}.spm" for node in self.nodes(plan)]
+        names = [compare.file_of(parts, node[5], ".spm") for node in self.nodes(plan)]
         compare.same_mesh(self.expected, compare.separate(names))
 
 
