@@ -221,9 +221,9 @@ impl Current {
     /// Checks that the stream is the part that it should be.
     fn check(&self, joined: &Header) -> Result<()> {
         let header = self.reader.header();
-        if header.part != Some(self.size.name) || header.kind != joined.kind {
-            let message = "this is another part than the manifest names";
-            return Err(Error::malformed(message).at("header at byte 0"));
+        self.size.name.expect(header)?;
+        if header.kind != joined.kind {
+            return Err(Error::malformed("its kind is not that of the other parts").at("header at byte 0"));
         }
         if header.coordinates != joined.coordinates
             || header.has_elevation != joined.has_elevation

@@ -45,6 +45,20 @@ impl PartName {
         Ok(())
     }
 
+    /// Checks that the stream with this header is the part.
+    ///
+    /// # Errors
+    /// Malformed, if it is not.
+    pub fn expect(self, header: &Header) -> Result<()> {
+        match header.part {
+            Some(name) if name == self => Ok(()),
+            _ => {
+                let message = "this is another part than the manifest names";
+                Err(Error::malformed(message).at("header at byte 0"))
+            }
+        }
+    }
+
     /// Checks that a stream with this header can be such a part.
     pub(super) fn check(self, header: &Header) -> std::result::Result<(), String> {
         let is_mesh = matches!(header.kind, Kind::TriangleMesh | Kind::TetrahedralMesh);

@@ -175,7 +175,9 @@ fn header_of(manifest: &Manifest, path: &Path) -> Result<Header> {
     // All parts have the same grid. The last one joins all others, so nearly every window needs it.
     let Some(last) = manifest.parts.last() else { return Err(Error::malformed("a mesh without parts")) };
     let (input, name) = open_part(&file_of(last, path))?;
-    let header = StreamReader::new(input, name)?.header().clone();
+    let reader = StreamReader::new(input, name)?;
+    let header = reader.header().clone();
+    size_of(last, true)?.name.expect(&header).map_err(|e| e.of_input(reader.name()))?;
     let bounds = manifest.bounds.map(|[min, max]| Bounds { min, max });
     let header = Header { bounds, tree: None, part: None, points: None, ..header };
     header.check().map_err(Error::malformed)?;
