@@ -152,3 +152,24 @@ fn bad_tiles_are_left_out_and_listed() {
         "this is not UTF-8",
     );
 }
+
+/// A file has one name, wherever it is planned from.
+#[test]
+fn plans_from_other_folders_have_the_same_nodes() {
+    let folder = Folder::new();
+    folder.write("tiles/a.txt", cloud(300));
+    folder.write("below/empty", "");
+    let planned = |from: &str, file: &str| {
+        let plan = folder.path("plan.json");
+        let planned = crate::programs::tool("spfinalize")
+            .args(["-q", "--plan", &plan, file])
+            .current_dir(folder.path(from))
+            .output()
+            .unwrap();
+        succeed(&planned);
+        succeed(&run("spnode", &["list", &plan], &[]))
+    };
+    let here = planned("tiles", "a.txt");
+    assert_eq!(planned("below", "../tiles/a.txt"), here);
+    assert_eq!(planned("below", "./../below/../tiles/./a.txt"), here);
+}

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::os::unix::fs::MetadataExt;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
@@ -53,9 +53,9 @@ impl PlannedFile {
     /// A file and where its points are.
     pub(super) fn new(path: &Path, extent: &Extent, naming: &Naming) -> Result<PlannedFile> {
         let name = || path.display().to_string();
-        let absolute = std::path::absolute(path).map_err(|e| Error::io("finding", e).of_input(name()))?;
+        let absolute = settled(path).map_err(|e| Error::io("finding", e).of_input(name()))?;
         let inside = |(root, folder): (&String, &PathBuf)| {
-            let folder = std::path::absolute(folder).ok()?;
+            let folder = settled(folder).ok()?;
             Some((Some(root.clone()), absolute.strip_prefix(folder).ok()?.to_path_buf()))
         };
         let (root, place) = naming.roots.iter().find_map(inside).unwrap_or_else(|| (None, absolute.clone()));
@@ -106,6 +106,19 @@ impl PlannedFile {
             "changed since the plan was made: plan again, and run the same commands; what does not depend on it stays",
         )))
     }
+}
+
+/// An absolute path without `..`, so that a file has one name wherever it is planned from.
+fn settled(path: &Path) -> io::Result<PathBuf> {
+    let absolute = std::path::absolute(path)?;
+    let parts: Vec<Component> = absolute.components().collect();
+    let Some(last) = parts.iter().rposition(|part| *part == Component::ParentDir) else {
+        return Ok(absolute);
+    };
+    // Where `..` leads to, symbolic links decide. Others stay, so that a folder may be moved behind one.
+    let (before, behind) = parts.split_at(last + 1);
+    let folder = fs::canonicalize(before.iter().collect::<PathBuf>())?;
+    Ok(behind.iter().fold(folder, |folder, part| folder.join(part)))
 }
 
 /// Length of a file in bytes, and when it was last changed in nanoseconds since 1970.
