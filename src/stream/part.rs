@@ -45,13 +45,13 @@ impl PartName {
         Ok(())
     }
 
-    /// Checks that the stream with this header is the part.
+    /// Checks that the stream with this header is the part, and not its residual.
     ///
     /// # Errors
     /// Malformed, if it is not.
     pub fn expect(self, header: &Header) -> Result<()> {
         match header.part {
-            Some(name) if name == self => Ok(()),
+            Some(name) if name == self && !header.kind.is_residual() => Ok(()),
             _ => {
                 let message = "this is another part than the manifest names";
                 Err(Error::malformed(message).at("header at byte 0"))
