@@ -143,7 +143,7 @@ fn bad_tiles_are_left_out_and_listed() {
     assert_eq!(make(), [wrong.as_str()]);
     fs::write(wrong, &whole_wrong).unwrap();
     assert!(make().is_empty() && cluster.mesh() == mesh);
-    assert_eq!(fs::read_to_string(&list).unwrap(), "");
+    assert_eq!(fs::read_to_string(&list).unwrap().lines().count(), 1);
     assert_outcome(
         "spfinalize",
         &["--plan", &cluster.plan_path(), "--skip-bad", cut, wrong],
@@ -151,6 +151,16 @@ fn bad_tiles_are_left_out_and_listed() {
         3,
         "this is not UTF-8",
     );
+    let area = cluster.folder.write("area.wkt", "POLYGON((0 0,9 0,9 9,0 9,0 0))\n");
+    let plan = cluster.plan_path();
+    assert_outcome(
+        "spfinalize",
+        &["--plan", &plan, "--clip", &area, "--skip-bad", &area, wrong],
+        &[],
+        3,
+        "no list",
+    );
+    assert_outcome("spfinalize", &["--plan", &plan, wrong, wrong], &[], 2, "is given twice");
 }
 
 /// A file has one name, wherever it is planned from.

@@ -38,13 +38,18 @@ pub fn spent(plan: &Plan, folder: &Path) -> Result<Vec<Spent>> {
     let mut found = Vec::new();
     for home in fs::read_dir(folder).map_err(reading)? {
         let home = home.map_err(reading)?.path();
-        if !home.file_name().and_then(|name| name.to_str()).is_some_and(|name| is_hexadecimal(name, 2)) {
+        // Neither links nor other files are what nodes have made.
+        let name = home.file_name().and_then(|name| name.to_str()).filter(|name| is_hexadecimal(name, 2));
+        let Some(digits) = name.filter(|_| fs::symlink_metadata(&home).is_ok_and(|found| found.is_dir()))
+        else {
             continue;
-        }
+        };
         for entry in fs::read_dir(&home).map_err(reading)? {
             let entry = entry.map_err(reading)?;
             let name = entry.file_name();
-            if name.to_str().and_then(node_of).is_some_and(|node| !names.contains(node)) {
+            let is_file = entry.file_type().map_err(reading)?.is_file();
+            let node = name.to_str().and_then(node_of).filter(|node| is_file && node.starts_with(digits));
+            if node.is_some_and(|node| !names.contains(node)) {
                 let bytes = entry.metadata().map_err(reading)?.len();
                 found.push(Spent { path: entry.path(), bytes });
             }

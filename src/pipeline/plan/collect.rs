@@ -1,6 +1,7 @@
 //! All parts as one mesh.
 
 use std::collections::HashMap;
+use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -25,6 +26,7 @@ pub fn collect(
     recipe: &dyn Fn(&Plan) -> Result<Recipe>,
     note: &dyn Fn(&str),
 ) -> Result<()> {
+    check_name(manifest)?;
     plan.check_files()?;
     let maker = Maker::new(plan, work, recipe, note)?;
     plan.note_files()?;
@@ -94,6 +96,20 @@ fn check_sums(plan: &Plan, reports: &[NodeReport]) -> Result<()> {
         return Err(Error::malformed(format!(
             "{points} points were triangulated, but {vertices} are vertices and {merged} were merged"
         )));
+    }
+    Ok(())
+}
+
+/// Refuses the names of reports, which the manifest would replace.
+fn check_name(output: &Path) -> Result<()> {
+    let is_hexadecimal = |name: Option<&OsStr>, len: usize| {
+        let name = name.and_then(OsStr::to_str).unwrap_or_default();
+        name.len() == len && name.bytes().all(|byte| byte.is_ascii_hexdigit())
+    };
+    let parent = output.parent().and_then(Path::file_name);
+    if is_hexadecimal(output.file_stem(), 16) && is_hexadecimal(parent, 2) {
+        let message = "the name is that of the report of a node: give another one";
+        return Err(Error::usage(message).of_input(output.display().to_string()));
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Makes nodes.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{PipeReader, Write, pipe};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -118,7 +118,14 @@ impl<'a> Maker<'a> {
         if outputs.iter().any(|path| path.exists()) && !matches!(folder.report(node), Ok(Some(_))) {
             folder.plan.note_files()?;
         }
-        outputs.iter().try_for_each(|path| inputs::check_output(path))
+        outputs.iter().try_for_each(|path| {
+            // Opening a pipe would wait, and a link would be written through.
+            if fs::symlink_metadata(path).is_ok_and(|found| !found.is_file()) {
+                let message = "this is the name of a file of a node, but it is no regular file: remove it";
+                return Err(Error::usage(message).of_input(path.display().to_string()));
+            }
+            inputs::check_output(path)
+        })
     }
 
     /// Makes the children whose residuals are not there as they were written.

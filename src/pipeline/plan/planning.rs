@@ -1,5 +1,6 @@
 //! The plan as a file.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use data_encoding::HEXLOWER;
@@ -136,6 +137,10 @@ pub fn plan_of(survey: &Survey, paths: &[PathBuf], planning: Planning) -> Result
     let planned = |path: &PathBuf, extent: &Extent| PlannedFile::new(path, extent, planning.naming);
     let pairs = paths.iter().zip(&survey.extents);
     let files = pairs.map(|(path, extent)| planned(path, extent)).collect::<Result<Vec<_>>>()?;
+    let mut names = HashSet::new();
+    if let Some(file) = files.iter().find(|file| !names.insert((&file.root, &file.path))) {
+        return Err(Error::usage("is given twice").of_input(file.name()));
+    }
     let shares: Vec<Share> = (0..)
         .zip(&survey.extents)
         .filter_map(|(file, extent)| Some(Share { file, points: extent.points, bounds: extent.bounds? }))
@@ -227,7 +232,7 @@ impl Plan {
     ///
     /// # Errors
     /// Usage, if one of them is an output of this run.
-    pub(super) fn note_files(&self) -> Result<()> {
+    pub fn note_files(&self) -> Result<()> {
         self.all_files().try_for_each(|file| inputs::note(&file.path(&self.roots)))
     }
 

@@ -117,8 +117,9 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
         skipped: &skipped,
     };
     let plan = plan_of(&survey, &paths, planning)?;
+    plan.note_files()?;
     output.write_all(plan.to_json()?.as_bytes()).map_err(|e| Error::io("writing the plan", e))?;
-    output.commit()?;
+    // The list first: it may be refused.
     if let (Some(bad), Some(list)) = (&bad, &flags.plan.skip_bad) {
         bad.write(list)?;
         if !skipped.is_empty() {
@@ -126,6 +127,7 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
             notice(TOOL, &flags.common, &format!("{files} left out: see {}", list.display()));
         }
     }
+    output.commit()?;
     if !flags.common.quiet {
         say(&summary(&plan));
     }
