@@ -73,8 +73,8 @@ impl Mesh {
         self.folder.path(part["file"].as_str().unwrap())
     }
 
-    /// Another folder that has the manifest, and only the parts that reach into the cells of a window, and into `reach`
-    /// cells around them.
+    /// Another folder that has the manifest, and only the parts that reach into the cells of a window, and
+    /// into `reach` cells around them.
     fn only(&self, window: Window, reach: i32) -> (Folder, usize) {
         let (folder, [left, bottom, right, top]) = (Folder::new(), cells_of(window));
         let [left, bottom] = [left, bottom].map(|side| side - reach * CELL);
@@ -206,7 +206,8 @@ fn rows_of(text: &[u8]) -> Vec<Vec<String>> {
     text.lines().skip(6).map(|line| line.split_whitespace().map(str::to_string).collect()).collect()
 }
 
-/// The cells of a window are those of the whole raster, also at its border: of a mesh in parts, and of one stream.
+/// The cells of a window are those of the whole raster, also at its border: of a mesh in parts, and of one
+/// stream.
 #[test]
 fn rasters_of_windows_are_one_raster() {
     let mesh = Mesh::new();

@@ -20,8 +20,8 @@ fn packages() -> Vec<Value> {
     };
     let version = String::from_utf8(version.stdout).expect("text");
     let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("a host");
-    // `--filter-platform`: building the tests has downloaded only the packages of this platform, and nothing is
-    // downloaded here but those of the Python package.
+    // `--filter-platform`: building the tests has downloaded only the packages of this platform, and nothing
+    // is downloaded here but those of the Python package.
     let flags = ["--locked", "--all-features", "--format-version=1", "--filter-platform", host];
     let mut metadata = Command::new(cargo);
     let compiler = cargo.with_file_name("rustc");

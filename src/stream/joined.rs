@@ -36,12 +36,12 @@ pub struct PartSize {
 
 /// Reads the parts of a mesh, one after the other, as the bytes of one stream without parts.
 ///
-/// A vertex of several parts is written once, with the first of them that is wanted, and finalized with the last.
-/// Parts that are not wanted are not opened: their simplices are left out.
+/// A vertex of several parts is written once, with the first of them that is wanted, and finalized with the
+/// last. Parts that are not wanted are not opened: their simplices are left out.
 ///
-/// Memory: 16 bytes for each part, one patch, the live vertices of one part, and 16 bytes for each vertex that a later
-/// part may use: the residuals of nodes whose parent is still to come. An error of a part is the inner
-/// error of the [`io::Error`].
+/// Memory: 16 bytes for each part, one patch, the live vertices of one part, and 16 bytes for each vertex
+/// that a later part may use: the residuals of nodes whose parent is still to come. An error of a part is the
+/// inner error of the [`io::Error`].
 pub struct JoinedMesh {
     open: Open,
     parts: Vec<PartSize>,
@@ -68,8 +68,8 @@ struct Shared {
     lowest: Vec<usize>,
     /// Whether all parts are wanted.
     is_whole: bool,
-    /// Vertices that parts have kept for later ones: number among the vertices of all parts, and id in the joined
-    /// mesh.
+    /// Vertices that parts have kept for later ones: number among the vertices of all parts, and id in the
+    /// joined mesh.
     kept: HashMap<u64, u64>,
     /// Ids of those that are left when all wanted parts were read.
     left: Vec<u64>,
@@ -97,9 +97,9 @@ struct Vertex {
 }
 
 impl JoinedMesh {
-    /// Joins `parts`, each directly behind all parts below it. All of them have the `stated` points, so many of
-    /// which are merged with others. `header` is that of the joined mesh; what it shares with those of the parts is
-    /// checked.
+    /// Joins `parts`, each directly behind all parts below it. All of them have the `stated` points, so many
+    /// of which are merged with others. `header` is that of the joined mesh; what it shares with those of the
+    /// parts is checked.
     ///
     /// # Errors
     /// Malformed, if a part comes before one below it; usage, if the header cannot be written.
@@ -208,12 +208,18 @@ impl Shared {
         (patch.vertices() > 0).then_some(patch)
     }
 
-    /// The number of the vertex that part `place` calls `id`, and its id in the joined mesh if a part before has kept it.
+    /// The number of the vertex that part `place` calls `id`, and its id in the joined mesh if a part before
+    /// has kept it.
     fn vertex(&self, id: GlobalId, place: usize) -> Result<(u64, Option<u64>)> {
         let part = self.lowest[place] + id.part() as usize;
         let number = self.firsts.get(part).and_then(|first| first.checked_add(id.number()));
         let number = number.ok_or_else(|| Error::malformed("a vertex of no part"))?;
-        Ok((number, self.kept.get(&number).copied()))
+        match self.kept.get(&number) {
+            None if self.is_whole => {
+                Err(Error::malformed("a vertex of another part, which no part before has kept"))
+            }
+            known => Ok((number, known.copied())),
+        }
     }
 }
 
@@ -250,8 +256,8 @@ impl Current {
         }
     }
 
-    /// A patch with the ids of the joined mesh, and the rows of its new vertices. It has no vertices if there is
-    /// nothing to say.
+    /// A patch with the ids of the joined mesh, and the rows of its new vertices. It has no vertices if there
+    /// is nothing to say.
     fn join(&mut self, patch: &Patch, shared: &mut Shared) -> Result<(Patch, Vec<u8>)> {
         let first = shared.vertices;
         let entering = self.entering(patch, shared)?;
@@ -303,7 +309,8 @@ impl Current {
         Ok((joined, rows.collect()))
     }
 
-    /// The new vertices of a patch. Those that no part before has written are vertices of the joined mesh from now on.
+    /// The new vertices of a patch. Those that no part before has written are vertices of the joined mesh
+    /// from now on.
     fn entering(&mut self, patch: &Patch, shared: &mut Shared) -> Result<Vec<Vertex>> {
         let mut vertices = Vec::with_capacity(patch.new.len());
         let mut origins = patch.origins.iter().peekable();
@@ -315,10 +322,6 @@ impl Current {
                     (shared.firsts[self.place] + self.own - 1, None)
                 }
             };
-            let is_own = number >= shared.firsts[self.place];
-            if !is_own && known.is_none() && shared.is_whole {
-                return Err(Error::malformed("a vertex of another part, which no part before has kept"));
-            }
             let id = known.unwrap_or(shared.vertices);
             shared.vertices += u64::from(known.is_none());
             vertices.push(Vertex { number, id });

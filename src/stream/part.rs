@@ -23,14 +23,21 @@ const ORIGIN_LEN: usize = 12;
 pub struct PartName {
     /// The name of the node that makes it: a hash of all that it depends on.
     pub node: u64,
-    /// How many parts it joins, directly or not. These have the numbers 0, 1, ... in its ids of vertices, in the
-    /// order in which they are joined, and the part itself has the number `below`.
+    /// How many parts it joins, directly or not. These have the numbers 0, 1, ... in its ids of vertices, in
+    /// the order in which they are joined, and the part itself has the number `below`.
     pub below: u32,
 }
 
 impl PartName {
     /// Most parts of a mesh.
     pub const PARTS_MAX: u32 = 1 << PART_BITS;
+
+    /// The name of a node, written as 16 lower-case hexadecimal digits; `None` for any other text.
+    pub fn parse_node(text: &str) -> Option<u64> {
+        let is_digit = |byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+        let is_name = text.len() == 16 && text.bytes().all(is_digit);
+        is_name.then(|| u64::from_str_radix(text, 16).ok()).flatten()
+    }
 
     pub(super) fn encode(header: &Header) -> Option<Vec<u8>> {
         let PartName { node, below } = header.part?;
@@ -75,8 +82,8 @@ impl PartName {
     }
 }
 
-/// A vertex as a part, and those that join it, name it: the number of the part that has it as a vertex of its own,
-/// among the parts below the one that speaks of it, and its number among the vertices of that part.
+/// A vertex as a part, and those that join it, name it: the number of the part that has it as a vertex of its
+/// own, among the parts below the one that speaks of it, and its number among the vertices of that part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct GlobalId(pub u64);
 
@@ -131,8 +138,8 @@ pub struct Origin {
     pub id: GlobalId,
 }
 
-/// Checks the id of a residual point: that of a vertex among the `vertices` before it, or, in a residual of its own,
-/// one of this part or a part before it.
+/// Checks the id of a residual point: that of a vertex among the `vertices` before it, or, in a residual of
+/// its own, one of this part or a part before it.
 ///
 /// # Errors
 /// Malformed, if there can be no such vertex.

@@ -70,8 +70,8 @@ fn holes_are_filled_from_what_is_near() {
 
 #[test]
 fn complete_tiles_are_sources_for_their_neighbours() {
-    // A square that covers the first of two tiles in a row and a small part of the second; the rest of the second
-    // is covered by triangles with a long edge.
+    // A square that covers the first of two tiles in a row and a small part of the second; the rest of the
+    // second is covered by triangles with a long edge.
     let corners = [[0.0, 0.0], [300.0, 0.0], [512.0, 0.0], [512.0, 256.0], [300.0, 256.0], [0.0, 256.0]];
     let points = corners.iter().map(|&[x, y]| [x, y, 5.0]).chain([[900.0, 128.0, 5.0]]).collect();
     let triangles = vec![[0, 1, 4], [0, 4, 5], [1, 6, 4], [1, 2, 6], [4, 6, 3]];

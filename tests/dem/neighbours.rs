@@ -1,4 +1,5 @@
-//! Slopes, aspects and hillshades from neighbouring cells, against the formulas written out on the whole raster.
+//! Slopes, aspects and hillshades from neighbouring cells, against the formulas written out on the whole
+//! raster.
 
 use std::io::Cursor;
 
@@ -19,8 +20,8 @@ const ROWS: usize = 262;
 const GRID: Grid =
     Grid { left: -0.5, top: ROWS as f64 - 0.5, step: 1.0, columns: COLUMNS as u32, rows: ROWS as u32 };
 
-/// Squares cut in two, with corners in the centres of cells and integer elevations, so that cells are exact. No
-/// triangles around some corners, and none in one tile.
+/// Squares cut in two, with corners in the centres of cells and integer elevations, so that cells are exact.
+/// No triangles around some corners, and none in one tile.
 fn squares() -> Mesh {
     let mut random = Random::new(4);
     let mut points = Vec::new();
@@ -50,8 +51,8 @@ fn squares() -> Mesh {
     Mesh { points: used, triangles }
 }
 
-/// The sums of three differences to the east and to the north, or those of the nearest pairs; as `gdaldem` documents
-/// them. `None` if a neighbour is missing.
+/// The sums of three differences to the east and to the north, or those of the nearest pairs; as `gdaldem`
+/// documents them. `None` if a neighbour is missing.
 fn gradient(heights: &[f32], cell: usize, differences: Differences) -> Option<[f64; 2]> {
     let (column, row) = (cell % COLUMNS, cell / COLUMNS);
     if column == 0 || row == 0 || column + 1 == COLUMNS || row + 1 == ROWS {

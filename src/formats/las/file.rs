@@ -27,8 +27,8 @@ pub struct LasFile {
 impl LasFile {
     /// Opens the file at `path` ("-" is stdin) and reads its header.
     ///
-    /// Cost: the header. Stdin, and files within gzip, are copied to an unlinked temporary file in `temp_dir`, or
-    /// in the system's folder for temporary files.
+    /// Cost: the header. Stdin, and files within gzip, are copied to an unlinked temporary file in
+    /// `temp_dir`, or in the system's folder for temporary files.
     ///
     /// # Errors
     /// If the file cannot be opened, is of another format, or its header is damaged; the file is named.
@@ -134,7 +134,8 @@ pub struct LasRecords {
 }
 
 impl LasRecords {
-    /// Replaces the content of `records` with the next whole records, uncompressed; leaves it empty at the end.
+    /// Replaces the content of `records` with the next whole records, uncompressed; leaves it empty at the
+    /// end.
     ///
     /// # Errors
     /// If reading fails, or compressed records are damaged; the file and the byte are named.

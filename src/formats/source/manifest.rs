@@ -197,8 +197,7 @@ fn reaches(part: &ManifestPart, window: &Bounds, coordinates: &Coordinates) -> b
 }
 
 fn size_of(part: &ManifestPart, is_wanted: bool) -> Result<PartSize> {
-    let digits = part.name.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'));
-    let node = u64::from_str_radix(&part.name, 16).ok().filter(|_| digits && part.name.len() == 16);
+    let node = PartName::parse_node(&part.name);
     let node = node.ok_or_else(|| Error::malformed(format!("{:?} is no name of a part", part.name)))?;
     let name = PartName { node, below: part.below };
     Ok(PartSize { name, is_wanted, vertices: part.vertices, simplices: part.simplices })

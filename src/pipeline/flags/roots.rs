@@ -9,8 +9,8 @@ use crate::plan::Roots;
 /// The flag for roots.
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct RootFlags {
-    /// Name files in the folder PATH relative to it, as files of the root NAME: so a plan may move with its files. May be
-    /// given several times
+    /// Name files in the folder PATH relative to it, as files of the root NAME: so a plan may move with its
+    /// files. May be given several times
     #[arg(long = "root", value_name = "NAME=PATH", value_parser = parse_root)]
     roots: Vec<(String, PathBuf)>,
 }

@@ -36,12 +36,13 @@ points that are not accounted for, 5 not enough memory, 6 input of another versi
 
 /// Make one part of a mesh that many jobs make, on one machine or on a cluster
 ///
-/// spfinalize --plan divides the box of all points into leaves. A leaf triangulates its points; a node above it joins
-/// what its children left. Each node writes three files into the folder, under its name, a hash of all that it depends
-/// on: its part of the mesh (NAME.spm, a stream that other programs read), what it leaves to the node above
-/// (NAME.rest.spm), and at last its report (NAME.json). A node that is complete is not made again, also by another plan
-/// that has it. Jobs need nothing but the plan, the points and the folder, and run in any order in which children come
-/// before their parents: scripts/cluster has them for Snakemake, Slurm and GNU parallel.
+/// spfinalize --plan divides the box of all points into leaves. A leaf triangulates its points; a node above
+/// it joins what its children left. Each node writes three files into the folder, under its name, a hash of
+/// all that it depends on: its part of the mesh (NAME.spm, a stream that other programs read), what it leaves
+/// to the node above (NAME.rest.spm), and at last its report (NAME.json). A node that is complete is not made
+/// again, also by another plan that has it. Jobs need nothing but the plan, the points and the folder, and
+/// run in any order in which children come before their parents: scripts/cluster has them for Snakemake,
+/// Slurm and GNU parallel.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -82,8 +83,8 @@ struct ListFlags {
     #[arg(long, requires = "dir")]
     missing: bool,
 
-    /// Print batches of nodes of one stage instead: a line of numbers for each, which have up to so many expected points
-    /// together, inner nodes those that their children leave. 0: one node a batch
+    /// Print batches of nodes of one stage instead: a line of numbers for each, which have up to so many
+    /// expected points together, inner nodes those that their children leave. 0: one node a batch
     #[arg(long, value_name = "N")]
     batch_points: Option<u64>,
 
@@ -208,7 +209,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
                 (_, true) => Again::Damaged,
                 _ => Again::Incomplete,
             };
-            action.nodes.iter().try_for_each(|&number| maker.run(number, again).map(|_| ()))?;
+            action.nodes.iter().try_for_each(|&number| maker.run(number, again))?;
         }
         Action::Collect(CollectFlags { plan, output, verify, work }) => {
             endings::check(output, &[endings::JSON])?;

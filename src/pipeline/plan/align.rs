@@ -1,5 +1,5 @@
-//! Where the borders of boxes should be so that they cut few tiles: on the borders between columns of tiles, if
-//! the tiles are a grid.
+//! Where the borders of boxes should be so that they cut few tiles: on the borders between columns of tiles,
+//! if the tiles are a grid.
 
 /// Tiles on one axis make a grid only if there are at least this many columns.
 const COLUMNS_MIN: usize = 3;
@@ -16,14 +16,14 @@ const COMPARED_MAX: usize = 500;
 /// Equally spaced borders along one axis, in stored coordinates. They need not be whole numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Borders {
-    /// The border before the first column of tiles. Tiles of this column may begin before it, as nothing is there
-    /// that a border would divide them from.
+    /// The border before the first column of tiles. Tiles of this column may begin before it, as nothing is
+    /// there that a border would divide them from.
     pub(super) origin: f64,
     pub(super) pitch: f64,
 }
 
-/// Where a border may be that cuts no tile: above `after`, and at most at `before`. All tiles of earlier columns
-/// end at or before `after`, and all of later ones start at or behind `before`.
+/// Where a border may be that cuts no tile: above `after`, and at most at `before`. All tiles of earlier
+/// columns end at or before `after`, and all of later ones start at or behind `before`.
 #[derive(Debug, Clone, Copy)]
 struct Gap {
     after: f64,
@@ -32,8 +32,8 @@ struct Gap {
     column: f64,
 }
 
-/// Borders that lie between most columns of the tiles, which reach from their least to their greatest coordinate;
-/// `None` if the tiles make no grid along this axis.
+/// Borders that lie between most columns of the tiles, which reach from their least to their greatest
+/// coordinate; `None` if the tiles make no grid along this axis.
 pub(super) fn borders_between(tiles: &[(f64, f64)]) -> Option<Borders> {
     let mut sorted = tiles.to_vec();
     sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
@@ -88,8 +88,8 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-/// The gaps between the columns of tiles. A column starts where a tile starts further than `apart` behind the start of
-/// the column before.
+/// The gaps between the columns of tiles. A column starts where a tile starts further than `apart` behind the
+/// start of the column before.
 fn gaps_of(sorted: &[(f64, f64)], apart: f64) -> Vec<Gap> {
     let mut gaps: Vec<Gap> = Vec::new();
     let (mut start, mut end) = (f64::NEG_INFINITY, f64::NEG_INFINITY);

@@ -3,6 +3,7 @@
 use super::node::NodeBox;
 use super::planning::Plan;
 use spmesh_base::error::{Error, Result};
+use spmesh_stream::PartName;
 
 const DISAGREEMENT: &str = "parent and children disagree";
 
@@ -34,7 +35,7 @@ pub(super) fn check(plan: &Plan) -> Result<()> {
         if u64::from(node.below) != node.children.iter().map(below).sum::<u64>() {
             return of_node(number, "it has another number of nodes below");
         }
-        if node.name.len() != 16 || !node.name.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f')) {
+        if PartName::parse_node(&node.name).is_none() {
             return of_node(number, "its name is none");
         }
         if !is_whole(&node.region, usize::from(plan.dims())) {
@@ -62,14 +63,19 @@ fn is_whole(region: &NodeBox, dims: usize) -> bool {
 mod tests {
     use super::*;
 
-    const PLAN: &str = r#"{"format":"spmesh plan","version":2,"id":"","arguments":[],"duplicates":"first","dims":2,"grid":null,
-    "elevation":true,"crs":"unknown","attributes":[],"leaf_points":4,"points":7,"stages":[[0,1],[2,2]],"beside":[],"roots":{},
-    "skipped":[],"nodes":[
-    {"number":0,"name":"0123456789abcdef","stage":0,"below":0,"parent":2,"children":[],"box":{"min":[null,1.5],"max":[5.0,3.5]},"points":4,"files":[0]},
-    {"number":1,"name":"1123456789abcdef","stage":0,"below":0,"parent":2,"children":[],"box":{"min":[5.0,null],"max":[null,null]},"points":3,"files":[]},
-    {"number":2,"name":"2123456789abcdef","stage":1,"below":2,"parent":null,"children":[0,1],"box":{"min":[null,null],"max":[null,null]},"points":7,
+    const PLAN: &str = r#"{"format":"spmesh plan","version":2,"id":"","arguments":[],"duplicates":"first",
+    "dims":2,"grid":null,"elevation":true,"crs":"unknown","attributes":[],"leaf_points":4,"points":7,
+    "stages":[[0,1],[2,2]],"beside":[],"roots":{},"skipped":[],
+    "nodes":[
+    {"number":0,"name":"0123456789abcdef","stage":0,
+    "below":0,"parent":2,"children":[],"box":{"min":[null,1.5],"max":[5.0,3.5]},"points":4,"files":[0]},
+    {"number":1,"name":"1123456789abcdef","stage":0,
+    "below":0,"parent":2,"children":[],"box":{"min":[5.0,null],"max":[null,null]},"points":3,"files":[]},
+    {"number":2,"name":"2123456789abcdef","stage":1,
+    "below":2,"parent":null,"children":[0,1],"box":{"min":[null,null],"max":[null,null]},"points":7,
     "files":[]}],
-    "files":[{"root":null,"path":"/a","bytes":46,"modified":1,"content":null,"points":7,"min":[0.0,0.0,1.0],"max":[9.0,9.0,9.0]}]}"#;
+    "files":[{"root":null,"path":"/a","bytes":46,"modified":1,"content":null,"points":7,
+    "min":[0.0,0.0,1.0],"max":[9.0,9.0,9.0]}]}"#;
 
     #[test]
     fn each_broken_rule_is_found() {

@@ -5,8 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::Plan;
-use super::folder::Folder;
-use spmesh_base::error::{Error, ErrorKind, Result, counted};
+use super::folder::{Folder, PART, REPORT, RESIDUAL};
+use spmesh_base::error::{Error, Result, counted};
+use spmesh_stream::PartName;
 
 /// A file of a node that is not in the plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,17 +18,15 @@ pub struct Spent {
     pub bytes: u64,
 }
 
-/// The files in the folder of the parts that belong to no node of the plan, in the order of their names. Files that no
-/// node has written are not among them.
+/// The files in the folder of the parts that belong to no node of the plan, in the order of their names.
+/// Files that no node has written are not among them.
 ///
 /// # Errors
-/// Usage, if a node of the plan is not complete: an earlier mesh may be all there is; I/O, if the folder cannot be read.
+/// Usage, if a node of the plan is not complete: an earlier mesh may be all there is; I/O, if the folder
+/// cannot be read.
 pub fn spent(plan: &Plan, folder: &Path) -> Result<Vec<Spent>> {
     let reading = |e| Error::io("reading", e).of_input(folder.display().to_string());
-    let parts = Folder { path: folder, plan };
-    let missing = plan.nodes.iter().try_fold(0, |missing, node| {
-        Ok::<u64, Error>(missing + u64::from(parts.complete(node)?.is_none()))
-    })?;
+    let missing = Folder { path: folder, plan }.incomplete()?.len() as u64;
     if missing > 0 {
         let nodes = counted(missing, "node is", "nodes are");
         return Err(Error::usage(format!(
@@ -39,7 +38,7 @@ pub fn spent(plan: &Plan, folder: &Path) -> Result<Vec<Spent>> {
     for home in fs::read_dir(folder).map_err(reading)? {
         let home = home.map_err(reading)?.path();
         // Neither links nor other files are what nodes have made.
-        let name = home.file_name().and_then(|name| name.to_str()).filter(|name| is_hexadecimal(name, 2));
+        let name = home.file_name().and_then(|name| name.to_str()).filter(|name| name.len() == 2);
         let Some(digits) = name.filter(|_| fs::symlink_metadata(&home).is_ok_and(|found| found.is_dir()))
         else {
             continue;
@@ -67,8 +66,7 @@ pub fn remove(files: &[Spent]) -> Result<()> {
     for file in files {
         match fs::remove_file(&file.path) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                return Err(Error::new(ErrorKind::Io, format!("removing: {e}"))
-                    .of_input(file.path.display().to_string()));
+                return Err(Error::io("removing", e).of_input(file.path.display().to_string()));
             }
             _ => {}
         }
@@ -78,10 +76,7 @@ pub fn remove(files: &[Spent]) -> Result<()> {
 
 /// The name of the node that a file with this name is of.
 fn node_of(file: &str) -> Option<&str> {
-    let endings = [".rest.spm", ".spm", ".json"];
-    endings.iter().find_map(|ending| file.strip_suffix(ending)).filter(|name| is_hexadecimal(name, 16))
-}
-
-fn is_hexadecimal(text: &str, len: usize) -> bool {
-    text.len() == len && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+    // The ending of a residual is also that of a part.
+    let name = [RESIDUAL, PART, REPORT].iter().find_map(|ending| file.strip_suffix(ending));
+    name.filter(|name| PartName::parse_node(name).is_some())
 }

@@ -10,14 +10,15 @@ use crate::finalize::Recipe;
 use spmesh_base::error::{Error, ErrorKind, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_formats::source::{Manifest, ManifestPart};
+use spmesh_stream::PartName;
 
 /// Makes all nodes that are not complete, and writes the manifest of the mesh into the file `manifest`. With
-/// `is_verified`, all parts are read, and those made again whose checksums are wrong. `recipe` and `note` are as in
-/// [`Maker::new`].
+/// `is_verified`, all parts are read, and those made again whose checksums are wrong. `recipe` and `note` are
+/// as in [`Maker::new`].
 ///
 /// # Errors
-/// Those of [`Maker::run`]; usage, if a file has changed since the plan was made, or the manifest would replace the
-/// report of a node; malformed, if points are not accounted for.
+/// Those of [`Maker::run`]; usage, if a file has changed since the plan was made, or the manifest would
+/// replace the report of a node; malformed, if points are not accounted for.
 pub fn collect(
     plan: &Plan,
     work: &Work,
@@ -102,12 +103,9 @@ fn check_sums(plan: &Plan, reports: &[NodeReport]) -> Result<()> {
 
 /// Refuses the names of reports, which the manifest would replace.
 fn check_name(output: &Path) -> Result<()> {
-    let is_hexadecimal = |name: Option<&OsStr>, len: usize| {
-        let name = name.and_then(OsStr::to_str).unwrap_or_default();
-        name.len() == len && name.bytes().all(|byte| byte.is_ascii_hexdigit())
-    };
-    let parent = output.parent().and_then(Path::file_name);
-    if is_hexadecimal(output.file_stem(), 16) && is_hexadecimal(parent, 2) {
+    let text = |name: Option<&OsStr>| name.and_then(OsStr::to_str).unwrap_or_default().to_lowercase();
+    let (name, folder) = (text(output.file_stem()), text(output.parent().and_then(Path::file_name)));
+    if PartName::parse_node(&name).is_some() && folder.len() == 2 {
         let message = "the name is that of the report of a node: give another one";
         return Err(Error::usage(message).of_input(output.display().to_string()));
     }

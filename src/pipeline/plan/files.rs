@@ -50,12 +50,11 @@ pub struct Naming {
 }
 
 impl PlannedFile {
-    /// A file and where its points are.
+    /// A file and where its points are. The roots of `naming` are absolute.
     pub(super) fn new(path: &Path, extent: &Extent, naming: &Naming) -> Result<PlannedFile> {
         let name = || path.display().to_string();
         let absolute = settled(path).map_err(|e| Error::io("finding", e).of_input(name()))?;
         let inside = |(root, folder): (&String, &PathBuf)| {
-            let folder = settled(folder).ok()?;
             Some((Some(root.clone()), absolute.strip_prefix(folder).ok()?.to_path_buf()))
         };
         let (root, place) = naming.roots.iter().find_map(inside).unwrap_or_else(|| (None, absolute.clone()));
@@ -103,13 +102,14 @@ impl PlannedFile {
             return Ok(());
         }
         Err(named(Error::usage(
-            "changed since the plan was made: plan again, and run the same commands; what does not depend on it stays",
+            "changed since the plan was made: plan again, and run the same commands; what does not depend on \
+             it stays",
         )))
     }
 }
 
 /// An absolute path without `..`, so that a file has one name wherever it is planned from.
-fn settled(path: &Path) -> io::Result<PathBuf> {
+pub(super) fn settled(path: &Path) -> io::Result<PathBuf> {
     let absolute = std::path::absolute(path)?;
     let parts: Vec<Component> = absolute.components().collect();
     let Some(last) = parts.iter().rposition(|part| *part == Component::ParentDir) else {
@@ -134,17 +134,21 @@ pub(super) fn state_of(path: &Path) -> Result<(u64, i64)> {
 
 /// The hash of the bytes of a file.
 fn content_of(path: &Path) -> Result<String> {
+    Ok(HEXLOWER.encode(&digest_of(file_and_layer(path).0)?))
+}
+
+/// The SHA-256 of a file.
+pub(super) fn digest_of(path: &Path) -> Result<[u8; 32]> {
     let reading = |e| Error::io("reading", e).of_input(path.display().to_string());
     let mut hasher = Sha256::new();
-    let mut file = File::open(file_and_layer(path).0).map_err(reading)?;
+    let mut file = File::open(path).map_err(reading)?;
     let mut buffer = vec![0; 1 << 20];
     loop {
         match file.read(&mut buffer) {
-            Ok(0) => break,
+            Ok(0) => return Ok(hasher.finalize().into()),
             Ok(count) => hasher.update(&buffer[..count]),
             Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
             Err(e) => return Err(reading(e)),
         }
     }
-    Ok(HEXLOWER.encode(&hasher.finalize()))
 }

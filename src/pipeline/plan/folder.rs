@@ -15,19 +15,14 @@ pub(super) struct Folder<'a> {
     pub(super) plan: &'a Plan,
 }
 
-/// Name of the part of a node.
-pub(super) fn mesh_name(node: &Node) -> String {
-    format!("{}.spm", node.name)
-}
+/// Endings of the files of a node behind its name: of its part, its residual, and its report.
+pub(super) const PART: &str = ".spm";
+pub(super) const RESIDUAL: &str = ".rest.spm";
+pub(super) const REPORT: &str = ".json";
 
-/// Name of the residual of a node.
-pub(super) fn residual_name(node: &Node) -> String {
-    format!("{}.rest.spm", node.name)
-}
-
-/// Name of the report of a node.
-pub(super) fn report_name(node: &Node) -> String {
-    format!("{}.json", node.name)
+/// Name of a file of a node.
+pub(super) fn file_name(node: &Node, ending: &str) -> String {
+    format!("{}{ending}", node.name)
 }
 
 /// Opens a stream that a node has written. It is no input that must stay: the node may be made again.
@@ -38,22 +33,22 @@ pub(super) fn open_stream(path: &Path) -> Result<StreamReader<Plain<File>>> {
     StreamReader::new(plain, name)
 }
 
-impl Folder<'_> {
+impl<'a> Folder<'a> {
     /// The folder for the files of a node: parts are spread over 256 of them.
     pub(super) fn home(&self, node: &Node) -> PathBuf {
         self.path.join(&node.name[..2])
     }
 
     pub(super) fn mesh(&self, node: &Node) -> PathBuf {
-        self.home(node).join(mesh_name(node))
+        self.home(node).join(file_name(node, PART))
     }
 
     pub(super) fn residual(&self, node: &Node) -> PathBuf {
-        self.home(node).join(residual_name(node))
+        self.home(node).join(file_name(node, RESIDUAL))
     }
 
     pub(super) fn report_path(&self, node: &Node) -> PathBuf {
-        self.home(node).join(report_name(node))
+        self.home(node).join(file_name(node, REPORT))
     }
 
     /// The report of a node, if there is one.
@@ -70,8 +65,8 @@ impl Folder<'_> {
         Ok(self.report(node)?.filter(|report| self.has(&self.mesh(node), &report.mesh)))
     }
 
-    /// The report of a node that need not be made: its part is there, made of the residuals that its children have
-    /// left; and its residual is, or the part of its parent, which has used it.
+    /// The report of a node that need not be made: its part is there, made of the residuals that its children
+    /// have left; and its residual is, or the part of its parent, which has used it.
     ///
     /// Nothing else decides whether a node is complete.
     pub(super) fn complete(&self, node: &Node) -> Result<Option<NodeReport>> {
@@ -86,6 +81,17 @@ impl Folder<'_> {
             (_, None) => true,
         };
         Ok(Some(report).filter(|_| is_used))
+    }
+
+    /// The nodes that are not complete.
+    pub(super) fn incomplete(&self) -> Result<Vec<&'a Node>> {
+        let mut found = Vec::new();
+        for node in &self.plan.nodes {
+            if self.complete(node)?.is_none() {
+                found.push(node);
+            }
+        }
+        Ok(found)
     }
 
     /// Whether the residual of a node is there, as it was written.

@@ -1,5 +1,5 @@
-//! The lattice whose cells are the boxes of a plan. It does not depend on how far the files reach, so that boxes stay
-//! where they are when files are added or removed.
+//! The lattice whose cells are the boxes of a plan. It does not depend on how far the files reach, so that
+//! boxes stay where they are when files are added or removed.
 
 use super::align::{Borders, border_near, borders_between, roundest_in};
 use spmesh_stream::model::bounds::{Bounds, Region};
@@ -7,8 +7,8 @@ use spmesh_stream::model::bounds::{Bounds, Region};
 /// Halvings of a cell of the pitch, down to the finest cells.
 const FINE: u32 = 20;
 
-/// Cells of the pitch below the origin. A third of them is the lower part of each larger cell that holds the origin:
-/// so small coordinates of either sign do not straddle the borders of large cells.
+/// Cells of the pitch below the origin. A third of them is the lower part of each larger cell that holds the
+/// origin: so small coordinates of either sign do not straddle the borders of large cells.
 const BEFORE: i64 = 0x55_5555_5555;
 
 /// The level of a cell that holds all others.
@@ -17,8 +17,8 @@ const TOP: u32 = FINE + 40;
 /// Coordinates may be as many pitches away from the origin.
 const REACH: f64 = (1u64 << 37) as f64;
 
-/// Equally spaced borders along each axis, all of which are those of the finest cells. A cell of level k has 2^k of
-/// these along each axis.
+/// Equally spaced borders along each axis, all of which are those of the finest cells. A cell of level k has
+/// 2^k of these along each axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lattice {
     origin: [f64; 3],
@@ -126,7 +126,8 @@ impl Lattice {
     }
 }
 
-/// The first border that is not negative: which tile is the first must not matter, nor how its place is rounded.
+/// The first border that is not negative: which tile is the first must not matter, nor how its place is
+/// rounded.
 fn reduced(place: f64, pitch: f64) -> f64 {
     let rest = place - (place / pitch).floor() * pitch;
     let is_multiple = rest.min(pitch - rest) <= 1e-9 * pitch;
@@ -143,7 +144,8 @@ fn border_of(tiles: &[(f64, f64)], pitch: f64) -> f64 {
     }
 }
 
-/// A pitch with which coordinates up to `greatest` are in reach. It changes with their size in large steps alone.
+/// A pitch with which coordinates up to `greatest` are in reach. It changes with their size in large steps
+/// alone.
 fn power_of_two(greatest: f64, are_whole: bool) -> f64 {
     if are_whole || greatest == 0.0 {
         return 1.0;

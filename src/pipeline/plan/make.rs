@@ -6,7 +6,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::folder::{Folder, mesh_name, open_stream, residual_name};
+use super::folder::{Folder, PART, RESIDUAL, file_name, open_stream};
 use super::leaf::{LeafCounts, write_leaf};
 use super::{FileSize, Node, NodeKind, NodeReport, Plan, hash_of_file};
 use crate::finalize::Recipe;
@@ -80,20 +80,19 @@ impl<'a> Maker<'a> {
         Ok(Maker { folder, work, recipe, note })
     }
 
-    /// Makes a node, and what it needs, if it is to be made `again` or is not complete; returns whether it has.
+    /// Makes a node, and what it needs, if it is to be made `again` or is not complete.
     ///
     /// # Errors
     /// Those of reading points, triangulating and writing; usage, if files have changed since the plan was
     /// made.
-    pub fn run(&self, number: u32, again: Again) -> Result<bool> {
+    pub fn run(&self, number: u32, again: Again) -> Result<()> {
         let node = self.folder.plan.node(number)?;
         if again != Again::All && self.folder.complete(node)?.is_some() {
             let damage = if again == Again::Damaged { self.folder.damage_of(node)? } else { None };
-            let Some(damage) = damage else { return Ok(false) };
+            let Some(damage) = damage else { return Ok(()) };
             (self.note)(&format!("{damage}: making node {number} again"));
         }
-        self.make(node)?;
-        Ok(true)
+        self.make(node)
     }
 
     /// Makes a node.
@@ -224,8 +223,8 @@ impl<'a> Maker<'a> {
         Ok(Outputs { mesh, residual: residual.transpose()? })
     }
 
-    /// Finalizes the points of a leaf on one thread, and triangulates them on others, with a pipe between them as
-    /// between two programs.
+    /// Finalizes the points of a leaf on one thread, and triangulates them on others, with a pipe between
+    /// them as between two programs.
     fn leaf(
         &self,
         node: &Node,
@@ -263,8 +262,8 @@ impl<'a> Maker<'a> {
             bytes: output.bytes_written(),
             hash: String::new(),
         };
-        report.mesh = size(mesh_name(node), &outputs.mesh);
-        report.residual = outputs.residual.as_ref().map(|residual| size(residual_name(node), residual));
+        report.mesh = size(file_name(node, PART), &outputs.mesh);
+        report.residual = outputs.residual.as_ref().map(|residual| size(file_name(node, RESIDUAL), residual));
         outputs.mesh.commit()?;
         outputs.residual.map_or(Ok(()), Output::commit)?;
         if let Some(residual) = &mut report.residual {

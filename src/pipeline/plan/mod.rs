@@ -3,9 +3,10 @@
 //! A [`Plan`] divides the box of all points into the boxes of leaves, and says which files reach into each of
 //! them; the nodes above join what their children left. It is made from the headers of files alone
 //! ([`plan_of`]). A node writes its part of the mesh, its residual, and a [`NodeReport`], which says that it
-//! is complete. All of them have its name, a hash of all that they depend on: so plans share what is the same in them.
-//! A [`Maker`] makes nodes, and [`collect()`] makes all parts one mesh, after it has compared the reports of all nodes
-//! with what the files state. [`incomplete`] says what is to be made, and [`spent`] what no plan needs any more.
+//! is complete. All of them have its name, a hash of all that they depend on: so plans share what is the same
+//! in them. A [`Maker`] makes nodes, and [`collect()`] makes all parts one mesh, after it has compared the
+//! reports of all nodes with what the files state. [`incomplete`] says what is to be made, and [`spent`] what
+//! no plan needs any more.
 
 mod align;
 mod check;

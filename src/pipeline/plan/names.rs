@@ -1,7 +1,7 @@
 //! Names of nodes: hashes of all that their parts depend on.
 //!
-//! So a part is found again by every plan that has its node, wherever that stands in the plan, and one that depends
-//! on what has changed has another name.
+//! So a part is found again by every plan that has its node, wherever that stands in the plan, and one that
+//! depends on what has changed has another name.
 
 use serde::Serialize;
 
@@ -79,6 +79,7 @@ fn name_of(node: &Node, plan: &Plan, common: &str) -> Result<String> {
     Ok(hash_of(&json(&Own { common, region: &node.region, children, files })?))
 }
 
-fn json(value: &impl Serialize) -> Result<Vec<u8>> {
+/// A part of a plan as JSON.
+pub(super) fn json(value: &impl Serialize) -> Result<Vec<u8>> {
     serde_json::to_vec(value).map_err(|e| Error::malformed(format!("the plan cannot be written: {e}")))
 }

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use spmesh_stream::model::bounds::{Bounds, Region};
 
-/// A half-open box in stored coordinates, with two or three axes. Sides without a number are infinitely far away.
+/// A half-open box in stored coordinates, with two or three axes. Sides without a number are infinitely far
+/// away.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NodeBox {

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::check;
-use super::files::{Naming, PlannedFile, Roots};
-use super::names::name_nodes;
+use super::files::{Naming, PlannedFile, Roots, settled};
+use super::names::{json, name_nodes};
 use super::node::Node;
 use super::tree::{Division, Share};
 use crate::reduce::Duplicates;
@@ -127,14 +127,15 @@ pub struct Plan {
 /// Makes a plan for surveyed files, which are at `paths`.
 ///
 /// # Errors
-/// Usage, if there would be too many nodes, a file is no regular one, or points of space are to get an elevation; I/O,
-/// if a file is gone.
+/// Usage, if there would be too many nodes, a file is no regular one, or points of space are to get an
+/// elevation; I/O, if a file is gone.
 pub fn plan_of(survey: &Survey, paths: &[PathBuf], planning: Planning) -> Result<Plan> {
     let Description { coordinates, dims, has_elevation, ref crs, ref attributes, .. } = survey.description;
     if dims == 3 && !matches!(planning.duplicates, Duplicates::First | Duplicates::Error) {
         return Err(Error::usage("points of space have no elevation: --duplicates first or error"));
     }
-    let planned = |path: &PathBuf, extent: &Extent| PlannedFile::new(path, extent, planning.naming);
+    let naming = Naming { roots: absolute(&planning.naming.roots)?, ..planning.naming.clone() };
+    let planned = |path: &PathBuf, extent: &Extent| PlannedFile::new(path, extent, &naming);
     let pairs = paths.iter().zip(&survey.extents);
     let files = pairs.map(|(path, extent)| planned(path, extent)).collect::<Result<Vec<_>>>()?;
     let mut names = HashSet::new();
@@ -168,7 +169,7 @@ pub fn plan_of(survey: &Survey, paths: &[PathBuf], planning: Planning) -> Result
         stages: stages_of(&nodes),
         nodes,
         beside: planning.beside.iter().map(|path| planned(path, &NO_POINTS)).collect::<Result<_>>()?,
-        roots: absolute(&planning.naming.roots)?,
+        roots: naming.roots.clone(),
         skipped: planning.skipped.to_vec(),
         files,
     };
@@ -179,15 +180,20 @@ pub fn plan_of(survey: &Survey, paths: &[PathBuf], planning: Planning) -> Result
 
 fn absolute(roots: &Roots) -> Result<Roots> {
     let absolute = |(name, folder): (&String, &PathBuf)| {
-        let folder = std::path::absolute(folder).map_err(|e| Error::io("finding", e))?;
-        Ok((name.clone(), folder))
+        let finding = |e| Error::io("finding", e).of_input(folder.display().to_string());
+        Ok((name.clone(), settled(folder).map_err(finding)?))
     };
     roots.iter().map(absolute).collect()
 }
 
 /// A hash of bytes, in hexadecimal digits.
 pub(super) fn hash_of(bytes: &[u8]) -> String {
-    HEXLOWER.encode(&Sha256::digest(bytes)[..8])
+    short(&Sha256::digest(bytes).into())
+}
+
+/// The first bytes of a hash, in hexadecimal digits.
+pub(super) fn short(digest: &[u8; 32]) -> String {
+    HEXLOWER.encode(&digest[..8])
 }
 
 /// First and last number of each stage.
@@ -206,8 +212,8 @@ impl Plan {
     /// Reads a plan.
     ///
     /// # Errors
-    /// I/O, if the file cannot be read; malformed, if it is no plan, or was changed by hand; unsupported, if its
-    /// version is another one.
+    /// I/O, if the file cannot be read; malformed, if it is no plan, or was changed by hand; unsupported, if
+    /// its version is another one.
     pub fn read(path: &Path) -> Result<Plan> {
         let named = |error: Error| error.of_input(path.display().to_string());
         let text = inputs::read(path, "a plan of", PLAN_LEN_MAX).map_err(named)?;
@@ -298,9 +304,7 @@ impl Plan {
     /// The hash of everything but the hash, and where roots are.
     fn hash(&self) -> Result<String> {
         let bare = Plan { id: String::new(), roots: Roots::new(), ..self.clone() };
-        let text = serde_json::to_vec(&bare)
-            .map_err(|e| Error::malformed(format!("the plan cannot be written: {e}")))?;
-        Ok(hash_of(&text))
+        Ok(hash_of(&json(&bare)?))
     }
 
     /// Dimensions of the geometry: 2 or 3.
@@ -329,7 +333,7 @@ impl Plan {
 
     /// The name of a node's part.
     pub fn part(&self, node: &Node) -> PartName {
-        PartName { node: u64::from_str_radix(&node.name, 16).unwrap_or_default(), below: node.below }
+        PartName { node: PartName::parse_node(&node.name).unwrap_or_default(), below: node.below }
     }
 
     /// The header of streams of points without attributes.

@@ -6,7 +6,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::Node;
-use super::planning::hash_of;
+use super::files::digest_of;
+use super::planning::{hash_of, short};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::REPORT_LEN_MAX;
 
@@ -45,11 +46,11 @@ fn is_report_len(len: u64) -> bool {
 /// # Errors
 /// I/O, if it cannot be read.
 pub fn hash_of_file(path: &Path) -> Result<String> {
-    let bytes = fs::read(path).map_err(|e| Error::io("reading", e).of_input(path.display().to_string()))?;
-    Ok(hash_of(&bytes))
+    Ok(short(&digest_of(path)?))
 }
 
-/// The report of a node. The node is complete if its report is there, and its files have the lengths that it states.
+/// The report of a node. The node is complete if its report is there, and its files have the lengths that it
+/// states.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NodeReport {
@@ -87,8 +88,8 @@ pub struct NodeReport {
     pub residual_points: u64,
     /// Hashes of the residuals that the node has joined, in the order of its children.
     pub joined: Vec<String>,
-    /// Bytes of points or residuals that the node has read, as they were passed on: of a LAZ file, those of its decoded
-    /// points.
+    /// Bytes of points or residuals that the node has read, as they were passed on: of a LAZ file, those of
+    /// its decoded points.
     pub read_bytes: u64,
     /// Time, processor time in seconds, and peak memory in bytes of the process.
     pub seconds: f64,
@@ -172,11 +173,6 @@ impl NodeReport {
         let bare = NodeReport { checksum: String::new(), ..self.clone() };
         let checksum = hash_of(bare.text()?.as_bytes());
         Ok(NodeReport { checksum, ..bare })
-    }
-
-    /// The files that the node has written.
-    pub fn outputs(&self) -> impl Iterator<Item = &FileSize> {
-        std::iter::once(&self.mesh).chain(&self.residual)
     }
 }
 

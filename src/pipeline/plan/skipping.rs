@@ -1,8 +1,9 @@
-//! The list of bad files that a mesh does without: behind a first line that says so, a line for each, with tabs between
-//! its path, what is wrong with it, its length, and when it was last changed. Of a file that was not there, these are `-`.
+//! The list of bad files that a mesh does without: behind a first line that says so, a line for each, with
+//! tabs between its path, what is wrong with it, its length, and when it was last changed. Of a file that was
+//! not there, these are `-`.
 //!
-//! A file that has changed since it was listed counts as mended. So a tile that is delivered again is read again, with
-//! no change to the list.
+//! A file that has changed since it was listed counts as mended. So a tile that is delivered again is read
+//! again, with no change to the list.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
@@ -48,8 +49,8 @@ impl State {
 const HEAD: &str = "# bad files: path, reason, length, time";
 
 impl SkipList {
-    /// Reads a list; that of a file which does not exist is empty. The same file is written in the end, so it does not
-    /// count as an input that must stay.
+    /// Reads a list; that of a file which does not exist is empty. The same file is written in the end, so it
+    /// does not count as an input that must stay.
     ///
     /// # Errors
     /// I/O, if the file cannot be read; malformed, if it is no such list.

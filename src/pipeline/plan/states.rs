@@ -6,32 +6,26 @@ use super::folder::Folder;
 use super::{Node, NodeKind, Plan};
 use spmesh_base::error::Result;
 
-/// Points of the residual of a node in the plane for each square root of the points below it, and in space for each
-/// two-thirds power.
+/// Points of the residual of a node in the plane for each square root of the points below it, and in space
+/// for each two-thirds power.
 const LEFT_IN_PLANE: f64 = 20.0;
 const LEFT_IN_SPACE: f64 = 12.0;
 
 /// Nodes of a batch, so that command lines stay short.
 const BATCH_NODES: usize = 500;
 
-/// The nodes that are not complete in a folder of parts, after a check that all files are as they were when the plan
-/// was made.
+/// The nodes that are not complete in a folder of parts, after a check that all files are as they were when
+/// the plan was made.
 ///
 /// # Errors
 /// Usage, if a file has changed; I/O, if one is gone, or a report cannot be read.
-pub fn incomplete<'a>(plan: &'a Plan, folder: &Path) -> Result<Vec<&'a Node>> {
+pub fn incomplete<'a>(plan: &'a Plan, folder: &'a Path) -> Result<Vec<&'a Node>> {
     plan.check_files()?;
-    let folder = Folder { path: folder, plan };
-    let mut found = Vec::new();
-    for node in &plan.nodes {
-        if folder.complete(node)?.is_none() {
-            found.push(node);
-        }
-    }
-    Ok(found)
+    Folder { path: folder, plan }.incomplete()
 }
 
-/// Points that a node is expected to triangulate: those of the files in a leaf, and above what its children leave.
+/// Points that a node is expected to triangulate: those of the files in a leaf, and above what its children
+/// leave.
 pub fn expected(plan: &Plan, node: &Node) -> u64 {
     let left = |&child: &u32| {
         let points = plan.nodes[child as usize].points as f64;
@@ -47,7 +41,8 @@ pub fn expected(plan: &Plan, node: &Node) -> u64 {
     }
 }
 
-/// Divides nodes into batches of one stage each, in their order: of so many expected points, and of at least one node.
+/// Divides nodes into batches of one stage each, in their order: of so many expected points, and of at least
+/// one node.
 pub fn batches<'a>(plan: &Plan, nodes: &[&'a Node], points: u64) -> Vec<Vec<&'a Node>> {
     let mut batches: Vec<Vec<&Node>> = Vec::new();
     let mut held = 0;

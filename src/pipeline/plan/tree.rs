@@ -51,8 +51,8 @@ impl Division {
         Ok(self.numbered(&root))
     }
 
-    /// The node of a cell, with those below it; `None` if no file reaches into the cell. A cell with one child only
-    /// is that child.
+    /// The node of a cell, with those below it; `None` if no file reaches into the cell. A cell with one
+    /// child only is that child.
     fn branch(
         &self,
         lattice: &Lattice,

@@ -27,7 +27,8 @@ const NODE: u64 = 0;
 
 /// Triangulates the residuals of the children of a node of a mesh in parts, and writes the triangles that
 /// become final in `options.part`, the box of the node, and what is left. Without an output for the residual,
-/// the node is the root, where all is final. `options.name` is the name of the part, which counts all parts below.
+/// the node is the root, where all is final. `options.name` is the name of the part, which counts all parts
+/// below.
 ///
 /// Cost and memory: those of one triangulation of the residuals.
 ///
@@ -153,8 +154,8 @@ fn check_boxes<R: Read, const D: usize>(readers: &[StreamReader<R>], region: &Re
     }
 }
 
-/// Reads a whole residual. Its vertices are those of other streams; `before` parts are joined before those that it
-/// is of.
+/// Reads a whole residual. Its vertices are those of other streams; `before` parts are joined before those
+/// that it is of.
 fn read_residual<R: Read, const D: usize>(
     reader: &mut StreamReader<R>,
     before: u32,

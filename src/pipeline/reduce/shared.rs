@@ -29,8 +29,8 @@ impl Shared {
         self.vertices.len()
     }
 
-    /// The name in all parts of vertex `id` of this stream, which is part `part`. Points that are no vertices, and
-    /// vertices that only other parts have, keep their names.
+    /// The name in all parts of vertex `id` of this stream, which is part `part`. Points that are no
+    /// vertices, and vertices that only other parts have, keep their names.
     pub(super) fn global(&self, part: Option<PartName>, id: u64) -> Result<u64> {
         if id == UNWRITTEN {
             return Ok(UNWRITTEN);
@@ -47,8 +47,8 @@ impl Shared {
         }
     }
 
-    /// Finalizes the vertices among `ids`, which are those of the residual: in this stream nothing uses them any
-    /// more, but other parts do.
+    /// Finalizes the vertices among `ids`, which are those of the residual: in this stream nothing uses them
+    /// any more, but other parts do.
     pub(super) fn keep<W: Write>(&self, stream: &mut StreamWriter<W>, ids: &[u64]) -> Result<()> {
         let is_here = |&id: &u64| id != UNWRITTEN && foreign_id(id).is_none();
         let mut kept: Vec<u64> = ids.iter().copied().filter(is_here).collect();

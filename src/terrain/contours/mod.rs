@@ -3,8 +3,8 @@
 //! `levels` numbers the elevations that have lines, and ranks each vertex among them. From the ranks,
 //! `crossings` finds the edges of a triangle that a line passes, in integers; `places` computes where.
 //! `open_lines` joins the pieces of adjacent triangles. `smooth` smooths complete lines on demand. A complete line
-//! gets its canonical form from `canonical`; `clip` cuts it at a mask, and `geojson` writes it. `drain` does all
-//! this. `decimals` computes with numbers as people write them.
+//! gets its canonical form from `canonical`; `clip` cuts it at a mask, and `geojson` writes it. `drain` does
+//! all this. `decimals` computes with numbers as people write them.
 
 mod canonical;
 mod clip;
@@ -146,8 +146,8 @@ pub struct Stats {
 ///
 /// Smoothed lines are within 0.45 intervals of their level, and cross neither each other nor themselves.
 ///
-/// Memory: the live vertices, the open lines, 16 bytes for each point or 48 if lines are smoothed, and those of
-/// [`ConcaveOutline`].
+/// Memory: the live vertices, the open lines, 16 bytes for each point or 48 if lines are smoothed, and those
+/// of [`ConcaveOutline`].
 ///
 /// # Errors
 /// If the input is not a triangle mesh with elevations, is malformed or truncated; if levels are too close to

@@ -12,11 +12,6 @@ use crate::files::{TilePlace, places};
 use spmesh_base::error::Result;
 use spmesh_formats::raster::TILE;
 
-/// The number of cells with a value.
-pub(super) fn count_known(values: &[f32]) -> u64 {
-    values.iter().filter(|value| !value.is_nan()).count() as u64
-}
-
 /// Reads the values of a tile; returns false for a blank tile.
 pub(super) type ReadTile<'a> = dyn FnMut(TilePlace, &mut [f32]) -> Result<bool> + 'a;
 
@@ -60,8 +55,8 @@ impl<'a> Flush<'a> {
         Ok(Flush { cache: &mut rasterizer.cache, around, holes, filled: 0 })
     }
 
-    /// Reads the final values of a tile; returns false for one without values. `read_written` reads tiles that
-    /// were written.
+    /// Reads the final values of a tile; returns false for one without values. `read_written` reads tiles
+    /// that were written.
     fn tile(&mut self, at: TilePlace, read_written: &mut ReadTile, values: &mut [f32]) -> Result<bool> {
         if !self.cache.read(at, values)? {
             return Ok(false);
@@ -91,8 +86,8 @@ impl<'a> Flush<'a> {
     }
 }
 
-/// Fills the cells of a tile that have no value and lie inside of the outline; `values` are those of the tile as
-/// drawn. Returns whether there are such cells near data.
+/// Fills the cells of a tile that have no value and lie inside of the outline; `values` are those of the tile
+/// as drawn. Returns whether there are such cells near data.
 pub(super) fn fill_holes(
     cache: &mut TileCache,
     filler: &mut Filler,

@@ -59,11 +59,12 @@ impl Highest {
         let mut reference = Reference::of(&System::of(crs), false, options.raster.format);
         let notices = std::mem::take(&mut reference.notices);
         let (file, grid) = (options.file(self.grid, &reference), self.grid);
+        let around = Surroundings::new(&grid, 0, None);
         let (known, _) = output.write(&file, options.memory, |tiles, _| {
             let mut known = 0;
             for at in places(tiles_of(&grid)?) {
                 if self.store.get(at, &mut self.tile)? {
-                    known += super::flush::count_known(&self.tile);
+                    known += around.count_known(at, &self.tile);
                     tiles.put(at, &self.tile)?;
                     self.store.remove(at);
                 }

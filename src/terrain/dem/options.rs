@@ -120,8 +120,8 @@ impl Options {
     /// The closed box of the world whose triangles decide the raster, in a mesh of which only these may be
     /// read; `None` if all triangles do.
     ///
-    /// A cell follows from the triangle at its centre, or from those over all of it; slopes and holes that are
-    /// filled, from cells around it. `header` is that of the mesh.
+    /// A cell follows from the triangle at its centre, or from those over all of it; slopes and holes that
+    /// are filled, from cells around it. `header` is that of the mesh.
     pub fn window(&self, grid: &Grid, header: &Header) -> Option<Bounds> {
         let grid = self.surroundings(grid, header).drawn;
         // The way of a concave outline begins at the border of the mesh, however far away that is.

@@ -60,7 +60,8 @@ impl<'t> Stages<'t> {
         self.counted.get(at, values)
     }
 
-    /// Ends the stages. Returns how many cells have a value, and how many tiles and bytes are in temporary files.
+    /// Ends the stages. Returns how many cells have a value, and how many tiles and bytes are in temporary
+    /// files.
     pub(super) fn finish(mut self) -> Result<[u64; 3]> {
         let mut spilled = [0; 2];
         if let Some(neighbours) = &mut self.neighbours {

@@ -5,7 +5,8 @@ use std::ops::Range;
 use crate::files::{CELLS, TilePlace};
 use spmesh_formats::raster::{Grid, TILE, Window};
 
-/// A raster, and the larger one that is drawn for it, so that a window has the values that the whole raster has there.
+/// A raster, and the larger one that is drawn for it, so that a window has the values that the whole raster
+/// has there.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Surroundings {
     /// The grid of what is drawn.
@@ -15,8 +16,8 @@ pub(super) struct Surroundings {
 }
 
 impl Surroundings {
-    /// The raster `grid`, whose cells follow from those up to `reach` cells away. There are none outside of the box of
-    /// the mesh, if it is known.
+    /// The raster `grid`, whose cells follow from those up to `reach` cells away. There are none outside of
+    /// the box of the mesh, if it is known.
     pub(super) fn new(grid: &Grid, reach: u32, mesh: Option<Window>) -> Surroundings {
         let (right, bottom) =
             (grid.left + f64::from(grid.columns) * grid.step, grid.top - f64::from(grid.rows) * grid.step);

@@ -41,29 +41,11 @@ impl<W: Write + Seek> Destination<'_, W> {
         memory: u64,
         draw: impl FnOnce(&mut dyn TileTarget, u64) -> Result<T>,
     ) -> Result<(T, [u64; 2])> {
-        let half = memory / 2;
-        match self {
-            Destination::File(output) if file.options.format == RasterFormat::GeoTiff => {
-                let drawn = raster::write_tiles(output, file, |tiles| draw(tiles, memory))?;
-                Ok((drawn, [0; 2]))
-            }
-            Destination::File(output) => {
-                let temp_dir = file.options.temp_dir.as_deref();
-                let mut store = TileStore::new(file.samples.bands(), half, temp_dir);
-                let drawn = draw(&mut store, half)?;
-                part::write(output, file, &mut store)?;
-                Ok((drawn, [store.spilled, store.spill_len()]))
-            }
-            Destination::Sheets(sheets) => {
-                let mut cutter = Cutter::new(sheets, file, &file.grid, [0; 2], half)?;
-                let drawn = draw(&mut cutter, half)?;
-                Ok((drawn, cutter.finish()?))
-            }
-        }
+        self.write_part(file, (&file.grid, &[0..file.grid.columns, 0..file.grid.rows]), memory, draw)
     }
 
-    /// Writes a raster as [`Destination::write`] does, which has these columns and rows of the grid whose tiles
-    /// `draw` supplies.
+    /// Writes a raster as [`Destination::write`] does, which has these columns and rows of the grid whose
+    /// tiles `draw` supplies.
     pub(crate) fn write_part<T>(
         self,
         file: &RasterFile,
@@ -73,7 +55,12 @@ impl<W: Write + Seek> Destination<'_, W> {
     ) -> Result<(T, [u64; 2])> {
         let half = memory / 2;
         match self {
-            _ if *grid == file.grid => self.write(file, memory, draw),
+            Destination::File(output)
+                if file.options.format == RasterFormat::GeoTiff && *grid == file.grid =>
+            {
+                let drawn = raster::write_tiles(output, file, |tiles| draw(tiles, memory))?;
+                Ok((drawn, [0; 2]))
+            }
             Destination::File(output) => {
                 let mut store = TileStore::new(file.samples.bands(), half, file.options.temp_dir.as_deref());
                 let drawn = draw(&mut store, half)?;

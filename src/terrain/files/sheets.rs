@@ -89,8 +89,8 @@ pub(super) struct Cutter<'s> {
 }
 
 impl<'s> Cutter<'s> {
-    /// A cutter of a raster, which starts at the cell `first` of the grid that tiles are of; tiles beyond `memory`
-    /// wait in a temporary file.
+    /// A cutter of a raster, which starts at the cell `first` of the grid that tiles are of; tiles beyond
+    /// `memory` wait in a temporary file.
     pub(super) fn new(
         sheets: &'s mut Sheets,
         file: &RasterFile<'s>,

@@ -206,8 +206,8 @@ impl Here {
         }
     }
 
-    /// Writes a plan as of the program, which takes arguments from its process; returns the names of its nodes. Its
-    /// files are relative to the folder, so these are the same in all folders.
+    /// Writes a plan as of the program, which takes arguments from its process; returns the names of its
+    /// nodes. Its files are relative to the folder, so these are the same in all folders.
     fn write_plan(&self) -> Vec<String> {
         let paths = [PathBuf::from(self.path("points.txt"))];
         let options = SourceOptions { dims: 2, ..SourceOptions::default() };

@@ -1,7 +1,7 @@
 //! The parts of a COPC file in a box: each node of its octree is a chunk.
 //!
-//! Source: COPC specification 1.0, copc.io. Beyond it, the reader tests that the first record of each chunk, which
-//! is not compressed, lies in the cube of its node: else a wrong key would hide the chunk.
+//! Source: COPC specification 1.0, copc.io. Beyond it, the reader tests that the first record of each chunk,
+//! which is not compressed, lies in the cube of its node: else a wrong key would hide the chunk.
 
 use std::ops::Range;
 
@@ -20,8 +20,8 @@ const INFO_LEN: usize = 160;
 /// Byte of it from which it states the place of the hierarchy.
 const ROOT_AT: u64 = 40;
 
-/// How many steps of the file's grid a point may lie outside of the cube of its node: writers round coordinates
-/// before or after they choose the node.
+/// How many steps of the file's grid a point may lie outside of the cube of its node: writers round
+/// coordinates before or after they choose the node.
 const SLACK: Point = [1.0; 3];
 
 /// What the info record states.

@@ -43,8 +43,8 @@ const NOTICES_MAX: usize = 20;
 /// Flags of plans.
 #[derive(Debug, Args)]
 pub(super) struct PlanFlags {
-    /// Write a plan for many jobs into this file, from headers alone, and read no points: which boxes there are, and
-    /// which files reach into each (see spnode)
+    /// Write a plan for many jobs into this file, from headers alone, and read no points: which boxes there
+    /// are, and which files reach into each (see spnode)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "level", "preserve", "salvage"])]
     pub(super) plan: Option<PathBuf>,
 
@@ -59,8 +59,9 @@ pub(super) struct PlanFlags {
     #[arg(long, requires = "plan")]
     hash: bool,
 
-    /// With --plan: leave out files that cannot be read, and list them in FILE, one in each line. Files that it lists
-    /// already are left out, too, until they change; a job that finds a damaged file says its name for it
+    /// With --plan: leave out files that cannot be read, and list them in FILE, one in each line. Files that
+    /// it lists already are left out, too, until they change; a job that finds a damaged file says its name
+    /// for it
     #[arg(long, value_name = "FILE", requires = "plan")]
     skip_bad: Option<PathBuf>,
 
@@ -83,14 +84,13 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
         let message = "plans need files, which jobs read later: give their names";
         return Err(Error::usage(message).of_input(stdin.display().to_string()).into());
     }
-    let mut bad = flags.plan.skip_bad.as_deref().map(SkipList::read).transpose()?;
+    let list = flags.plan.skip_bad.as_deref();
+    let mut bad = list.map_or(Ok(SkipList::default()), SkipList::read)?;
     let given = paths.clone();
-    if let Some(bad) = &bad {
-        paths.retain(|path| !bad.has(path));
-    }
+    paths.retain(|path| !bad.has(path));
     let mut output = Output::create(path, false)?;
     let mut progress = Progress::counting("files", &flags.common, "headers", Some(paths.len() as u64));
-    let survey = Survey::of(&paths, &flags.source_options()?, bad.is_some(), |done| progress.set(done))?;
+    let survey = Survey::of(&paths, &flags.source_options()?, list.is_some(), |done| progress.set(done))?;
     drop(progress);
     for message in survey.notices.iter().take(NOTICES_MAX) {
         notice(TOOL, &flags.common, message);
@@ -103,7 +103,8 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
             &format!("{} like these", counted(more as u64, "more notice", "more notices")),
         );
     }
-    let skipped = leave_out(&mut paths, &survey, bad.as_mut())?.map_or(Vec::new(), |bad| bad.skipped(&given));
+    leave_out(&mut paths, &survey, &mut bad)?;
+    let skipped = bad.skipped(&given);
     let leaf_points = flags.plan.leaf_points.unwrap_or(LEAF_POINTS);
     let arguments = arguments_beside(&flags.inputs)?;
     check_arguments(flags, &arguments)?;
@@ -117,10 +118,10 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
         skipped: &skipped,
     };
     let plan = plan_of(&survey, &paths, planning)?;
-    plan.note_files()?;
     output.write_all(plan.to_json()?.as_bytes()).map_err(|e| Error::io("writing the plan", e))?;
-    // The list first: it may be refused.
-    if let (Some(bad), Some(list)) = (&bad, &flags.plan.skip_bad) {
+    if let Some(list) = list {
+        // Before the plan gets its name: the list is refused if it would replace a file of the plan.
+        plan.note_files()?;
         bad.write(list)?;
         if !skipped.is_empty() {
             let files = counted(skipped.len() as u64, "bad file is", "bad files are");
@@ -135,20 +136,12 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
 }
 
 /// Takes bad files out of `paths`, and lists them.
-fn leave_out<'a>(
-    paths: &mut Vec<PathBuf>,
-    survey: &Survey,
-    list: Option<&'a mut SkipList>,
-) -> Result<Option<&'a SkipList>> {
-    let Some(list) = list else { return Ok(None) };
-    for (number, error) in &survey.bad {
-        list.add(&paths[*number], error)?;
+fn leave_out(paths: &mut Vec<PathBuf>, survey: &Survey, list: &mut SkipList) -> Result<()> {
+    for (number, error) in survey.bad.iter().rev() {
+        list.add(&paths.remove(*number), error)?;
     }
-    let bad: HashSet<usize> = survey.bad.iter().map(|(number, _)| *number).collect();
-    let mut number = 0..;
-    paths.retain(|_| !number.next().is_some_and(|number| bad.contains(&number)));
     list.settle(paths);
-    Ok(Some(list))
+    Ok(())
 }
 
 /// Refuses what takes more than the points of one leaf.
@@ -189,8 +182,8 @@ fn arguments_beside(files: &[PathBuf]) -> Result<Vec<String>> {
     others.map(text).collect()
 }
 
-/// Checks that jobs will read the arguments as this program does. They would not if the value of a flag were also the
-/// name of a file.
+/// Checks that jobs will read the arguments as this program does. They would not if the value of a flag were
+/// also the name of a file.
 fn check_arguments(flags: &Flags, arguments: &[String]) -> Result<()> {
     let text = |flags: &Flags| {
         format!(
