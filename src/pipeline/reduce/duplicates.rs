@@ -6,8 +6,8 @@ use spmesh_stream::{Coordinates, Weights};
 
 /// Which elevation survives where points coincide in x and y. The attributes are those of the point whose
 /// elevation survives.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[cfg_attr(feature = "flags", derive(clap::ValueEnum))]
 pub enum Duplicates {
     /// The elevation of the point that comes first
