@@ -9,6 +9,10 @@ mod endless;
 mod files;
 mod finalize;
 mod inputs;
+#[path = "sources/las_file.rs"]
+#[allow(dead_code, reason = "other test programs use more of it")]
+mod las_file;
+mod levels;
 mod limits;
 mod lines;
 mod messages;

@@ -7,11 +7,24 @@ use crate::sink::constrained::Surveyed;
 use crate::sink::{EventSink, expect_kind, write_error};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::decimal::Decimal;
-use spmesh_stream::{Event, Header, Kind};
+use spmesh_stream::{Crs, Event, Header, Kind};
+
+/// The start of a collection of features, up to the first of them. If `crs` states an EPSG code, the
+/// collection has the member `crs` of the 2008 specification. RFC 7946 removed it and, without prior
+/// arrangement, allows only longitude and latitude in WGS 84; programs that know the member still read it.
+pub fn collection_head(crs: &Crs) -> String {
+    let member = epsg_code(crs).map_or_else(String::new, |code| {
+        format!(r#""crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::{code}"}}}},"#)
+    });
+    format!(r#"{{"type":"FeatureCollection",{member}"features":["#)
+}
+
+/// The EPSG code of the system of x and y, if it has one.
+pub fn epsg_code(crs: &Crs) -> Option<u32> {
+    System::of(crs).horizontal?.code
+}
 
 /// Writes each edge on a line as a `LineString` with the property `line`, the number of the line in its file.
-/// If the stream states an EPSG code, the collection has the member `crs` of the 2008 specification, as
-/// contour lines have.
 pub struct GeoJsonSink<W> {
     output: W,
     mesh: Surveyed,
@@ -31,13 +44,7 @@ impl<W: Write> GeoJsonSink<W> {
                  constrained",
             ));
         }
-        output.write_all(b"{\"type\":\"FeatureCollection\",").map_err(write_error)?;
-        if let Some(code) = System::of(&header.crs).horizontal.and_then(|horizontal| horizontal.code) {
-            let name = format!("urn:ogc:def:crs:EPSG::{code}");
-            write!(output, r#""crs":{{"type":"name","properties":{{"name":"{name}"}}}},"#)
-                .map_err(write_error)?;
-        }
-        output.write_all(b"\"features\":[").map_err(write_error)?;
+        output.write_all(collection_head(&header.crs).as_bytes()).map_err(write_error)?;
         Ok(GeoJsonSink { output, mesh: Surveyed::new(header), has_features: false })
     }
 }

@@ -175,7 +175,7 @@ impl<'a> FreePlaces<'a> {
 }
 
 impl Keep for FreePlaces<'_> {
-    fn keeps(&mut self, point: &Point) -> bool {
+    fn keeps(&mut self, point: &mut Point) -> bool {
         self.relief.enter(point);
         let is_free = !self.added.has_place_of(point);
         self.replaced += u64::from(!is_free);

@@ -48,8 +48,8 @@ impl Passes for Input {
 
 /// Decides which points of a pass are kept.
 pub(super) trait Keep: Send {
-    /// Whether the next point is kept.
-    fn keeps(&mut self, point: &Point) -> bool;
+    /// Whether the next point is kept; its elevation may change.
+    fn keeps(&mut self, point: &mut Point) -> bool;
 
     /// The pass is at its end.
     fn end(&mut self) -> Result<()>;
@@ -82,7 +82,7 @@ impl<K: Keep> PointReader for KeptPoints<'_, K> {
             }
             let mut kept = 0;
             for index in 0..batch.len() {
-                if keep.keeps(&batch[index]) {
+                if keep.keeps(&mut batch[index]) {
                     batch[kept] = batch[index];
                     kept += 1;
                     rows.extend_from_slice(&reader.rows()[index * *row_len..(index + 1) * *row_len]);

@@ -6,20 +6,24 @@ use std::path::PathBuf;
 
 use super::added::AddedPoints;
 use super::budget::Budget;
+use super::flatten::{Evidence, Flatten};
 use super::options::Options;
 use super::passes::{Observer, Passes};
 use super::run::Stats;
 use super::run::run_with;
 use super::select::{Areas, Selected};
-use super::shores::{Shores, extent, shore_width, with_points};
 use super::weigh::{Weighed, Weighing};
-use crate::lines::{self, ABOUT_FAR, Changes, Levels, Lines, Sources, Target, Water, is_far};
+use crate::lines::{self, ABOUT_FAR, Changes, Levels, Lines, Shore, Sources, Target, Water, is_far};
 use spmesh_base::error::{Error, Result, counted_of};
 use spmesh_base::limits::LINE_VERTEX_BYTES;
 use spmesh_delaunay::network::Network;
-use spmesh_formats::source::{Description, Dropped, Input, SourceOptions};
+use spmesh_formats::source::{Dropped, Filters, Input, SourceOptions};
 use spmesh_stream::Coordinates;
-use spmesh_stream::model::bounds::{Bounds, Point};
+use spmesh_stream::model::bounds::Point;
+use spmesh_stream::model::points::Point2;
+
+/// The class of points of water, by the LAS specification.
+const WATER_CLASS: u8 = 9;
 
 /// What is finalized, and how.
 #[derive(Debug, Clone)]
@@ -42,17 +46,6 @@ pub struct Recipe {
     pub weighing: Option<Weighing>,
     /// How points are finalized. What the header says of weights follows from `weighing`.
     pub options: Options,
-}
-
-/// Lakes and rivers, and how their levels are found where no file states them.
-#[derive(Debug, Clone)]
-pub struct Flatten {
-    /// Their files.
-    pub files: Vec<PathBuf>,
-    /// The percentile of the elevations of points near a shore, from 0 to 100.
-    pub percentile: f64,
-    /// Up to this distance points are near, in world units; a few mean distances between points if `None`.
-    pub width: Option<f64>,
 }
 
 /// What a run has done.
@@ -90,6 +83,8 @@ pub struct LineStats {
     pub points: usize,
     /// Points of the input that they replace.
     pub replaced: u64,
+    /// Points of the input that were raised to the water.
+    pub raised: u64,
     /// What was changed about lines.
     pub changes: Changes,
 }
@@ -116,6 +111,36 @@ impl Recipe {
         Input::open(&self.inputs, &source)
     }
 
+    /// Opens the points of the class of water, if levels may be found from them.
+    fn open_water_points(&self) -> Result<Option<Input>> {
+        if self.flatten.water_points.is_none() {
+            return Ok(None);
+        }
+        let filters =
+            Filters { keep_class: vec![WATER_CLASS], drop_class: Vec::new(), ..self.source.filters.clone() };
+        let source = SourceOptions { filters, ..self.source.clone() };
+        Input::open(&self.inputs, &source).map(Some)
+    }
+
+    /// Writes the lakes and rivers with their levels as GeoJSON, and no points. Returns what is said of each, and
+    /// messages for the user.
+    ///
+    /// # Errors
+    /// Those of reading and writing; malformed, if a polygon has neither a level nor points, or
+    /// lakes of different levels meet; usage, if there are no points.
+    pub fn write_levels(&self, observer: &mut dyn Observer, output: &mut dyn Write) -> Result<Vec<Shore>> {
+        let input = self.open()?;
+        input.notices().iter().for_each(|message| observer.notice(message));
+        let target = Target::of_points(input.description());
+        let (areas, notices) = Areas::read(&self.clip, &self.drop_inside, &target)?;
+        let Lines { network, mut water, changes, .. } = self.read_lines(&target)?;
+        notices.iter().chain(&changes.notices).for_each(|message| observer.notice(message));
+        let in_water = self.open_water_points()?;
+        let in_water = in_water.as_ref().map(|input| Selected::new(input, &areas));
+        let points = Evidence { points: &Selected::new(&input, &areas), in_water: in_water.as_ref() };
+        self.flatten.write_levels(&network, &mut water, &points, observer, output)
+    }
+
     /// Finalizes `input`, which are the points of [`Self::open`] or a part of them.
     pub(crate) fn finalize(
         &self,
@@ -130,9 +155,12 @@ impl Recipe {
         let levels = if water.polygons.is_empty() {
             Levels::default()
         } else {
-            let points = Selected::new(input, &areas);
+            let in_water = self.open_water_points()?;
+            let in_water = in_water.as_ref().map(|input| Selected::new(input, &areas));
+            let points = Evidence { points: &Selected::new(input, &areas), in_water: in_water.as_ref() };
             let levels = self.flatten.levels(&network, &mut water, &points, observer)?;
-            areas = areas.with_water(water.edges(&network).into_iter());
+            let raise = self.flatten.raising(&network, &water, &levels, target.coordinates);
+            areas = areas.with_water(water.edges(&network), raise);
             levels
         };
         levels.notices.iter().for_each(|message| observer.notice(message));
@@ -158,10 +186,11 @@ impl Recipe {
         if let Some(text) = about_far(&stated, added.around(&stated), &target.coordinates) {
             observer.notice(&text);
         }
+        let [clip, inside, flooded, raised] = selected.counts();
         Ok(Outcome {
             stats,
-            dropped: Drops { areas: selected.dropped(), ..Drops::default() },
-            lines: LineStats { has_lines, water, points, replaced, changes },
+            dropped: Drops { areas: [clip, inside, flooded], ..Drops::default() },
+            lines: LineStats { has_lines, water, points, replaced, raised, changes },
             levels,
             salvaged: Vec::new(),
         })
@@ -192,11 +221,33 @@ impl Recipe {
         }
     }
 
+    /// How many vertices of water there are at which `is_covered` does not hold, and in all, for points of
+    /// `target` that many runs take in parts.
+    ///
+    /// # Errors
+    /// Those of reading; usage, if the level of some water is not stated, since no part has all points that say
+    /// it.
+    pub fn stated_water(&self, target: &Target, is_covered: impl Fn(Point2) -> bool) -> Result<[u64; 2]> {
+        let Lines { network, water, .. } = self.read_lines(target)?;
+        if let Some(polygon) = water.polygons.iter().find(|polygon| polygon.needs_points(&water)) {
+            return Err(Error::usage(format!(
+                "{}: no level is stated, and jobs see the points of their own boxes alone: write all levels first, with \
+                 --levels, and flatten with that file",
+                polygon.position
+            )));
+        }
+        let vertices = water.stated_vertices(&network);
+        let uncovered =
+            vertices.iter().filter(|&&vertex| !is_covered(network.vertices[vertex as usize].place));
+        Ok([uncovered.count() as u64, vertices.len() as u64])
+    }
+
     /// The vertices of lines and water that become points, and those of them whose elevation a file states.
     fn added(&self, network: &Network, levels: &Levels, water: &Water, target: &Target) -> [Vec<Point>; 2] {
         let of_water = water.stated_vertices(network);
         let is_kept = |point: &Point| {
             self.source.bounds.is_none_or(|bounds| bounds.contains(target.coordinates.to_decimal(*point)))
+                && self.source.window.is_none_or(|window| window.contains(*point))
         };
         let [mut all, mut stated] = [Vec::new(), Vec::new()];
         for (number, vertex) in (0..).zip(&network.vertices) {
@@ -229,65 +280,4 @@ fn about_far(stated: &[Point], around: Vec<Option<[f64; 2]>>, coordinates: &Coor
          Check them; {ABOUT_FAR}",
         counted_of(far.count() as u64 + 1, stated.len() as u64, elevations, ["is", "are"])
     ))
-}
-
-impl Flatten {
-    /// Finds the levels, from those of `points` that are near a shore if none are stated. Leaves water
-    /// without points out.
-    fn levels(
-        &self,
-        network: &Network,
-        water: &mut Water,
-        points: &dyn Passes,
-        observer: &mut dyn Observer,
-    ) -> Result<Levels> {
-        let (target, needed) = (Target::of_points(points.description()), water.need_points());
-        let (extent, width) = self.extent(&needed, points, observer)?;
-        let mut shores = vec![Vec::new(); needed.len()];
-        if needed.contains(&true) {
-            shores = Shores::new(water.edges(network), &needed, width).collect(points, observer)?;
-        }
-        let is_beyond = |number: usize| {
-            extent.is_some_and(|(bounds, _)| !water.polygons[number].is_within(width, &bounds, network))
-        };
-        let is_empty = |number: usize| !needed[number] || shores[number].is_empty();
-        let mut far: Vec<bool> = (0..needed.len()).map(|it| is_empty(it) && is_beyond(it)).collect();
-        let is_doubtful = |number: usize| needed[number] && shores[number].is_empty() && !far[number];
-        if (0..needed.len()).any(is_doubtful) {
-            let edges = water.edges(network).into_iter().filter(|(number, _)| is_doubtful(*number as usize));
-            let inside = with_points(edges, points, observer)?;
-            let is_dry = |number: &usize| is_doubtful(*number) && !inside.contains(&(*number as u32));
-            let dry: Vec<usize> = (0..needed.len()).filter(is_dry).collect();
-            dry.into_iter().for_each(|number| far[number] = true);
-        }
-        if let Some(text) = water.about_far(&far) {
-            observer.notice(&text);
-        }
-        let left_out = water.leave_out(&far, network);
-        let mut far = far.into_iter();
-        shores.retain(|_| far.next() == Some(false));
-        Ok(Levels { left_out, ..Levels::find(network, water, shores, self.percentile, &target)? })
-    }
-
-    /// The box and the number of the points, as far as they are known, and the width of shores in stored
-    /// units. Headers say enough of the points where levels are stated.
-    fn extent(
-        &self,
-        needed: &[bool],
-        points: &dyn Passes,
-        observer: &mut dyn Observer,
-    ) -> Result<(Option<(Bounds, u64)>, f64)> {
-        let &Description { stated_bounds, stated_points, coordinates, .. } = points.description();
-        let mut known = stated_bounds.zip(stated_points);
-        let lacks_width = self.width.is_none() && needed.contains(&true);
-        if lacks_width || known.is_none() && needed.contains(&false) {
-            known = extent(points, observer)?;
-        }
-        let width = match (self.width, coordinates) {
-            (Some(width), Coordinates::I32 { scale, .. }) => width / scale[0],
-            (Some(width), Coordinates::F64) => width,
-            (None, _) => known.map_or(1.0, shore_width),
-        };
-        Ok((known, width))
-    }
 }

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::passes::{Keep, KeptPoints, Passes};
+use super::shores::Raise;
 use crate::lines::Target;
 use crate::polygons::{Polygons, Rings, Side};
 use spmesh_base::error::Result;
@@ -19,6 +20,8 @@ pub(super) struct Areas {
     clip: Option<(Polygons, Option<[Point2; 2]>)>,
     drop: Option<Polygons>,
     water: Option<Polygons>,
+    /// Points near these shores are not below the water.
+    raise: Option<Raise>,
 }
 
 impl Areas {
@@ -29,6 +32,7 @@ impl Areas {
             clip: clip.map(|polygons| (Polygons::new(polygons), extent(polygons))),
             drop: (!drop.is_empty()).then(|| Polygons::new(drop)),
             water: None,
+            raise: None,
         }
     }
 
@@ -45,9 +49,10 @@ impl Areas {
         Ok((Areas::new((!clip.is_empty()).then_some(&kept[..]), &dropped), notices))
     }
 
-    /// Drops points in water, too, and those on its shores: the edges of its polygons with their numbers.
-    pub(super) fn with_water(self, edges: impl Iterator<Item = (u32, [Point2; 2])>) -> Areas {
-        Areas { water: Some(Polygons::of_edges(edges)), ..self }
+    /// Drops points in water, too, and those on its shores: the edges of its polygons with their numbers. Points
+    /// near shores are raised to the water, if that is asked for.
+    pub(super) fn with_water(self, edges: Vec<(u32, [Point2; 2])>, raise: Option<Raise>) -> Areas {
+        Areas { water: Some(Polygons::of_edges(edges.into_iter())), raise, ..self }
     }
 
     /// Number of edges of all polygons, and the bytes that they take.
@@ -89,7 +94,7 @@ pub(super) struct Selected<'a> {
     input: &'a dyn Passes,
     areas: &'a Areas,
     description: Description,
-    counts: [AtomicU64; 3],
+    counts: [AtomicU64; 4],
 }
 
 impl<'a> Selected<'a> {
@@ -102,8 +107,9 @@ impl<'a> Selected<'a> {
         Selected { input, areas, description, counts: Default::default() }
     }
 
-    /// After a run: points outside of the polygons to keep, inside of those to drop, and in water.
-    pub(super) fn dropped(&self) -> [u64; 3] {
+    /// After a run: points outside of the polygons to keep, inside of those to drop, and in water; and points
+    /// that were raised to the water.
+    pub(super) fn counts(&self) -> [u64; 4] {
         self.counts.each_ref().map(|count| count.load(Ordering::Relaxed))
     }
 }
@@ -124,7 +130,7 @@ impl Passes for Selected<'_> {
     }
 
     fn read(&self) -> Result<Box<dyn PointReader + '_>> {
-        let pass = SelectedPass { areas: self.areas, counts: &self.counts, dropped: [0; 3] };
+        let pass = SelectedPass { areas: self.areas, counts: &self.counts, own: [0; 4] };
         Ok(Box::new(KeptPoints::new(self.input, pass)?))
     }
 
@@ -137,23 +143,29 @@ impl Passes for Selected<'_> {
 struct SelectedPass<'a> {
     areas: &'a Areas,
     /// For the counts of a whole pass.
-    counts: &'a [AtomicU64; 3],
-    dropped: [u64; 3],
+    counts: &'a [AtomicU64; 4],
+    own: [u64; 4],
 }
 
 impl Keep for SelectedPass<'_> {
-    fn keeps(&mut self, &[x, y, _]: &Point) -> bool {
+    fn keeps(&mut self, point: &mut Point) -> bool {
+        let place = [point[0], point[1]];
         let tests = [Areas::clips, Areas::drops, Areas::floods];
-        let reason = tests.iter().position(|test| test(self.areas, [x, y]));
-        reason.into_iter().for_each(|reason| self.dropped[reason] += 1);
-        reason.is_none()
+        if let Some(reason) = tests.iter().position(|test| test(self.areas, place)) {
+            self.own[reason] += 1;
+            return false;
+        }
+        if let Some(level) = self.areas.raise.as_ref().and_then(|raise| raise.level(place))
+            && point[2] < level
+        {
+            point[2] = level;
+            self.own[3] += 1;
+        }
+        true
     }
 
     fn end(&mut self) -> Result<()> {
-        self.counts
-            .iter()
-            .zip(self.dropped)
-            .for_each(|(count, dropped)| count.store(dropped, Ordering::Relaxed));
+        self.counts.iter().zip(self.own).for_each(|(count, own)| count.store(own, Ordering::Relaxed));
         Ok(())
     }
 }

@@ -2,13 +2,14 @@
 //!
 //! A pass before all others collects them. Memory: 24 bytes for each point and each shore that it is near.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::batch::{PointBatch, read_ahead};
 use super::passes::{Observer, Pass, Passes};
 use crate::polygons::{Polygons, Side};
 use spmesh_base::error::Result;
 use spmesh_delaunay::cell_tree::{CellTree, Fineness, Item};
+use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::model::points::Point2;
 
@@ -59,24 +60,47 @@ pub(super) fn with_points(
     input: &dyn Passes,
     observer: &mut dyn Observer,
 ) -> Result<BTreeSet<u32>> {
+    let mut found = BTreeSet::new();
+    for_each_inside(edges, input, observer, |number, _| _ = found.insert(number))?;
+    Ok(found)
+}
+
+/// The points inside of each of the polygons with these numbers that has some; takes a pass.
+///
+/// # Errors
+/// Those of the input.
+pub(super) fn collect_inside(
+    edges: impl Iterator<Item = (u32, [Point2; 2])>,
+    input: &dyn Passes,
+    observer: &mut dyn Observer,
+) -> Result<BTreeMap<u32, Vec<Point>>> {
+    let mut found: BTreeMap<u32, Vec<Point>> = BTreeMap::new();
+    for_each_inside(edges, input, observer, |number, point| found.entry(number).or_default().push(point))?;
+    Ok(found)
+}
+
+/// Calls `found` with each point that is inside of a polygon, and the number of the polygon; takes a pass.
+fn for_each_inside(
+    edges: impl Iterator<Item = (u32, [Point2; 2])>,
+    input: &dyn Passes,
+    observer: &mut dyn Observer,
+    mut found: impl FnMut(u32, Point),
+) -> Result<()> {
     observer.pass(Pass::Shores, input.description().stated_points);
-    let polygons = Polygons::of_edges(edges);
-    let (mut found, mut done) = (BTreeSet::new(), 0);
-    let prepare = |batch: &PointBatch, inside: &mut BTreeSet<u32>| {
+    let (polygons, mut done) = (Polygons::of_edges(edges), 0);
+    let prepare = |batch: &PointBatch, inside: &mut Vec<(u32, Point)>| {
         inside.clear();
-        let place = |point: &Point| [point[0], point[1]];
-        batch.points.iter().for_each(|point| {
-            polygons.for_each_around(place(point), |number| _ = inside.insert(number));
-        });
+        for &point in &batch.points {
+            polygons.for_each_around([point[0], point[1]], |number| inside.push((number, point)));
+        }
         Ok(())
     };
     read_ahead(&mut *input.read()?, prepare, |batch, inside| {
-        found.append(inside);
+        inside.iter().for_each(|&(number, point)| found(number, point));
         done += batch.points.len() as u64;
         observer.done(done);
         Ok(())
-    })?;
-    Ok(found)
+    })
 }
 
 /// Shores, and the points that count for them: those at most a width away, and neither in water nor on a
@@ -118,7 +142,7 @@ impl Shores {
         let Some((tree, cell)) = self.cells.leaf(place) else { return };
         for &number in tree.list(cell) {
             let (polygon, ends) = self.edges[number as usize];
-            if found.last() != Some(&polygon) && square(ends, place) <= self.width * self.width {
+            if found.last() != Some(&polygon) && square(ends, place).0 <= self.width * self.width {
                 found.push(polygon);
             }
         }
@@ -153,11 +177,49 @@ impl Shores {
     }
 }
 
-/// The square of the distance of a place from an edge, in f64.
-fn square([a, b]: [Point2; 2], [x, y]: Point2) -> f64 {
+/// Shores with their levels, to which points near them are raised.
+#[derive(Debug)]
+pub(super) struct Raise {
+    shores: Shores,
+    /// The elevations at the ends of each edge.
+    levels: Vec<[f64; 2]>,
+    coordinates: Coordinates,
+}
+
+impl Raise {
+    /// The same edges as of [`Shores::new`], with the elevations at their ends.
+    pub(super) fn new(
+        edges: Vec<(u32, [Point2; 2])>,
+        levels: Vec<[f64; 2]>,
+        width: f64,
+        coordinates: Coordinates,
+    ) -> Raise {
+        let polygons = edges.iter().map(|(number, _)| *number as usize + 1).max().unwrap_or(0);
+        Raise { shores: Shores::new(edges, &vec![true; polygons], width), levels, coordinates }
+    }
+
+    /// The elevation of the water at the place of a shore that is nearest to a place, if it is near enough. Of
+    /// equally near edges the first counts: so the elevation follows from the shores alone.
+    pub(super) fn level(&self, place: Point2) -> Option<f64> {
+        let (tree, cell) = self.shores.cells.leaf(place)?;
+        let from = |&edge: &u32| (edge, square(self.shores.edges[edge as usize].1, place));
+        let nearest = tree
+            .list(cell)
+            .iter()
+            .map(from)
+            .min_by(|(a, to_a), (b, to_b)| to_a.0.total_cmp(&to_b.0).then(a.cmp(b)));
+        let (edge, (_, along)) =
+            nearest.filter(|(_, (square, _))| *square <= self.shores.width * self.shores.width)?;
+        let [from, to] = self.levels[edge as usize];
+        Some(self.coordinates.rounded(from + (to - from) * along))
+    }
+}
+
+/// The square of the distance of a place from an edge, and the nearest place on it from 0 to 1, in f64.
+fn square([a, b]: [Point2; 2], [x, y]: Point2) -> (f64, f64) {
     let [u, v] = [b[0] - a[0], b[1] - a[1]];
     let square = u * u + v * v;
     let along = if square > 0.0 { (((x - a[0]) * u + (y - a[1]) * v) / square).clamp(0.0, 1.0) } else { 0.0 };
     let [p, q] = [x - (a[0] + along * u), y - (a[1] + along * v)];
-    p * p + q * q
+    (p * p + q * q, along)
 }

@@ -258,7 +258,7 @@ struct ThinnedPass<'a> {
 }
 
 impl Keep for ThinnedPass<'_> {
-    fn keeps(&mut self, _: &Point) -> bool {
+    fn keeps(&mut self, _: &mut Point) -> bool {
         let is_kept = self.winners.numbers.get(self.next) == Some(&self.read);
         self.read += 1;
         self.next += usize::from(is_kept);

@@ -2,6 +2,7 @@
 
 mod figures;
 mod groups;
+mod levels;
 mod planning;
 
 use std::num::NonZeroUsize;
@@ -68,6 +69,8 @@ Examples:
       spfinalize --clip district.shp --drop-inside buildings.gpkg tiles/*.laz -o district.spm
   Flat lakes and rivers that fall; the same file makes their shores edges of the mesh:
       spfinalize --flatten water.gpkg tile.laz | spdelaunay2d | spconstrain --lines water.gpkg -o flat.spm
+  The levels of a whole layer of water, once, for many runs that then agree on them:
+      spfinalize --flatten national.gpkg --levels water.geojson --keep-class 2 tiles/*.laz
   A plan for many jobs on a cluster, from the headers of tiles alone (see spnode):
       spfinalize --plan plan.json --keep-class 2 tiles/*.laz
   Points for another machine, at a quarter of the bytes:
@@ -217,6 +220,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::give_back_large_blocks();
     if let Some(plan) = &flags.plan.plan {
         return planning::make(&flags, plan);
+    }
+    if let Some(levels) = &flags.water.levels {
+        return levels::write(&flags, levels);
     }
     let mut recipe = flags.recipe()?;
     flags.lines.check(!flags.water.files().is_empty())?;

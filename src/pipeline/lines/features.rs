@@ -19,6 +19,8 @@ pub(crate) struct Feature {
     properties: Arc<Properties>,
     /// Whether it has elevations.
     pub(crate) is_hard: bool,
+    /// Whether all of its vertices have elevations.
+    pub(crate) is_complete: bool,
     pub(crate) position: Place,
 }
 
@@ -70,8 +72,9 @@ fn feature(numbered: &Numbered, target: &Target) -> Result<Feature> {
     }
     let level = level(line, target).map_err(|message| position.fault(message))?;
     let is_hard = line.elevations.iter().any(Option::is_some);
+    let is_complete = line.elevations.iter().all(Option::is_some);
     let properties = Arc::clone(&line.properties);
-    Ok(Feature { line: number, kind, level, properties, is_hard, position })
+    Ok(Feature { line: number, kind, level, properties, is_hard, is_complete, position })
 }
 
 fn kind(&Numbered { role, polygon, line, .. }: &Numbered) -> std::result::Result<FeatureKind, String> {
@@ -105,7 +108,8 @@ fn level(line: &Breakline, target: &Target) -> std::result::Result<Option<Stated
     for &z in line.elevations.iter().flatten() {
         match stated {
             Some(known) if known != z => {
-                let remedy = "write it without elevations, for example with ogr2ogr -dim XY";
+                let remedy = "write it without elevations, for example with ogr2ogr -dim XY, or give it the property \
+                              river if it falls";
                 return Err(format!(
                     "a shore of a lake has the elevations {known} and {z}, expected one: {remedy}"
                 ));

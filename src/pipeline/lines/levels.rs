@@ -26,18 +26,50 @@ pub struct Levels {
     pub(crate) rows: Vec<LevelRow>,
 }
 
+/// Points that say the level of a polygon of water.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Near {
+    /// Those near the shore.
+    pub(crate) points: Vec<Point>,
+    /// Those of water in the polygon, where they are enough.
+    pub(crate) in_water: Vec<Point>,
+}
+
+impl Near {
+    /// Takes points of water, if there are `enough`.
+    pub(crate) fn take_water(&mut self, points: Vec<Point>, enough: usize) {
+        if points.len() >= enough {
+            self.in_water = points;
+        }
+    }
+
+    /// The points that count, and the percentile of their elevations that is the level, where `percentile` is
+    /// that for points near shores.
+    pub(crate) fn counting(&self, percentile: f64) -> (&[Point], f64) {
+        if self.in_water.is_empty() { (&self.points, percentile) } else { (&self.in_water, MEDIAN) }
+    }
+
+    /// How a level from these is found: by so many of them.
+    pub(crate) fn found(&self, count: usize) -> Found {
+        if self.in_water.is_empty() { Found::Points(count) } else { Found::WaterPoints(count) }
+    }
+}
+
+/// The percentile of points of water that is a level.
+pub(crate) const MEDIAN: f64 = 50.0;
+
 /// What levels are found from.
 pub(crate) struct Given<'a> {
     pub(crate) network: &'a Network,
     pub(crate) water: &'a Water,
-    /// The points near the shore of each polygon.
-    pub(crate) shores: Vec<Vec<Point>>,
+    /// Of each polygon, the points that say its level.
+    pub(crate) near: &'a [Near],
     pub(crate) percentile: f64,
     pub(crate) target: &'a Target,
 }
 
 impl Levels {
-    /// Finds the levels. `shores` are the points near the shore of each polygon that needs them, and
+    /// Finds the levels. `near` are the points near the shore of each polygon, where it needs them, and
     /// `percentile` of their elevations counts: the least one such that this part of all, in percent, is not
     /// above it.
     ///
@@ -47,19 +79,19 @@ impl Levels {
     /// # Errors
     /// Malformed, with the position, if a polygon needs points and has none, or lakes of different levels
     /// meet.
-    pub fn find(
+    pub(crate) fn find(
         network: &Network,
         water: &Water,
-        mut shores: Vec<Vec<Point>>,
+        near: &[Near],
         percentile: f64,
         target: &Target,
     ) -> Result<Levels> {
-        shores.resize(water.polygons.len(), Vec::new());
-        let given = Given { network, water, shores, percentile, target };
+        let given = Given { network, water, near, percentile, target };
         let mut levels = Levels::default();
         for number in 0..water.rivers.len() {
             levels.river(&given, number)?;
         }
+        water.polygons.iter().filter(|it| it.own.is_some()).for_each(|it| levels.own(&given, it));
         levels.lakes(&given)?;
         Ok(levels)
     }
@@ -70,7 +102,7 @@ impl Levels {
         let mut levels = vec![None; water.polygons.len()];
         let mut of_lakes: BTreeMap<u32, (f64, usize)> = BTreeMap::new();
         for (number, polygon) in water.polygons.iter().enumerate() {
-            if polygon.river.is_some() {
+            if !polygon.is_lake() {
                 continue;
             }
             let level = self.lake(given, number)?;
@@ -111,10 +143,10 @@ impl Levels {
             Some(Stated { level, by_property: false }) => (level, Found::Coordinates),
             None => {
                 self.found += 1;
-                let heights: Vec<f64> = given.shores[number].iter().map(|point| point[2]).collect();
-                let count = heights.len();
-                let level = percentile_of(heights, given.percentile);
-                (level.ok_or_else(|| polygon.position.fault(NO_SHORE))?, Found::Points(count))
+                let near = &given.near[number];
+                let (points, percentile) = near.counting(given.percentile);
+                let level = percentile_of(points.iter().map(|point| point[2]).collect(), percentile);
+                (level.ok_or_else(|| polygon.position.fault(NO_SHORE))?, near.found(points.len()))
             }
         };
         self.rows.push(LevelRow::of_lake(given, polygon, level, found));

@@ -18,6 +18,20 @@ pub(crate) enum Found {
     Property,
     /// From so many points near the shore.
     Points(usize),
+    /// From so many points of water.
+    WaterPoints(usize),
+}
+
+impl Found {
+    /// Its name in tables.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Found::Coordinates => "coordinates",
+            Found::Property => "property",
+            Found::Points(_) => "points",
+            Found::WaterPoints(_) => "water",
+        }
+    }
 }
 
 /// A lake, or a station of a river.
@@ -71,11 +85,10 @@ impl LevelRow {
         let LevelRow { line, place: [x, y], level, .. } = self;
         let kind = if self.river.is_some() { "station" } else { "lake" };
         let measured = self.measured.map(|(z, _)| z.to_string()).unwrap_or_default();
-        let (found, points) = match self.measured.map(|(_, found)| found) {
-            None => ("interpolated", String::new()),
-            Some(Found::Coordinates) => ("coordinates", String::new()),
-            Some(Found::Property) => ("property", String::new()),
-            Some(Found::Points(count)) => ("points", count.to_string()),
+        let found = self.measured.map_or("interpolated", |(_, found)| found.name());
+        let points = match self.measured {
+            Some((_, Found::Points(count) | Found::WaterPoints(count))) => count.to_string(),
+            _ => String::new(),
         };
         let river = in_a_field(self.river.as_deref().unwrap_or_default());
         let feature = in_a_field(&self.feature);

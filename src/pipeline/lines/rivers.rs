@@ -1,6 +1,6 @@
 //! The levels of rivers: elevations at stations, and at the vertices of shores.
 
-use super::levels::{Given, Levels, percentile_of, vertices};
+use super::levels::{Given, Levels, MEDIAN, percentile_of, vertices};
 use super::report::{Found, LevelRow};
 use super::sections::Sections;
 use super::stations::Stations;
@@ -50,6 +50,15 @@ impl Levels {
         };
         self.notices.extend(river.notice(given, &elevations, moved));
         Ok(())
+    }
+
+    /// The vertices of a river whose file states the elevation of each.
+    pub(crate) fn own(&mut self, given: &Given, polygon: &WaterPolygon) {
+        for vertex in vertices(given.network, polygon) {
+            if let Some(z) = given.network.vertices[vertex as usize].z {
+                self.take(given, vertex, z);
+            }
+        }
     }
 
     /// The vertices of a river by its centre line.
@@ -168,21 +177,28 @@ impl River {
     }
 }
 
-/// The percentile of the points near the shores of a river, at the stations that are nearest to them.
+/// The percentile of the points near the shores of a river, or of those in its water, at the stations that are
+/// nearest to them.
 fn near(given: &Given, number: usize, stations: &Stations) -> Vec<Known> {
-    let mut near = vec![Vec::new(); stations.places().len()];
-    for (polygon, points) in given.water.polygons.iter().zip(&given.shores) {
-        if polygon.river == Some(number) {
-            for &[x, y, z] in points {
-                near[stations.nearest([x, y]).vertex()].push(z);
-            }
+    let of_river = || {
+        let all = given.water.polygons.iter().zip(given.near);
+        all.filter(|(polygon, _)| polygon.river == Some(number)).map(|(_, near)| near)
+    };
+    let mut at = vec![[Vec::new(), Vec::new()]; stations.places().len()];
+    for near in of_river() {
+        for (kind, points) in [&near.points, &near.in_water].into_iter().enumerate() {
+            points.iter().for_each(|&[x, y, z]| at[stations.nearest([x, y]).vertex()][kind].push(z));
         }
     }
-    let known = |points: Vec<f64>| {
-        let found = Found::Points(points.len());
-        percentile_of(points, given.percentile).map(|z| (z, found))
+    let known = |[shore, water]: [Vec<f64>; 2]| {
+        let (points, percentile, found): (_, _, fn(usize) -> Found) = match water.is_empty() {
+            true => (shore, given.percentile, Found::Points),
+            false => (water, MEDIAN, Found::WaterPoints),
+        };
+        let found = found(points.len());
+        percentile_of(points, percentile).map(|z| (z, found))
     };
-    near.into_iter().map(known).collect()
+    at.into_iter().map(known).collect()
 }
 
 fn places(network: &Network, vertices: &[u32]) -> Vec<Point2> {

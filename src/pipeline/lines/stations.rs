@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use spmesh_stream::model::bounds::Point;
 use spmesh_stream::model::points::Point2;
 
 /// Parts of a centre line in a leaf of the tree of boxes.
@@ -58,6 +59,12 @@ impl Stations {
         Stations { places, boxes, elevations: Vec::new() }
     }
 
+    /// A line through points, whose elevations are kept.
+    pub(crate) fn of(points: &[Point]) -> Stations {
+        let places = points.iter().map(|&[x, y, _]| [x, y]).collect();
+        Stations { elevations: points.iter().map(|point| point[2]).collect(), ..Stations::new(places) }
+    }
+
     pub(crate) fn places(&self) -> &[Point2] {
         &self.places
     }
@@ -67,11 +74,22 @@ impl Stations {
         self.nearest_of(0..self.places.len() - 1, place)
     }
 
+    /// The square of the distance to the nearest station, and the elevation there.
+    pub(crate) fn nearest_level(&self, place: Point2) -> (f64, f64) {
+        let (station, square) = self.find(0..self.places.len() - 1, place);
+        (square, self.elevation(station))
+    }
+
     /// The nearest station of some parts.
     pub(crate) fn nearest_of(&self, parts: Range<usize>, place: Point2) -> Station {
+        self.find(parts, place).0
+    }
+
+    /// The nearest station of some parts, and the square of its distance.
+    fn find(&self, parts: Range<usize>, place: Point2) -> (Station, f64) {
         let mut found = (Station { part: parts.start, along: 0.0 }, f64::INFINITY);
         self.search(1, &parts, place, &mut found);
-        found.0
+        found
     }
 
     /// Finds a nearer station below a node of the tree; `found` has the nearest one so far, and the square of

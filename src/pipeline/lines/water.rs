@@ -33,8 +33,12 @@ pub struct WaterPolygon {
     pub(crate) segments: Vec<u32>,
     /// Of a lake: its level, if the file states one.
     pub(crate) level: Option<Stated>,
-    /// Of a river: its number.
+    /// Of a river with a centre line or banks: its number.
     pub(crate) river: Option<usize>,
+    /// Of a river without these: its name. The file states the elevation of each vertex of its shore.
+    pub(crate) own: Option<String>,
+    /// The vertices of its rings, in their order. The first one of a ring is also its last.
+    pub(crate) rings: Vec<Vec<u32>>,
     /// Number of its first line.
     pub(crate) line: u32,
     /// Position in the file, for messages.
@@ -108,9 +112,19 @@ impl WaterPolygon {
     /// Whether its level must be found from points near its shore. `water` has the polygon.
     pub(crate) fn needs_points(&self, water: &Water) -> bool {
         match self.river {
-            None => self.level.is_none(),
+            None => self.level.is_none() && self.own.is_none(),
             Some(river) => !water.rivers[river].is_hard,
         }
+    }
+
+    /// Whether it has one level.
+    pub(crate) fn is_lake(&self) -> bool {
+        self.river.is_none() && self.own.is_none()
+    }
+
+    /// The name of its river.
+    pub(crate) fn river_name<'w>(&'w self, water: &'w Water) -> Option<&'w str> {
+        self.own.as_deref().or_else(|| self.river.map(|river| &*water.rivers[river].name))
     }
 
     /// Whether its box, with so much around it, meets that of points.
@@ -121,6 +135,11 @@ impl WaterPolygon {
                 (ends().fold(f64::INFINITY, f64::min), ends().fold(f64::NEG_INFINITY, f64::max));
             least - width <= points.max[axis] && most + width >= points.min[axis]
         })
+    }
+
+    /// The numbers of its segments.
+    pub(crate) fn segments(&self) -> impl Iterator<Item = u32> + '_ {
+        self.segments.iter().copied()
     }
 
     /// Its segments, as places of their ends.
@@ -151,8 +170,9 @@ impl Water {
 
     /// Numbers of lakes and of rivers.
     pub fn counts(&self) -> [u64; 2] {
-        let lakes = self.polygons.iter().filter(|polygon| polygon.river.is_none()).count();
-        [lakes as u64, self.rivers.len() as u64]
+        let lakes = self.polygons.iter().filter(|polygon| polygon.is_lake()).count();
+        let own: BTreeSet<&str> = self.polygons.iter().filter_map(|polygon| polygon.own.as_deref()).collect();
+        [lakes as u64, (self.rivers.len() + own.len()) as u64]
     }
 
     /// What is to be said about the polygons that are left out, as `far` says.
@@ -205,12 +225,12 @@ impl Water {
     fn enter(&mut self, name: &str, lines: &Lines, bent: &Bent, grid: &Grid) -> Result<()> {
         let banks = lines.banks(name)?;
         let of_banks = banks.map(|banks| of_banks(banks, &lines.ends, bent, grid)).transpose()?;
-        let (course, segments) = of_banks.unzip();
+        let (course, border) = of_banks.unzip();
         let (course, leading) = lines.course(name, course.zip(banks), bent)?;
         let Feature { line, ref position, .. } = *leading[0];
-        if let Some(segments) = segments {
-            let (river, position) = (Some(self.rivers.len()), position.clone());
-            self.polygons.push(WaterPolygon { segments, level: None, river, line, position });
+        if let Some(Border { segments, ring }) = border {
+            let (river, position, rings) = (Some(self.rivers.len()), position.clone(), vec![ring]);
+            self.polygons.push(WaterPolygon { segments, river, line, position, rings, ..Default::default() });
         }
         let (name, is_hard) = (name.to_string(), leading.iter().any(|line| line.is_hard));
         self.rivers.push(River { name, course, is_hard, line, position: position.clone() });
@@ -226,6 +246,9 @@ pub(crate) fn water(features: &[Feature], bent: &Bent, grid: &Grid) -> Result<Wa
             rivers.entry(river).or_default().enter(feature)?;
         }
     }
+    let own: BTreeSet<&str> =
+        rivers.iter().filter(|(_, lines)| lines.are_own()).map(|(&name, _)| name).collect();
+    rivers.retain(|name, _| !own.contains(name));
     let mut water = Water::default();
     for (name, lines) in &rivers {
         water.enter(name, lines, bent, grid)?;
@@ -233,7 +256,9 @@ pub(crate) fn water(features: &[Feature], bent: &Bent, grid: &Grid) -> Result<Wa
     let rings: Vec<&Feature> = features.iter().filter(|feature| feature.polygon().is_some()).collect();
     for same in rings.chunk_by(|a, b| a.polygon() == b.polygon()) {
         let number = |river: &str| rivers.keys().position(|name| *name == river);
-        water.polygons.push(polygon(same, same[0].river().and_then(number), bent)?);
+        let river = same[0].river();
+        let own = river.filter(|river| own.contains(river)).map(str::to_string);
+        water.polygons.push(WaterPolygon { own, ..polygon(same, river.and_then(number), bent)? });
     }
     Ok(water)
 }
@@ -246,6 +271,8 @@ struct Lines<'f> {
     ends: Vec<&'f Feature>,
     /// A polygon of it.
     polygon: Option<&'f Feature>,
+    /// Whether a vertex of its polygons has no elevation.
+    lacks_elevations: bool,
 }
 
 impl<'f> Lines<'f> {
@@ -253,6 +280,7 @@ impl<'f> Lines<'f> {
         let (own, what) = match feature.kind {
             FeatureKind::Ring(_) => {
                 self.polygon.get_or_insert(feature);
+                self.lacks_elevations |= !feature.is_complete;
                 return Ok(());
             }
             FeatureKind::End => {
@@ -270,6 +298,14 @@ impl<'f> Lines<'f> {
             return Err(feature.position.fault(message));
         }
         Ok(())
+    }
+
+    /// Whether polygons alone state the elevations of the river, at each vertex.
+    fn are_own(&self) -> bool {
+        self.polygon.is_some()
+            && self.centre.is_none()
+            && self.banks.iter().all(Option::is_none)
+            && !self.lacks_elevations
     }
 
     /// Both banks; `None` if the river has a polygon.
@@ -313,20 +349,30 @@ impl<'f> Lines<'f> {
             (None, Some((course, banks)), _) => Ok((course, banks.to_vec())),
             (None, None, Some(polygon)) => fault(
                 polygon,
-                format!("the river {name:?} has no centre line: add a line with the property river {name:?}"),
+                format!(
+                    "the river {name:?} has no centre line: add a line with the property river {name:?}, or third \
+                     coordinates at all vertices of its polygons"
+                ),
             ),
             (None, None, None) => Err(Error::malformed(format!("the river {name:?} was lost"))),
         }
     }
 }
 
-/// The course along two banks, and the segments around the river. `closing` are the lines between their ends.
+/// What bounds a river between two banks: segments, and vertices in turn.
+struct Border {
+    segments: Vec<u32>,
+    ring: Vec<u32>,
+}
+
+/// The course along two banks, and the border of the river. `closing` are the lines
+/// between their ends.
 fn of_banks(
     features: [&Feature; 2],
     closing: &[&Feature],
     bent: &Bent,
     grid: &Grid,
-) -> Result<(Course, Vec<u32>)> {
+) -> Result<(Course, Border)> {
     let [(left, mut segments), (right, of_right)] = [chain(features[0], bent)?, chain(features[1], bent)?];
     segments.extend(of_right);
     let mut ends = [Vec::new(), Vec::new()];
@@ -339,15 +385,20 @@ fn of_banks(
     let place = |vertex: u32| bent.noded.vertices[vertex as usize].place;
     check([&left, &right], ends.each_ref().map(|end| &end[..]), place, |place| grid.world(place))
         .map_err(|(bank, message)| features[bank as usize].position.fault(message))?;
-    Ok((Course::Banks { banks: [left, right], ends }, odd(segments)))
+    let [above, below] = &ends;
+    let back = right.iter().rev().chain(above.iter().rev());
+    let mut ring: Vec<u32> = left.iter().chain(below).chain(back).chain(&left[..1]).copied().collect();
+    ring.dedup();
+    Ok((Course::Banks { banks: [left, right], ends }, Border { segments: odd(segments), ring }))
 }
 
 /// The vertices and the segments of a line, in its order.
 fn chain(feature: &Feature, bent: &Bent) -> Result<(Vec<u32>, Vec<u32>)> {
-    let segments = segments(feature, bent)?;
+    let lost = || feature.position.fault("the line was lost");
+    let segments = bent.segments(feature.line).map_err(|_| lost())?;
     let start = bent.vertices(feature.line)[0].place;
     let Ok(first) = bent.noded.vertices.binary_search_by_key(&start, |vertex| vertex.place) else {
-        return Err(feature.position.fault("the line was lost"));
+        return Err(lost());
     };
     let mut vertices = vec![first as u32];
     for &segment in &segments {
@@ -359,9 +410,11 @@ fn chain(feature: &Feature, bent: &Bent) -> Result<(Vec<u32>, Vec<u32>)> {
 
 /// The polygon of some rings.
 fn polygon(rings: &[&Feature], river: Option<usize>, bent: &Bent) -> Result<WaterPolygon> {
-    let mut border = Vec::new();
+    let (mut border, mut vertices) = (Vec::new(), Vec::new());
     for ring in rings {
-        border.extend(segments(ring, bent)?);
+        let (ring, segments) = chain(ring, bent)?;
+        border.extend(segments);
+        vertices.push(ring);
     }
     let &Feature { level, line, ref position, .. } = rings[0];
     if let Some(other) =
@@ -370,10 +423,6 @@ fn polygon(rings: &[&Feature], river: Option<usize>, bent: &Bent) -> Result<Wate
         let message = "the shores of islands have another elevation than that of the lake";
         return Err(other.position.fault(message));
     }
-    Ok(WaterPolygon { segments: odd(border), level, river, line, position: position.clone() })
-}
-
-/// The segments of a line, in its order.
-fn segments(feature: &Feature, bent: &Bent) -> Result<Vec<u32>> {
-    bent.segments(feature.line).map_err(|_| feature.position.fault("the line was lost"))
+    let (segments, position) = (odd(border), position.clone());
+    Ok(WaterPolygon { segments, level, river, line, position, rings: vertices, own: None })
 }

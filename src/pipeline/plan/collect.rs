@@ -84,9 +84,10 @@ fn check_sums(plan: &Plan, reports: &[NodeReport]) -> Result<()> {
     }
     for report in reports.iter().filter(|report| report.stage == 0) {
         let counted: u64 = report.files.iter().map(|count| count.points).sum();
-        if counted != report.points + report.dropped {
+        let added = report.added;
+        if counted + added != report.points + report.dropped {
             return Err(Error::malformed(format!(
-                "part {} found {counted} points, but triangulated {} and dropped {}",
+                "part {} found {counted} points and added {added}, but triangulated {} and dropped {}",
                 report.name, report.points, report.dropped
             )));
         }

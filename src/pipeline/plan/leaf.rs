@@ -14,6 +14,8 @@ use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 pub(super) struct LeafCounts {
     /// Points of each file in the box.
     pub(super) files: Vec<FileCount>,
+    /// Vertices of water in the box, which became points.
+    pub(super) added: u64,
     /// Points in the box that were dropped.
     pub(super) dropped: u64,
     /// Messages for the user.
@@ -40,7 +42,7 @@ pub(super) fn write_leaf(
     let window = node.region.region();
     let mut recipe = recipe;
     // Polygons are those of the plan, in whatever folder the job runs.
-    let polygons = recipe.clip.iter_mut().chain(&mut recipe.drop_inside);
+    let polygons = recipe.clip.iter_mut().chain(&mut recipe.drop_inside).chain(&mut recipe.flatten.files);
     polygons.zip(&beside).for_each(|(path, planned)| *path = planned.path(&plan.roots));
     recipe.inputs = files.iter().map(|file| file.path(&plan.roots)).collect();
     recipe.source = SourceOptions {
@@ -60,13 +62,16 @@ pub(super) fn write_leaf(
     let input = recipe.open()?;
     let windowed = Windowed::new(&input, &files, &window, header.has_elevation);
     let mut watch = Watch::default();
-    let stats = recipe.finalize(&windowed, &mut watch, &mut output)?.stats;
+    recipe.flatten.is_part = true;
+    let outcome = recipe.finalize(&windowed, &mut watch, &mut output)?;
     // A file that changed while it was read may look whole.
     check()?;
     let in_box: u64 = input.counts().iter().sum();
     let files = files.iter().zip(input.counts());
     let files = files.map(|(file, &points)| FileCount { file: file.name(), points });
-    Ok(LeafCounts { files: files.collect(), dropped: in_box - stats.points, notices: watch.notices })
+    let added = outcome.lines.points as u64;
+    let dropped = in_box - (outcome.stats.points - added);
+    Ok(LeafCounts { files: files.collect(), added, dropped, notices: watch.notices })
 }
 
 /// The closed box of the world that holds the points of a window.

@@ -278,7 +278,7 @@ impl<'a> Maker<'a> {
         if is_leaf {
             (report.points, report.merged) = (stats.points, stats.merged);
             report.files = counts.files;
-            report.dropped = counts.dropped;
+            (report.added, report.dropped) = (counts.added, counts.dropped);
         }
         Ok(report)
     }

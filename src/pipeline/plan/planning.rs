@@ -17,6 +17,7 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::limits::PLAN_LEN_MAX;
 use spmesh_formats::source::{Description, Extent, SkippedFile, Survey};
+use spmesh_stream::model::points::Point2;
 use spmesh_stream::{Coordinates, Crs, Header, Kind, PartName};
 
 /// What a plan says of itself, so that no other JSON is taken for one.
@@ -344,6 +345,17 @@ impl Plan {
         let mut header = Header::new(kind, self.coordinates(), self.dims, self.elevation);
         header.crs = self.crs.crs()?;
         Ok(header)
+    }
+
+    /// Whether there is a leaf at a place, in stored coordinates, into which files reach.
+    pub fn has_files_at(&self, [x, y]: Point2) -> bool {
+        let has = |node: &&Node| node.region.region().contains([x, y, 0.0]);
+        let mut node = self.nodes.last().filter(has);
+        while let Some(inner) = node.filter(|node| !node.children.is_empty()) {
+            let mut children = inner.children.iter().filter_map(|&child| self.nodes.get(child as usize));
+            node = children.find(has);
+        }
+        node.is_some_and(|leaf| !leaf.files.is_empty())
     }
 
     /// The files that reach into a leaf.

@@ -68,6 +68,9 @@ pub struct NodeReport {
     pub kind: String,
     /// Points of each file in the box of a leaf.
     pub files: Vec<FileCount>,
+    /// Vertices of water in the box of a leaf, which became points.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub added: u64,
     /// Points in the box of a leaf that filters dropped, and points that are not finite.
     pub dropped: u64,
     /// Points that a leaf triangulated.
@@ -101,6 +104,11 @@ pub struct NodeReport {
     pub host: String,
 }
 
+/// Whether a number need not be written.
+fn is_zero(number: &u64) -> bool {
+    *number == 0
+}
+
 impl NodeReport {
     /// An empty report.
     pub fn new(node: &Node) -> NodeReport {
@@ -114,6 +122,7 @@ impl NodeReport {
             stage: node.stage,
             kind: node.kind_name().to_string(),
             files: Vec::new(),
+            added: 0,
             dropped: 0,
             points: 0,
             merged: 0,

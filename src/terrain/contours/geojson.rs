@@ -5,6 +5,7 @@ use std::io::Write;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::crs::System;
+use spmesh_formats::source::collection_head;
 use spmesh_stream::Crs;
 
 /// The format of lines.
@@ -19,9 +20,7 @@ pub enum LineFormat {
 /// Length of the buffer that is written at once. Units: bytes.
 const CHUNK_LEN: usize = 1 << 16;
 
-/// Writes lines as features. Coordinates are those of the stream. If the stream states an EPSG code, a
-/// collection has the member `crs` of the 2008 GeoJSON specification. RFC 7946 removed it and, without prior
-/// arrangement, allows only longitude and latitude in WGS 84; programs that know the member still read it.
+/// Writes lines as features. Coordinates are those of the stream.
 pub(super) struct LineWriter<W> {
     output: W,
     format: LineFormat,
@@ -37,13 +36,7 @@ impl<W: Write> LineWriter<W> {
     pub(super) fn new(output: W, format: LineFormat, crs: &Crs) -> LineWriter<W> {
         let mut text = Vec::with_capacity(2 * CHUNK_LEN);
         if format == LineFormat::GeoJson {
-            text.extend_from_slice(b"{\"type\":\"FeatureCollection\",");
-            if let Some(code) = epsg_code(crs) {
-                let name = format!("urn:ogc:def:crs:EPSG::{code}");
-                let crs = format!(r#""crs":{{"type":"name","properties":{{"name":"{name}"}}}},"#);
-                text.extend_from_slice(crs.as_bytes());
-            }
-            text.extend_from_slice(b"\"features\":[");
+            text.extend_from_slice(collection_head(crs).as_bytes());
         }
         let unit = System::of(crs).vertical.map_or(String::new(), |vertical| {
             format!(",\"unit\":{}", serde_json::Value::from(vertical.unit.symbol))
@@ -118,11 +111,6 @@ impl<W: Write> LineWriter<W> {
         }
         Ok(())
     }
-}
-
-/// The EPSG code of the system of x and y, if it has one.
-pub fn epsg_code(crs: &Crs) -> Option<u32> {
-    System::of(crs).horizontal?.code
 }
 
 fn write_error(cause: std::io::Error) -> Error {

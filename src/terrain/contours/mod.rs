@@ -21,7 +21,7 @@ use std::io::{Read, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-pub use geojson::{LineFormat, epsg_code};
+pub use geojson::LineFormat;
 pub use levels::Levels;
 
 use crate::surface::{check_input, is_counterclockwise};

@@ -21,6 +21,7 @@ impl LineStats {
             ("lakes", "water.lakes", lakes),
             ("rivers", "water.rivers", rivers),
             ("levels found from points", "water.levels_found", levels),
+            ("points raised to the water", "water.raised", self.raised),
         ];
         let points = points.map(|(label, key, count)| (label.to_string(), key.to_string(), count));
         let changes = ChangeKind::ALL.iter().map(|kind| {

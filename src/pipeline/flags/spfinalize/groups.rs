@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::finalize::{Flatten, Weighing};
-use spmesh_base::error::Result;
+use crate::lines::Shore;
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_shell::parse_numbers;
 
 /// Polygons that select points. They apply after the filters, and before points are thinned.
@@ -48,10 +49,34 @@ pub(super) struct WaterFlags {
     #[arg(long, value_name = "P", default_value_t = 10.0, value_parser = parse_percentile, requires = "flatten")]
     shore_percentile: f64,
 
+    /// Take the median of the points of class 9, which are water, as the level of a lake or at a station of a
+    /// river, where N of them at least are in the polygon, and else that of the shore. Takes one more pass
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), requires = "flatten")]
+    water_points: Option<u32>,
+
     /// Points are near a shore up to this distance, in world units [default: 4 times the mean distance
     /// between points, which takes one more pass]
     #[arg(long, value_name = "W", value_parser = parse_width, requires = "flatten")]
     shore_width: Option<f64>,
+
+    /// Raise points at most --shore-width away from a shore that are below the water at its nearest place to
+    /// that elevation, so that no water hangs over its shore
+    #[arg(long, requires = "shore_width")]
+    raise_shore: bool,
+
+    /// Write the lakes and rivers with their levels into this file, and no points: GeoJSON, cut at the box of
+    /// the points, for --flatten of other runs and plans, and for spconstrain
+    #[arg(long, value_name = "FILE", requires = "flatten", conflicts_with_all = ["output", "plan", "files", "report", "salvage", "preserve", "radii", "weights", "thin", "raise_shore"])]
+    pub(super) levels: Option<PathBuf>,
+
+    /// With --levels: say which stated levels of lakes differ by more than this from those that points near the
+    /// shore have, in the unit of elevations
+    #[arg(long, value_name = "T", default_value_t = 1.0, value_parser = parse_width, requires = "levels")]
+    level_tolerance: f64,
+
+    /// With --levels: fail if there are such levels
+    #[arg(long, requires = "levels")]
+    strict: bool,
 }
 
 fn parse_percentile(text: &str) -> std::result::Result<f64, String> {
@@ -74,8 +99,44 @@ impl WaterFlags {
 
     /// What the flags ask for.
     pub(super) fn flatten(&self) -> Flatten {
-        let (percentile, width) = (self.shore_percentile, self.shore_width);
-        Flatten { files: self.flatten.clone(), percentile, width }
+        Flatten {
+            files: self.flatten.clone(),
+            percentile: self.shore_percentile,
+            width: self.shore_width,
+            raise: self.raise_shore,
+            water_points: self.water_points.map(|count| count as usize),
+            is_part: false,
+        }
+    }
+
+    /// What is to be said about stated levels that differ from those of points.
+    ///
+    /// # Errors
+    /// Malformed, if there are some and `--strict` is given.
+    pub(super) fn check_levels(&self, shores: &[Shore]) -> Result<Vec<String>> {
+        let differs = |shore: &&Shore| {
+            let stated = shore.level.filter(|_| shore.is_stated());
+            let pair = stated.zip(shore.measured);
+            pair.is_some_and(|(level, measured)| (level - measured).abs() > self.level_tolerance)
+        };
+        let of = |shore: &Shore| {
+            let [level, measured] = [shore.level, shore.measured].map(Option::unwrap_or_default);
+            let points = counted(shore.points as u64, "point", "points");
+            format!(
+                "{}: the level {level} is stated, but {points} near the shore say {measured}",
+                shore.feature
+            )
+        };
+        let notices: Vec<String> = shores.iter().filter(differs).map(of).collect();
+        match notices.first() {
+            Some(first) if self.strict => {
+                let all = counted(notices.len() as u64, "such lake", "such lakes");
+                Err(Error::malformed(format!(
+                    "{first}: correct it, or remove it so that points count ({all})"
+                )))
+            }
+            _ => Ok(notices),
+        }
     }
 }
 

@@ -8,15 +8,17 @@ use clap::Args;
 
 use super::super::roots::RootFlags;
 use super::{Flags, TOOL, flags_of};
+use crate::lines::Target;
 use crate::plan::{Naming, NodeKind, Plan, Planning, SkipList, plan_of};
 use crate::reduce::Duplicates;
-use spmesh_base::error::{Error, Result, counted};
+use spmesh_base::error::{Error, Result, counted, counted_of};
 use spmesh_base::output::Output;
 use spmesh_formats::source::Survey;
 use spmesh_shell::endings;
 use spmesh_shell::notice;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::say;
+use spmesh_stream::Kind;
 
 /// Points of a leaf by default: minutes of work on one core.
 const LEAF_POINTS: u64 = 50_000_000;
@@ -108,7 +110,7 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     let leaf_points = flags.plan.leaf_points.unwrap_or(LEAF_POINTS);
     let arguments = arguments_beside(&flags.inputs)?;
     check_arguments(flags, &arguments)?;
-    let beside: Vec<PathBuf> = flags.areas.files().cloned().collect();
+    let beside: Vec<PathBuf> = flags.areas.files().chain(flags.water.files()).cloned().collect();
     let planning = Planning {
         leaf_points,
         arguments: &arguments,
@@ -118,6 +120,7 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
         skipped: &skipped,
     };
     let plan = plan_of(&survey, &paths, planning)?;
+    check_water(flags, &plan)?;
     output.write_all(plan.to_json()?.as_bytes()).map_err(|e| Error::io("writing the plan", e))?;
     if let Some(list) = list {
         // Before the plan gets its name: the list is refused if it would replace a file of the plan.
@@ -131,6 +134,20 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     output.commit()?;
     if !flags.common.quiet {
         say(&summary(&plan));
+    }
+    Ok(())
+}
+
+/// Refuses water whose levels are not stated, and says how much of it no job adds.
+fn check_water(flags: &Flags, plan: &Plan) -> anyhow::Result<()> {
+    if flags.water.files().is_empty() {
+        return Ok(());
+    }
+    let target = Target::of(&plan.header(Kind::Points)?);
+    let [uncovered, all] = flags.recipe()?.stated_water(&target, |place| plan.has_files_at(place))?;
+    if uncovered > 0 {
+        let vertices = counted_of(uncovered, all, ["vertex of water", "vertices of water"], ["is", "are"]);
+        notice(TOOL, &flags.common, &format!("{vertices} where no file has points, and left out"));
     }
     Ok(())
 }
@@ -149,7 +166,6 @@ fn check_flags(flags: &Flags) -> anyhow::Result<()> {
     let of_all = [
         ("--thin", flags.points.thin.is_some()),
         ("--lines", !flags.lines.files.is_empty()),
-        ("--flatten", !flags.water.files().is_empty()),
         ("--radii and --weights", flags.weights.load()?.is_some()),
     ];
     match of_all.iter().find(|(_, is_given)| *is_given) {
@@ -197,7 +213,8 @@ fn check_arguments(flags: &Flags, arguments: &[String]) -> Result<()> {
                 flags.scale,
                 flags.offset,
                 flags.raw,
-                flags.octree
+                flags.octree,
+                &flags.water
             )
         )
     };

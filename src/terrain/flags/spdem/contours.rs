@@ -5,9 +5,10 @@ use std::time::Instant;
 
 use clap::Args;
 
-use crate::contours::{self, Levels, LineFormat, Options, Stats, epsg_code};
+use crate::contours::{self, Levels, LineFormat, Options, Stats};
 use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
+use spmesh_formats::source::epsg_code;
 use spmesh_shell::outline::{OutlineFlags, length};
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
