@@ -271,3 +271,58 @@ fn layers_are_chosen_by_name() {
         count("lines.geojson")
     );
 }
+
+/// Vertices of the mesh of these lines alone, in hundredths.
+fn alone(files: &[&str], more: &[&str]) -> std::collections::BTreeSet<[i64; 3]> {
+    let lines = files.iter().flat_map(|file| ["--lines", file]);
+    let arguments: Vec<&str> =
+        ["--no-points", "--scale", "0.01,0.01,0.01"].into_iter().chain(lines).collect();
+    let points = run("spfinalize", &[&arguments, more].concat(), b"");
+    assert_eq!(outcome(&points).0, Some(0), "{}", outcome(&points).1);
+    crate::water::vertices(&run("spdelaunay2d", &[], &points.stdout).stdout).into_iter().collect()
+}
+
+#[test]
+fn properties_state_elevations_and_points_are_vertices() {
+    let folder = Folder::new();
+    let text = r#"{"type":"FeatureCollection","features":[
+        {"type":"Feature","properties":{"Elev":12.5},"geometry":{"type":"LineString","coordinates":[[0,0],[10,0,99],[10,10]]}},
+        {"type":"Feature","properties":{"ELEV":null},"geometry":{"type":"LineString","coordinates":[[0,5,3],[3,9,4]]}},
+        {"type":"Feature","geometry":{"type":"MultiPoint","coordinates":[[5,6,21],[5,7,22],[5,6,20],[10,0,1],[6,6]]}}]}"#;
+    let file = folder.write("map.geojson", text);
+    let expected = [[0, 0, 1250], [1000, 0, 1250], [1000, 1000, 1250], [0, 500, 300], [300, 900, 400]];
+    let points = [[500, 600, 2000], [500, 700, 2200]];
+    assert_eq!(alone(&[&file], &["--z-field", "elev"]), expected.into_iter().chain(points).collect());
+    // Points of a layer do not count where points of the input would not.
+    let pond = r#"{"type":"Polygon","coordinates":[[[4,4,8],[6,4,8],[6,6.5,8],[4,6.5,8],[4,4,8]]]}"#;
+    let pond = folder.write("pond.geojson", pond);
+    let ground = folder.write("ground.txt", "0 0 1\n20 0 2\n0 20 3\n20 20 4\n");
+    let flags =
+        ["--scale", "0.01,0.01,0.01", "--lines", &file, "--flatten", &pond, "--z-field", "ELEV", &ground];
+    let found = run("spfinalize", &flags, b"");
+    let found = crate::water::vertices(&run("spdelaunay2d", &[], &found.stdout).stdout);
+    assert!(found.contains(&points[1]) && !found.iter().any(|vertex| vertex[..2] == points[0][..2]));
+    // Tables of other formats state the same.
+    let water = |name: &str| sample(name).display().to_string();
+    let shapes = alone(&[&water("water.shp"), &water("water_lines.shp")], &["--z-field", "id"]);
+    let elevations: std::collections::BTreeSet<i64> = shapes.iter().map(|vertex| vertex[2]).collect();
+    assert!(elevations.len() > 1 && elevations.iter().all(|z| z % 100 == 0), "{elevations:?}");
+    let flags = ["--no-points", "--lines", &file, "--z-field"];
+    assert_outcome(
+        "spfinalize",
+        &[&flags[..], &["elv"]].concat(),
+        b"",
+        2,
+        "no line has the property \"elv\"",
+    );
+    let name = folder.write("name.geojson", text.replace("12.5", "\"high\""));
+    let flags = ["--no-points", "--lines", &name, "--z-field", "elev"];
+    assert_outcome(
+        "spfinalize",
+        &flags,
+        b"",
+        3,
+        "feature 0: the property elev is \"high\", expected a number",
+    );
+    assert_outcome("spfinalize", &["--z-field", "elev"], b"", 2, "give --lines, too");
+}

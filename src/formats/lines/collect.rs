@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::lines::systems::LineSystem;
-use crate::lines::{Breakline, Breaklines, Properties};
+use crate::lines::{Breakline, Breaklines, Properties, Reading};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::check_line_vertices;
 use spmesh_stream::Crs;
@@ -23,19 +23,26 @@ pub(crate) struct Collector {
     lines: Vec<Breakline>,
     polygons: u32,
     vertices: usize,
-    vertices_max: usize,
+    reading: Reading,
     /// Those of the feature whose lines are entered.
     properties: Arc<Properties>,
 }
 
 impl Collector {
-    /// No lines yet. Memory has room for so many vertices.
-    pub(crate) fn new(vertices_max: usize) -> Collector {
-        Collector { lines: Vec::new(), polygons: 0, vertices: 0, vertices_max, properties: Arc::default() }
+    /// No lines yet.
+    pub(crate) fn new(reading: &Reading) -> Collector {
+        let properties = Arc::new(reading.properties());
+        Collector { lines: Vec::new(), polygons: 0, vertices: 0, reading: reading.clone(), properties }
+    }
+
+    /// The properties of a feature that states none.
+    pub(crate) fn no_properties(&self) -> Properties {
+        self.reading.properties()
     }
 
     /// Starts a feature.
     pub(crate) fn feature(&mut self, properties: Properties) {
+        let properties = Properties { elevation_name: self.reading.elevation.clone(), ..properties };
         // Most features have the properties of the one before.
         if *self.properties != properties {
             self.properties = Arc::new(properties);
@@ -47,8 +54,8 @@ impl Collector {
         self.polygons += 1;
     }
 
-    /// Enters a part of a geometry: x, y and z of each vertex; a z that is not finite is unknown. `position`
-    /// is asked for once a line.
+    /// Enters a part of a geometry: x, y and z of each vertex; a z that is not finite is unknown, and
+    /// that of the feature takes its place. `position` is asked for once a line.
     pub(crate) fn add(
         &mut self,
         shape: Shape,
@@ -56,12 +63,16 @@ impl Collector {
         position: impl Fn() -> String,
     ) -> Result<()> {
         self.vertices += vertices.len();
-        check_line_vertices(self.vertices, self.vertices_max).map_err(|error| error.at(position()))?;
+        check_line_vertices(self.vertices, self.reading.vertices_max)
+            .map_err(|error| error.at(position()))?;
         if let Some(index) = vertices.iter().position(|[x, y, _]| !(x.is_finite() && y.is_finite())) {
             let [x, y, _] = vertices[index];
             let message = format!("vertex {index} is at {x}, {y}, expected finite coordinates");
             return Err(Error::malformed(message).at(position()));
         }
+        let elevation = self.properties.elevation().map_err(|error| error.at(position()))?;
+        let raised = elevation.map(|z| vertices.iter().map(|&[x, y, _]| [x, y, z]).collect::<Vec<_>>());
+        let vertices = raised.as_deref().unwrap_or(vertices);
         if shape == Shape::Points {
             let position = position().into();
             vertices.chunks(1).for_each(|vertex| self.push(shape, vertex, &position));

@@ -32,18 +32,21 @@ pub(crate) struct Table {
     input: BufReader<File>,
     columns: Vec<Column>,
     record: Vec<u8>,
+    /// The properties of a record that states none.
+    none: Properties,
 }
 
 impl Table {
-    /// The table beside a Shapefile; `None` if there is none.
-    pub(crate) fn beside(path: &Path) -> Result<Option<Table>> {
+    /// The table beside a Shapefile; `None` if there is none. `none` are the properties of a record that
+    /// states none.
+    pub(crate) fn beside(path: &Path, none: Properties) -> Result<Option<Table>> {
         let Some((file, beside)) = inputs::open_beside(path, &["dbf", "DBF"])? else { return Ok(None) };
         let name = beside.display().to_string();
-        let table = Table::read_header(BufReader::new(file), name.clone());
+        let table = Table::read_header(BufReader::new(file), name.clone(), none);
         table.map(Some).map_err(|error| error.of_input(name))
     }
 
-    fn read_header(mut input: BufReader<File>, name: String) -> Result<Table> {
+    fn read_header(mut input: BufReader<File>, name: String, none: Properties) -> Result<Table> {
         let mut header = [0; HEADER_LEN];
         fill(&mut input, &mut header)?;
         let number = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
@@ -57,7 +60,7 @@ impl Table {
             start = bytes.end;
             let name: Vec<u8> = field[..11].iter().copied().take_while(|&byte| byte != 0).collect();
             let name = String::from_utf8_lossy(&name).into_owned();
-            if Properties::default().of_name(&name).is_some() {
+            if none.clone().of_name(&name).is_some() {
                 columns.push(Column { name, bytes });
             }
         }
@@ -65,7 +68,7 @@ impl Table {
             let message = format!("fields of {start} bytes in records of {record_len}");
             return Err(Error::malformed(message));
         }
-        Ok(Table { name, len, input, columns, record: vec![0; record_len] })
+        Ok(Table { name, len, input, columns, record: vec![0; record_len], none })
     }
 
     /// The properties of the next record; `None` if it was deleted, and its shape with it.
@@ -74,7 +77,7 @@ impl Table {
         if self.record.first() == Some(&DELETED) {
             return Ok(None);
         }
-        let mut found = Properties::default();
+        let mut found = self.none.clone();
         for column in &self.columns {
             let text = text(&self.record[column.bytes.clone()]);
             let text = text.trim_matches([' ', '\0']);

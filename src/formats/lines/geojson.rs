@@ -13,7 +13,7 @@ use serde_core::de::{DeserializeSeed, Deserializer, Error as _, IgnoredAny, MapA
 use crate::crs::requested;
 use crate::detect::BYTE_ORDER_MARK;
 use crate::lines::collect::Shape;
-use crate::lines::{Breaklines, Collector, Properties, without_mark};
+use crate::lines::{Breaklines, Collector, Properties, Reading, without_mark};
 use coordinates::{Coordinates, Whole};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::Crs;
@@ -30,14 +30,14 @@ pub(crate) fn is_json(head: &[u8]) -> bool {
 }
 
 /// Reads GeoJSON.
-pub(crate) fn read(mut input: impl Read, vertices_max: usize) -> Result<Breaklines> {
+pub(crate) fn read(mut input: impl Read, reading: &Reading) -> Result<Breaklines> {
     let mut start = Vec::new();
     let len = BYTE_ORDER_MARK.len() as u64;
     input.by_ref().take(len).read_to_end(&mut start).map_err(|e| Error::io("reading", e))?;
     if start == BYTE_ORDER_MARK {
         start.clear();
     }
-    let mut file = File { lines: Collector::new(vertices_max), feature: 0, system: None, failure: None };
+    let mut file = File { lines: Collector::new(reading), feature: 0, system: None, failure: None };
     let mut json = serde_json::Deserializer::from_reader(start.chain(input));
     let read = Object { file: &mut file, is_root: true }.deserialize(&mut json);
     let read = read.and_then(|root| root.finish(&mut file).map_err(serde_json::Error::custom));
@@ -105,8 +105,7 @@ struct Found {
 }
 
 /// The properties of a feature that have a meaning here. Strings and numbers with the same text are equal.
-fn properties(value: &serde_json::Value) -> Properties {
-    let mut found = Properties::default();
+fn properties(value: &serde_json::Value, mut found: Properties) -> Properties {
     for (name, value) in value.as_object().into_iter().flatten() {
         if let Some(property) = found.of_name(name) {
             *property = match value {
@@ -195,7 +194,9 @@ impl<'de> Visitor<'de> for Object<'_> {
                     let parts = Objects { file: &mut *self.file, are_features: false };
                     found.parts = Some(members.next_value_seed(parts)?);
                 }
-                "properties" => found.properties = properties(&members.next_value()?),
+                "properties" => {
+                    found.properties = properties(&members.next_value()?, self.file.lines.no_properties());
+                }
                 "features" if self.is_root => {
                     members.next_value_seed(Objects { file: &mut *self.file, are_features: true })?;
                     found.has_features = true;
@@ -271,16 +272,18 @@ mod tests {
             r#"{"type":"MultiPoint","coordinates":[[1,1],[2,2]]}"#,
             r#"{"type":"LineString","coordinates":[]}"#,
         ]);
-        let lines = read(text.as_bytes(), usize::MAX).unwrap().lines;
+        let lines = read(text.as_bytes(), &Reading::default()).unwrap().lines;
         assert_eq!(lines[0].vertices, [[0.0, 0.0], [1.0, 2.0], [2.0, 2.0]]);
         assert_eq!(lines[0].elevations, [Some(7.0), None, None]);
         assert_eq!((&lines[2].position[..], lines[2].vertices[1]), ("feature 2", [6.0, 6.0]));
         let polygons: Vec<Option<u32>> = lines.iter().map(|line| line.polygon).collect();
         assert_eq!(polygons, [None, None, None, Some(0), Some(1), None, Some(2), Some(2), None, None]);
         assert_eq!(lines[5].elevations, [Some(1.0)]);
-        let alone =
-            read("\u{feff} {\"type\":\"LineString\",\"coordinates\":[[0,1],[2,3]]} ".as_bytes(), usize::MAX)
-                .unwrap();
+        let alone = read(
+            "\u{feff} {\"type\":\"LineString\",\"coordinates\":[[0,1],[2,3]]} ".as_bytes(),
+            &Reading::default(),
+        )
+        .unwrap();
         assert_eq!((alone.lines.len(), alone.system.crs), (1, Crs::Unknown));
     }
 
@@ -291,7 +294,7 @@ mod tests {
             let crs = format!(r#""crs":{{"type":"name","properties":{{"name":"{name}"}}}}"#);
             read(
                 format!(r#"{{"type":"FeatureCollection",{crs},"features":[{}]}}"#, feature(line)).as_bytes(),
-                usize::MAX,
+                &Reading::default(),
             )
         };
         let name = |name: &str| crate::crs::name(&of(name).unwrap().system.crs).unwrap();
@@ -322,7 +325,7 @@ mod tests {
             (&format!("{}{}", r#"{"type":"Polygon","coordinates":"#, "[".repeat(1000)), "lists in lists"),
             (r#"{"type":"LineString","coordinates":[[1,2],[1,3]]} x"#, "not JSON"),
         ] {
-            let message = read(text.as_bytes(), usize::MAX).unwrap_err().to_string();
+            let message = read(text.as_bytes(), &Reading::default()).unwrap_err().to_string();
             assert!(message.contains(part), "{text}: {message}");
         }
     }

@@ -13,7 +13,7 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use crate::crs::{System, differences, requested};
-use crate::lines::{Breaklines, Collector, Properties, wkb};
+use crate::lines::{Breaklines, Collector, Properties, Reading, wkb};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::limits::{CRS_LEN_MAX, geopackage_steps_max, geopackage_value_max};
@@ -28,7 +28,7 @@ struct Table {
 
 /// Reads all tables of features, or the one of this name. The file is never changed: it is opened as one that
 /// nobody writes.
-pub(crate) fn read(path: &Path, layer: Option<&str>, vertices_max: usize) -> Result<Breaklines> {
+pub(crate) fn read(path: &Path, layer: Option<&str>, reading: &Reading) -> Result<Breaklines> {
     let flags =
         OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     check_complete(path)?;
@@ -44,7 +44,7 @@ pub(crate) fn read(path: &Path, layer: Option<&str>, vertices_max: usize) -> Res
             return Err(Error::usage(format!("has no layer {layer:?}: its layers are {names}")));
         }
     }
-    read_tables(&database, &tables, layers.clone(), vertices_max)
+    read_tables(&database, &tables, layers.clone(), reading)
         .map_err(|error| layers.iter().fold(error, |error, layers| error.noting(layers)))
 }
 
@@ -52,9 +52,9 @@ fn read_tables(
     database: &Connection,
     tables: &[Table],
     layers: Option<String>,
-    vertices_max: usize,
+    reading: &Reading,
 ) -> Result<Breaklines> {
-    let mut lines = Collector::new(vertices_max);
+    let mut lines = Collector::new(reading);
     let mut crs: Option<(Crs, &Table)> = None;
     for table in tables {
         let own = system(database, table.system)?;
@@ -243,7 +243,8 @@ fn check_same(first: &Crs, other: &Table, own: &Crs, table: &Table) -> Result<()
 
 fn features(database: &Connection, table: &Table, lines: &mut Collector) -> Result<()> {
     let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-    let columns = columns(database, table)?;
+    let none = lines.no_properties();
+    let columns = columns(database, table, &none)?;
     let names = std::iter::once(&table.column).chain(&columns).map(|name| quoted(name));
     let query = format!("SELECT {} FROM {}", names.collect::<Vec<_>>().join(", "), quoted(&table.name));
     let mut statement = database.prepare(&query).map_err(malformed)?;
@@ -251,7 +252,7 @@ fn features(database: &Connection, table: &Table, lines: &mut Collector) -> Resu
     for number in 1u64.. {
         let position = || format!("table {:?}, row {number}", table.name);
         let Some(row) = rows.next().map_err(|e| malformed(e).at(position()))? else { break };
-        lines.feature(properties(row, &columns).map_err(|e| malformed(e).at(position()))?);
+        lines.feature(properties(row, &columns, none.clone()).map_err(|e| malformed(e).at(position()))?);
         match row.get_ref(0).map_err(|e| malformed(e).at(position()))? {
             ValueRef::Null => {}
             ValueRef::Blob(bytes) => wkb::enter(bytes, lines, &position).map_err(|e| e.at(position()))?,
@@ -265,7 +266,7 @@ fn features(database: &Connection, table: &Table, lines: &mut Collector) -> Resu
 }
 
 /// The columns of a table that have properties of lines.
-fn columns(database: &Connection, table: &Table) -> Result<Vec<String>> {
+fn columns(database: &Connection, table: &Table, none: &Properties) -> Result<Vec<String>> {
     let query = "SELECT CAST(name AS BLOB), hidden FROM pragma_table_xinfo(?)";
     let mut statement = database.prepare(query).map_err(malformed)?;
     let mut rows = statement.query([&table.name]).map_err(malformed)?;
@@ -274,7 +275,7 @@ fn columns(database: &Connection, table: &Table) -> Result<Vec<String>> {
         // Other names need not be text.
         let name = row.get_ref(0).map_err(malformed)?.as_blob().unwrap_or_default();
         let Ok(name) = str::from_utf8(name) else { continue };
-        let is_property = Properties::default().of_name(name).is_some();
+        let is_property = none.clone().of_name(name).is_some();
         if (is_property || name.eq_ignore_ascii_case(&table.column)) && is_computed(row)? {
             let message = format!("the column {name:?} of {:?} is computed: {AS_TABLE}", table.name);
             return Err(Error::malformed(message));
@@ -293,8 +294,11 @@ fn is_computed(column: &rusqlite::Row) -> Result<bool> {
 }
 
 /// The properties of a row of the geometry and these columns.
-fn properties(row: &rusqlite::Row, columns: &[String]) -> rusqlite::Result<Properties> {
-    let mut found = Properties::default();
+fn properties(
+    row: &rusqlite::Row,
+    columns: &[String],
+    mut found: Properties,
+) -> rusqlite::Result<Properties> {
     for (column, name) in (1..).zip(columns) {
         let text = match row.get_ref(column)? {
             ValueRef::Integer(value) => Some(value.to_string()),

@@ -67,17 +67,59 @@ pub struct Properties {
     pub bank: Option<String>,
     /// Role in a spline.
     pub spline: Option<String>,
+    /// What the property that [`Reading::elevation`] names says.
+    pub elevation: Option<String>,
+    /// This name.
+    pub elevation_name: Option<Arc<str>>,
+}
+
+/// How lines are read.
+#[derive(Debug, Clone)]
+pub struct Reading {
+    /// Memory has room for so many vertices.
+    pub vertices_max: usize,
+    /// Name of a property that states the elevation of all vertices of a feature that has it, in place of third
+    /// coordinates.
+    pub elevation: Option<Arc<str>>,
+}
+
+impl Default for Reading {
+    fn default() -> Self {
+        Reading { vertices_max: usize::MAX, elevation: None }
+    }
+}
+
+impl Reading {
+    /// The properties of a feature that states none.
+    fn properties(&self) -> Properties {
+        Properties { elevation_name: self.elevation.clone(), ..Properties::default() }
+    }
 }
 
 impl Properties {
     /// The property of this name, in any case; `None` if it has no meaning here.
     fn of_name(&mut self, name: &str) -> Option<&mut Option<String>> {
         match name {
+            _ if self.elevation_name.as_deref().is_some_and(|own| name.eq_ignore_ascii_case(own)) => {
+                Some(&mut self.elevation)
+            }
             _ if name.eq_ignore_ascii_case("level") => Some(&mut self.level),
             _ if name.eq_ignore_ascii_case("river") => Some(&mut self.river),
             _ if name.eq_ignore_ascii_case("bank") => Some(&mut self.bank),
             _ if name.eq_ignore_ascii_case("spline") => Some(&mut self.spline),
             _ => None,
+        }
+    }
+
+    /// The elevation of all vertices of the feature; `None` if third coordinates are theirs.
+    fn elevation(&self) -> Result<Option<f64>> {
+        let stated = self.elevation.as_deref().unwrap_or_default().trim();
+        let Some(name) = self.elevation_name.as_deref().filter(|_| !stated.is_empty()) else {
+            return Ok(None);
+        };
+        match stated.parse() {
+            Ok(z) if f64::is_finite(z) => Ok(Some(z)),
+            _ => Err(Error::malformed(format!("the property {name} is {stated:?}, expected a number"))),
         }
     }
 }
@@ -122,27 +164,26 @@ impl Breaklines {
 ///
 /// # Errors
 /// If reading fails, or the file has none of these formats; malformed, with the position, if it is damaged, a
-/// coordinate is not finite, or there are more than `LINE_VERTICES_MAX` vertices; memory, if there are more
-/// than `vertices_max`.
-pub fn read_breaklines(path: &Path, vertices_max: usize) -> Result<Breaklines> {
-    read(path, text_of_lines, vertices_max).map_err(|error| error.of_input(name_of(path)))
+/// coordinate is not finite, an elevation is no number, or there are more than `LINE_VERTICES_MAX` vertices;
+/// memory, if there are more than `reading` allows.
+pub fn read_breaklines(path: &Path, reading: &Reading) -> Result<Breaklines> {
+    read(path, text_of_lines, reading).map_err(|error| error.of_input(name_of(path)))
 }
 
-/// How what is no GeoJSON, Shapefile or GeoPackage is read: its first bytes, all of it, and the most
-/// vertices.
-type ReadText = fn(&[u8], &mut dyn Read, usize) -> Result<Breaklines>;
+/// How what is no GeoJSON, Shapefile or GeoPackage is read: its first bytes, and all of it.
+type ReadText = fn(&[u8], &mut dyn Read, &Reading) -> Result<Breaklines>;
 
-fn text_of_lines(head: &[u8], input: &mut dyn Read, vertices_max: usize) -> Result<Breaklines> {
+fn text_of_lines(head: &[u8], input: &mut dyn Read, reading: &Reading) -> Result<Breaklines> {
     check_text(head)?;
-    text::read(input, vertices_max)
+    text::read(input, reading)
 }
 
-fn text_or_wkt(head: &[u8], input: &mut dyn Read, vertices_max: usize) -> Result<Breaklines> {
+fn text_or_wkt(head: &[u8], input: &mut dyn Read, reading: &Reading) -> Result<Breaklines> {
     let is_wkt = wkt::is_wkt(head);
-    if is_wkt { wkt::read(input, vertices_max) } else { text_of_lines(head, input, vertices_max) }
+    if is_wkt { wkt::read(input, reading) } else { text_of_lines(head, input, reading) }
 }
 
-fn read(path: &Path, read_text: ReadText, vertices_max: usize) -> Result<Breaklines> {
+fn read(path: &Path, read_text: ReadText, reading: &Reading) -> Result<Breaklines> {
     let (path, layer) = file_and_layer(path);
     let (input, is_file): (Box<dyn Read>, bool) = if path.as_os_str() == "-" {
         (Box::new(open_stdin()?), false)
@@ -159,7 +200,7 @@ fn read(path: &Path, read_text: ReadText, vertices_max: usize) -> Result<Breakli
     let check_plain = |format: &str| if is_plain { Ok(()) } else { Err(not_in_pipe(format)) };
     if head.starts_with(SQLITE_MAGIC) {
         check_plain("GeoPackage")?;
-        return read_geopackage(path, layer.as_deref(), vertices_max);
+        return read_geopackage(path, layer.as_deref(), reading);
     }
     if let Some(layer) = layer {
         let message = format!("only GeoPackages have layers: give the file without \":{layer}\"");
@@ -167,11 +208,11 @@ fn read(path: &Path, read_text: ReadText, vertices_max: usize) -> Result<Breakli
     }
     if head.starts_with(SHAPEFILE_MAGIC) {
         check_plain("Shapefile")?;
-        return shapefile::read(whole, path, vertices_max);
+        return shapefile::read(whole, path, reading);
     }
     match geojson::is_json(&head) {
-        true => geojson::read(whole, vertices_max),
-        false => read_text(&head, &mut whole, vertices_max),
+        true => geojson::read(whole, reading),
+        false => read_text(&head, &mut whole, reading),
     }
 }
 
@@ -197,12 +238,12 @@ fn not_in_pipe(format: &str) -> Error {
 }
 
 #[cfg(feature = "geopackage")]
-fn read_geopackage(path: &Path, layer: Option<&str>, vertices_max: usize) -> Result<Breaklines> {
-    geopackage::read(path, layer, vertices_max)
+fn read_geopackage(path: &Path, layer: Option<&str>, reading: &Reading) -> Result<Breaklines> {
+    geopackage::read(path, layer, reading)
 }
 
 #[cfg(not(feature = "geopackage"))]
-fn read_geopackage(_: &Path, _: Option<&str>, _: usize) -> Result<Breaklines> {
+fn read_geopackage(_: &Path, _: Option<&str>, _: &Reading) -> Result<Breaklines> {
     Err(Error::usage(
         "this program was built without the feature `geopackage`: convert the file first, for example with ogr2ogr \
          lines.geojson lines.gpkg",

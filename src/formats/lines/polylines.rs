@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::lines::collect::Shape;
 use crate::lines::systems::LineSystem;
-use crate::lines::{Breakline, Breaklines, Collector, Properties, check_text, read};
+use crate::lines::{Breakline, Breaklines, Collector, Properties, Reading, check_text, read};
 use crate::source::origin::name_of;
 use crate::text::lines::quote;
 use crate::text::words::{finite, for_each_line_at};
@@ -56,9 +56,10 @@ const NAMES: [(&str, PolylineKind); 4] = [
 /// # Errors
 /// If reading fails, a line or geometry is not of these forms, or there is none at all.
 pub fn read_polylines(path: &Path) -> Result<(Vec<Polyline>, LineSystem, Option<String>)> {
-    let of_text = |head: &[u8], input: &mut dyn Read, _: usize| check_text(head).and_then(|()| text(input));
+    let of_text =
+        |head: &[u8], input: &mut dyn Read, _: &Reading| check_text(head).and_then(|()| text(input));
     let name = |error: Error| error.of_input(name_of(path));
-    let file = read(path, of_text, usize::MAX).map_err(name)?;
+    let file = read(path, of_text, &Reading::default()).map_err(name)?;
     file.check_properties().map_err(name)?;
     let polylines = polylines(&file.lines).map_err(|error| name(file.noting_layers(error)))?;
     Ok((polylines, file.system, file.layers))
@@ -109,7 +110,7 @@ fn kind_of(name: &[u8]) -> Result<PolylineKind> {
 
 /// Reads lines of text: the words are properties.
 fn text(input: impl Read) -> Result<Breaklines> {
-    let mut lines = Collector::new(usize::MAX);
+    let mut lines = Collector::new(&Reading::default());
     let mut count = 0;
     for_each_line_at(input, |number, words| {
         let kind = kind_of(words[0])?;
@@ -138,8 +139,11 @@ mod tests {
 
     fn read(bytes: &str) -> Result<Vec<(PolylineKind, Vec<Point2>)>> {
         let is_json = geojson::is_json(bytes.as_bytes());
-        let file =
-            if is_json { geojson::read(bytes.as_bytes(), usize::MAX) } else { text(bytes.as_bytes()) }?;
+        let file = if is_json {
+            geojson::read(bytes.as_bytes(), &Reading::default())
+        } else {
+            text(bytes.as_bytes())
+        }?;
         Ok(polylines(&file.lines)?.into_iter().map(|polyline| (polyline.kind, polyline.vertices)).collect())
     }
 

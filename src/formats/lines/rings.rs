@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::lines::{Breakline, read, text_or_wkt};
+use crate::lines::{Breakline, Reading, read, text_or_wkt};
 use crate::source::origin::name_of;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::points::Point2;
@@ -29,7 +29,7 @@ pub fn read_polygons(
     let (mut polygons, mut notices) = (Vec::new(), Vec::new());
     for path in paths {
         let name = name_of(path);
-        let file = read(path, text_or_wkt, usize::MAX).map_err(|error| error.of_input(&name))?;
+        let file = read(path, text_or_wkt, &Reading::default()).map_err(|error| error.of_input(&name))?;
         notices.extend(file.system.check(&name, crs)?);
         notices.extend(file.layers.clone());
         for same in file.lines.chunk_by(|a, b| a.polygon == b.polygon) {

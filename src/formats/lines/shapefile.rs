@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::lines::collect::Shape;
 use crate::lines::dbase::Table;
-use crate::lines::{Breaklines, Collector};
+use crate::lines::{Breaklines, Collector, Reading};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::limits::CRS_LEN_MAX;
@@ -52,16 +52,16 @@ fn unknown(code: i32) -> Error {
 }
 
 /// Reads the main file, and the system beside it.
-pub(crate) fn read(mut input: impl Read, path: &Path, vertices_max: usize) -> Result<Breaklines> {
+pub(crate) fn read(mut input: impl Read, path: &Path, reading: &Reading) -> Result<Breaklines> {
     let mut header = [0; HEADER_LEN];
     fill(&mut input, &mut header).map_err(|e| e.at("header"))?;
     kind(i32_le(&header[32..]))?;
-    let mut lines = Collector::new(vertices_max);
+    let mut lines = Collector::new(reading);
     let mut content = Vec::new();
     // The header states the length of the file in words of two bytes, itself included.
     let stated = 2 * i64::from(i32::from_be_bytes([header[24], header[25], header[26], header[27]]));
     let mut found = HEADER_LEN as i64;
-    let mut table = Table::beside(path)?;
+    let mut table = Table::beside(path, lines.no_properties())?;
     let mut shapes = 0;
     for number in 1u64.. {
         if !next_record(&mut input, &mut content).map_err(|e| e.at(format!("record {number}")))? {

@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use crate::lines::collect::Shape;
-use crate::lines::{Breaklines, Collector};
+use crate::lines::{Breaklines, Collector, Reading};
 use crate::text::lines::{number, quote};
 use crate::text::words::{finite, for_each_line_at};
 use spmesh_base::error::{Error, Result};
@@ -19,8 +19,8 @@ struct Open {
 }
 
 /// Reads lines of text: see [`crate::lines::read_breaklines`].
-pub(crate) fn read(input: impl Read, vertices_max: usize) -> Result<Breaklines> {
-    let mut lines = Collector::new(vertices_max);
+pub(crate) fn read(input: impl Read, reading: &Reading) -> Result<Breaklines> {
+    let mut lines = Collector::new(reading);
     let mut open: Option<Open> = None;
     for_each_line_at(input, |number, words| {
         let mut words = words;
@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn words_start_lines() {
         let text = "# roads\nline 0 0 1, 1 0 nan\n 2 0 3\n\nsoft\n5 5\n6 5 # end\n";
-        let lines = read(text.as_bytes(), usize::MAX).unwrap().lines;
+        let lines = read(text.as_bytes(), &Reading::default()).unwrap().lines;
         assert_eq!(lines[0].vertices, [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]);
         assert_eq!(lines[0].elevations, [Some(1.0), None, Some(3.0)]);
         assert_eq!(
@@ -98,7 +98,7 @@ mod tests {
             ("line 1 1 inf\n", "line 1: found \"inf\", expected an elevation"),
             ("line\nsoft 1 1\n", "line 1: found no vertices"),
         ] {
-            let message = read(text.as_bytes(), usize::MAX).unwrap_err().to_string();
+            let message = read(text.as_bytes(), &Reading::default()).unwrap_err().to_string();
             assert!(message.contains(part), "{text}: {message}");
         }
     }

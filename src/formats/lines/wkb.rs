@@ -143,10 +143,11 @@ fn unknown(code: u32) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lines::Reading;
     use spmesh_stream::Crs;
 
     fn read(bytes: &[u8]) -> Result<Vec<(usize, Option<f64>)>> {
-        let mut lines = Collector::new(usize::MAX);
+        let mut lines = Collector::new(&Reading::default());
         enter(bytes, &mut lines, &|| "row 1".to_string())?;
         let lines = lines.finish(Crs::Unknown)?.lines;
         Ok(lines.into_iter().map(|line| (line.vertices.len(), line.elevations[0])).collect())

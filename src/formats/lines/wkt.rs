@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use crate::lines::collect::Shape;
-use crate::lines::{Breaklines, Collector, without_mark};
+use crate::lines::{Breaklines, Collector, Reading, without_mark};
 use crate::text::lines::quote;
 use crate::text::words::finite;
 use spmesh_base::error::{Error, Result};
@@ -18,14 +18,14 @@ pub(crate) fn is_wkt(head: &[u8]) -> bool {
 }
 
 /// Reads any number of `POLYGON` and `MULTIPOLYGON`, each with an optional `SRID=N;` before it.
-pub(crate) fn read(input: impl Read, vertices_max: usize) -> Result<Breaklines> {
+pub(crate) fn read(input: impl Read, reading: &Reading) -> Result<Breaklines> {
     let mut bytes = Vec::new();
     input.take(WKT_LEN_MAX + 1).read_to_end(&mut bytes).map_err(|e| Error::io("reading", e))?;
     if bytes.len() as u64 > WKT_LEN_MAX {
         return Err(Error::malformed(format!("more than {WKT_LEN_MAX} bytes: simplify the polygons")));
     }
     let mut text = Text { rest: without_mark(&bytes), line: 1 };
-    let mut polygons = Polygons { lines: Collector::new(vertices_max), count: 0 };
+    let mut polygons = Polygons { lines: Collector::new(reading), count: 0 };
     while text.peek().is_some() {
         polygons.geometry(&mut text).map_err(|error| error.at(format!("line {}", text.line)))?;
     }
@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn polygons_have_rings() {
         let rings = |text: &str| {
-            let lines = read(text.as_bytes(), usize::MAX).unwrap().lines;
+            let lines = read(text.as_bytes(), &Reading::default()).unwrap().lines;
             let ring = |line: crate::lines::Breakline| {
                 (line.polygon, line.vertices.len(), line.position.to_string())
             };
@@ -189,7 +189,7 @@ mod tests {
             ("POLYGON((0 0,1 0,1 1,0 0))\nPOINT(1 2)", "line 2: found \"POINT\", expected POLYGON or"),
             ("POLYGON((0 0,1 0,1 1,0 2))", "line 1: ring 0: it starts at 0, 0 and ends at 0, 2"),
         ] {
-            let message = read(text.as_bytes(), usize::MAX).unwrap_err().to_string();
+            let message = read(text.as_bytes(), &Reading::default()).unwrap_err().to_string();
             assert!(message.contains(part), "{text}: {message}");
         }
     }

@@ -43,7 +43,7 @@ pub use crate::lines::polylines::{Polyline, PolylineKind, read_polylines};
 pub use crate::lines::rings::{Polygon, read_polygons};
 pub use crate::lines::systems::LineSystem;
 pub use crate::lines::write_geojson::{collection_head, epsg_code};
-pub use crate::lines::{Breakline, Breaklines, Properties, read_breaklines};
+pub use crate::lines::{Breakline, Breaklines, Properties, Reading, read_breaklines};
 pub use crate::obj::read::open_obj;
 pub use crate::ply::read::open_ply;
 pub use crate::ply::surface::{Surface, read_ply_surface};

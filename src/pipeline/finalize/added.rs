@@ -32,9 +32,11 @@ pub(super) struct AddedPoints {
 }
 
 impl AddedPoints {
-    /// Adds points, in stored coordinates of the input, to an input of the plane. No two have one place.
+    /// Adds points, in stored coordinates of the input, to an input of the plane. Of several at one place, the
+    /// first one counts.
     pub(super) fn new(mut points: Vec<Point>) -> AddedPoints {
-        points.sort_unstable_by(by_place);
+        points.sort_by(by_place);
+        points.dedup_by(|a, b| by_place(a, b).is_eq());
         // Of other places, one in sixteen or fewer has the hash of one of these.
         let bits = (16 * points.len()).next_power_of_two().max(64);
         let mut added = AddedPoints { points, hashes: vec![0; bits / 64], ..AddedPoints::default() };

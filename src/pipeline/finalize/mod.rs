@@ -30,6 +30,7 @@ mod emit;
 mod flatten;
 mod in_regions;
 mod locate;
+mod no_points;
 mod options;
 mod pages;
 mod passes;

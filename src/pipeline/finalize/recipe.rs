@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use super::added::AddedPoints;
 use super::budget::Budget;
 use super::flatten::{Evidence, Flatten};
+use super::no_points::NoPoints;
 use super::options::Options;
 use super::passes::{Observer, Passes};
 use super::run::Stats;
@@ -28,7 +29,7 @@ const WATER_CLASS: u8 = 9;
 /// What is finalized, and how.
 #[derive(Debug, Clone)]
 pub struct Recipe {
-    /// Files of points, which are one input; `-` is stdin.
+    /// Files of points, which are one input; `-` is stdin. Without any, lines are all there is.
     pub inputs: Vec<PathBuf>,
     /// How these are read. Weights add what they are made of to the attributes.
     pub source: SourceOptions,
@@ -95,6 +96,10 @@ impl Recipe {
     /// # Errors
     /// Those of reading; those of [`super::run()`].
     pub fn run(&self, observer: &mut dyn Observer, mut output: impl Write) -> Result<Outcome> {
+        if self.inputs.is_empty() {
+            let input = NoPoints::beside(&self.lines, &self.source)?;
+            return self.finalize(&input, observer, &mut output);
+        }
         let input = self.open()?;
         input.notices().iter().for_each(|message| observer.notice(message));
         let mut outcome = self.finalize(&input, observer, &mut output)?;
@@ -150,7 +155,7 @@ impl Recipe {
     ) -> Result<Outcome> {
         let target = Target::of_points(input.description());
         let (mut areas, notices) = Areas::read(&self.clip, &self.drop_inside, &target)?;
-        let Lines { network, mut water, changes, .. } = self.read_lines(&target)?;
+        let Lines { network, points, mut water, changes, .. } = self.read_lines(&target)?;
         notices.iter().chain(&changes.notices).for_each(|message| observer.notice(message));
         let levels = if water.polygons.is_empty() {
             Levels::default()
@@ -164,10 +169,14 @@ impl Recipe {
             levels
         };
         levels.notices.iter().for_each(|message| observer.notice(message));
-        let [all, stated] = self.added(&network, &levels, &water, &target);
+        let [mut all, mut stated] = self.added(&network, &levels, &water, &target);
+        let is_free = |point: &Point| areas.keeps([point[0], point[1]]) && self.is_in_reach(point, &target);
+        let points: Vec<Point> = points.into_iter().filter(is_free).collect();
+        let has_lines = !network.vertices.is_empty() || !points.is_empty();
+        stated.extend(&points);
+        all.extend(points);
         let added = AddedPoints::new(all);
-        let has_lines = !network.vertices.is_empty();
-        let budget = self.budget_beside(&areas, network.vertices.len())?;
+        let budget = self.budget_beside(&areas, network.vertices.len() + added.len())?;
         drop(network);
         let selected = Selected::new(input, &areas);
         // Without polygons, no point takes a way round.
@@ -216,7 +225,7 @@ impl Recipe {
             Some(_) => {
                 let sources =
                     Sources { lines: &self.lines, water: &self.flatten.files, ..Sources::default() };
-                lines::read(&sources, target, &self.line_options.within(self.options.budget.bytes()))
+                lines::read(&sources, target, &self.line_options.clone().within(self.options.budget.bytes()))
             }
         }
     }
@@ -242,18 +251,23 @@ impl Recipe {
         Ok([uncovered.count() as u64, vertices.len() as u64])
     }
 
+    /// Whether a stored point is in the boxes that limit the input.
+    fn is_in_reach(&self, point: &Point, target: &Target) -> bool {
+        self.source.bounds.is_none_or(|bounds| bounds.contains(target.coordinates.to_decimal(*point)))
+            && self.source.window.is_none_or(|window| window.contains(*point))
+    }
+
     /// The vertices of lines and water that become points, and those of them whose elevation a file states.
     fn added(&self, network: &Network, levels: &Levels, water: &Water, target: &Target) -> [Vec<Point>; 2] {
         let of_water = water.stated_vertices(network);
-        let is_kept = |point: &Point| {
-            self.source.bounds.is_none_or(|bounds| bounds.contains(target.coordinates.to_decimal(*point)))
-                && self.source.window.is_none_or(|window| window.contains(*point))
-        };
         let [mut all, mut stated] = [Vec::new(), Vec::new()];
         for (number, vertex) in (0..).zip(&network.vertices) {
             let z = levels.elevations.get(&number).copied().or(vertex.z);
             let point = z.map(|z| [vertex.place[0], vertex.place[1], z]);
-            let Some(point) = point.filter(is_kept).filter(|_| !levels.left_out.contains(&number)) else {
+            let Some(point) = point
+                .filter(|point| self.is_in_reach(point, target))
+                .filter(|_| !levels.left_out.contains(&number))
+            else {
                 continue;
             };
             all.push(point);

@@ -62,6 +62,11 @@ impl Areas {
         all.fold((0, 0), |(edges, bytes), (more, more_bytes)| (edges + more, bytes + more_bytes))
     }
 
+    /// Whether a point at a place is kept.
+    pub(super) fn keeps(&self, place: Point2) -> bool {
+        !self.clips(place) && !self.drops(place) && !self.floods(place)
+    }
+
     /// Whether all points are kept.
     pub(super) fn keep_all(&self) -> bool {
         self.clip.is_none() && self.drop.is_none() && self.water.is_none()

@@ -18,6 +18,11 @@ pub struct LineFlags {
     #[arg(long = "lines", value_name = "FILE")]
     pub files: Vec<PathBuf>,
 
+    /// Take the elevations of features of --lines from this property where they have it, and not from third
+    /// coordinates
+    #[arg(long, value_name = "NAME")]
+    pub z_field: Option<String>,
+
     /// Divide parts of lines that are longer than this, in world units
     #[arg(long, value_name = "LENGTH", value_parser = parse_length)]
     pub densify: Option<f64>,
@@ -39,6 +44,9 @@ impl LineFlags {
     /// # Errors
     /// Usage, if they do not.
     pub fn check(&self, has_areas: bool) -> Result<()> {
+        if self.z_field.is_some() && self.files.is_empty() {
+            return Err(Error::usage("--z-field is about lines: give --lines, too"));
+        }
         let flags = [("--densify", self.densify.is_some()), ("--report", self.report.is_some())];
         match flags.iter().find(|(_, is_given)| *is_given) {
             Some((flag, _)) if self.files.is_empty() && !has_areas => {
@@ -50,7 +58,12 @@ impl LineFlags {
 
     /// How the lines are read.
     pub fn options(&self) -> Options {
-        Options { densify: self.densify, lists_changes: self.report.is_some(), ..Options::default() }
+        Options {
+            densify: self.densify,
+            lists_changes: self.report.is_some(),
+            elevation: self.z_field.as_deref().map(Into::into),
+            ..Options::default()
+        }
     }
 
     /// Creates the file for the report, if one is asked for.

@@ -16,7 +16,7 @@ use crate::finalize::{
     Budget, CELL_POINTS, InRegions, Leaves, Observer, Options, Order, Outcome, Pass, REGION_POINTS, Recipe,
     Spooling, WhenRegions,
 };
-use crate::lines::write_report;
+use crate::lines::{self, write_report};
 use groups::{AreaFlags, WaterFlags, WeightFlags};
 use planning::PlanFlags;
 use spmesh_base::error::{Error, ErrorKind, Result, counted};
@@ -65,6 +65,8 @@ Examples:
       spfinalize --octree scan.xyz.gz | spdelaunay3d -o scan.spm
   Points and roads, whose vertices with elevations become points:
       spfinalize --keep-class 2 --lines roads.gpkg tile.laz | spdelaunay2d -o ground.spm
+  A surface of contour lines, whose property ELEV states elevations, and of spot heights:
+      spfinalize --no-points --lines contours.shp --lines spots.shp --z-field ELEV -o map.spm
   The points of a district, without those inside of buildings:
       spfinalize --clip district.shp --drop-inside buildings.gpkg tiles/*.laz -o district.spm
   Flat lakes and rivers that fall; the same file makes their shores edges of the mesh:
@@ -101,6 +103,10 @@ pub struct Flags {
     /// do not count
     #[arg(long, value_name = "FILE")]
     lof: Option<PathBuf>,
+
+    /// Read no points: the vertices of --lines are all there is
+    #[arg(long, requires = "files", conflicts_with_all = ["inputs", "lof", "plan", "flatten", "octree"])]
+    no_points: bool,
 
     /// Read files of bare numbers, x, y and z of each point: a type of i8, u8, i16, u16, i32, u32, i64,
     /// u64, f32 or f64 with its byte order, as in f32le or f64be
@@ -281,7 +287,7 @@ impl Flags {
             clip: self.areas.clip.clone(),
             drop_inside: self.areas.drop_inside.clone(),
             lines: self.lines.files.clone(),
-            line_options: self.lines.options(),
+            line_options: lines::Options { takes_points: true, ..self.lines.options() },
             flatten: self.water.flatten(),
         })
     }
@@ -344,7 +350,7 @@ impl Flags {
                     "the list of files and one of the files cannot both be stdin (-)"
                 ));
             }
-        } else if paths.is_empty() {
+        } else if paths.is_empty() && !self.no_points {
             paths.push(PathBuf::from("-"));
         }
         let beside = self.beside().filter(|path| *path == stdin).count();

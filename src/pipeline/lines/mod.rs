@@ -22,12 +22,13 @@ mod stations;
 mod water;
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use spmesh_base::error::{Error, Result};
 use spmesh_base::limits::{LINE_CROSSINGS_MAX, LINE_VERTEX_BYTES, check_line_vertices};
 use spmesh_delaunay::network::{Network, NetworkVertex};
 use spmesh_delaunay::noding::{LineVertex, Noded, NodingOptions, node_lines};
-use spmesh_formats::source::{Breaklines, Description, name_of, read_breaklines};
+use spmesh_formats::source::{Breaklines, Description, Reading, name_of, read_breaklines};
 use spmesh_stream::{Coordinates, Crs, Header};
 
 use areas::Role;
@@ -39,7 +40,9 @@ pub use layer::Shore;
 pub use levels::Levels;
 pub(crate) use levels::Near;
 use numbered::Bent;
+use numbered::numbered;
 pub use report::write_report;
+use spmesh_stream::model::bounds::Point;
 pub use stated::{ABOUT_FAR, is_far};
 pub use water::{Water, WaterPolygon};
 
@@ -69,12 +72,16 @@ impl Target {
 }
 
 /// How lines are read.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// Longest part of a line, in world units; longer parts are divided evenly.
     pub densify: Option<f64>,
     /// Whether changes are listed, and not counted alone.
     pub lists_changes: bool,
+    /// Name of a property of lines that states their elevation.
+    pub elevation: Option<Arc<str>>,
+    /// Whether points with elevations among the lines are taken, and no lines of one vertex.
+    pub takes_points: bool,
     /// So many vertices memory has room for, in all files.
     pub vertices_max: usize,
 }
@@ -90,7 +97,13 @@ impl Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { densify: None, lists_changes: false, vertices_max: usize::MAX }
+        Options {
+            densify: None,
+            lists_changes: false,
+            elevation: None,
+            takes_points: false,
+            vertices_max: usize::MAX,
+        }
     }
 }
 
@@ -99,6 +112,8 @@ impl Default for Options {
 pub struct Lines {
     /// All lines as one network.
     pub network: Network,
+    /// Points among the lines, as stored, if they are asked for; the lowest one of each place.
+    pub points: Vec<Point>,
     /// The polygons to cut the mesh with.
     pub areas: Areas,
     /// Lakes and rivers.
@@ -127,7 +142,8 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     let mut changes = Changes::new(options.lists_changes);
     let (mut files, mut left) = (Vec::new(), options.vertices_max);
     for (role, path) in sources.files() {
-        let mut file = read_breaklines(path, left)?;
+        let elevation = options.elevation.clone().filter(|_| role == Role::Lines);
+        let mut file = read_breaklines(path, &Reading { vertices_max: left, elevation })?;
         left -= file.lines.iter().map(|line| line.vertices.len()).sum::<usize>().min(left);
         let name = name_of(path);
         changes.notices.extend(file.system.check(&name, &target.crs)?);
@@ -140,6 +156,7 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
         }
         files.push((role, name, file));
     }
+    check_elevations(&files, options.elevation.as_deref())?;
     banks::close(&mut files);
     let grid = Grid::of(target, files.iter().flat_map(|(_, _, file)| &file.lines));
     changes.notices.extend(grid.notice());
@@ -147,6 +164,7 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     let rings = areas::rings(&files).map_err(noting)?;
     let shores = areas::shores(&files);
     let features = features::features(&files, target).map_err(noting)?;
+    let points = if options.takes_points { mass_points(&files, &grid, &mut changes)? } else { Vec::new() };
     let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
     let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
     let noding = noding(target);
@@ -155,14 +173,47 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
         let noded =
             node_lines(Cow::Owned(vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
         let areas = Areas { shores, ..Areas::default() };
-        return Ok(Lines { network: network(noded, &grid), areas, changes, ..Lines::default() });
+        return Ok(Lines { network: network(noded, &grid), points, areas, changes, ..Lines::default() });
     }
     let noded =
         node_lines(Cow::Borrowed(&vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
     let bent = Bent::new(&noded, &vertices, &starts);
     let (mut areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
     areas.shores = shores;
-    Ok(Lines { network: network(noded, &grid), areas, water, changes })
+    Ok(Lines { network: network(noded, &grid), points, areas, water, changes })
+}
+
+/// Checks that some line has the property of elevations: its name may be misspelt.
+fn check_elevations(files: &[(Role, String, Breaklines)], name: Option<&str>) -> Result<()> {
+    let Some(name) = name else { return Ok(()) };
+    let states = |(.., file): &(Role, String, Breaklines)| {
+        file.lines.iter().any(|line| line.properties.elevation.is_some())
+    };
+    if files.iter().any(states) {
+        return Ok(());
+    }
+    let message = format!("no line has the property {name:?} of --z-field");
+    Err(Error::usage(message).of_input(files.first().map_or("", |(_, file, _)| file)))
+}
+
+/// The points of `--lines` that have an elevation, as stored, by place; the lowest of each place.
+fn mass_points(
+    files: &[(Role, String, Breaklines)],
+    grid: &Grid,
+    changes: &mut Changes,
+) -> Result<Vec<Point>> {
+    let mut points = Vec::new();
+    for it in numbered(files).filter(|it| it.role == Role::Lines && it.line.is_point) {
+        if let Some(z) = it.line.elevations[0] {
+            let vertex = grid.vertex(it.line.vertices[0], Some(z), it.number, changes);
+            let vertex = vertex.map_err(|error| error.at(&*it.line.position).of_input(it.file))?;
+            let [x, y] = grid.stored(vertex.place);
+            points.push([x, y, vertex.z.unwrap_or(z)]);
+        }
+    }
+    points.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    points.dedup_by_key(|point| [point[0].to_bits(), point[1].to_bits()]);
+    Ok(points)
 }
 
 fn noding(target: &Target) -> NodingOptions {
@@ -184,6 +235,9 @@ fn stored(
         for line in file.lines {
             let number = starts.len() as u32;
             starts.push(vertices.len() as u32);
+            if options.takes_points && line.is_point && line.elevations[0].is_some() {
+                continue;
+            }
             let position = line.position.clone();
             let fault = |error: Error| error.at(&*position).of_input(name.clone());
             let line = prepare::prepare(line, number, options, changes).map_err(fault)?;
