@@ -4,6 +4,7 @@ mod drawing;
 mod failures;
 mod files;
 mod masks;
+mod natural;
 mod neighbours;
 pub mod outline;
 mod pieces;
@@ -66,6 +67,7 @@ fn options(quantity: Quantity) -> Options {
         mask: None,
         fill: None,
         memory: 1 << 30,
+        natural: false,
         vertices_memory: None,
         raster: RasterOptions::default(),
         crs: None,

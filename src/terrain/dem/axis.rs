@@ -115,7 +115,7 @@ impl Place {
 
 /// The centres of the cells of a grid, in stored coordinates. Each is an exact point after one rounding, so
 /// triangles that cover the plane cover each centre.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Centers {
     pub(super) columns: Axis,
     pub(super) rows: Axis,
@@ -136,6 +136,11 @@ impl Centers {
             rows: Axis::new(top, -step, rows, scale[1], offset[1]),
             scale: scale.map(|step| step / unit_of_z),
         }
+    }
+
+    /// Cells in a unit of area of stored coordinates.
+    pub(super) fn per_area(&self) -> f64 {
+        (self.columns.slope() * self.rows.slope()).abs()
     }
 
     /// Converts a gradient from stored to world coordinates, all in one unit.

@@ -6,11 +6,13 @@
 //! `tile` holds cells; `tile_cache` holds all tiles, some of them in a temporary file. After the last
 //! triangle, `flush` passes on the remaining tiles, whose holes `fill` fills; `derived` has the slopes there.
 //! `cell_mask` finds the cells in polygons. For `--sample`, `covering` passes triangles to a thread, where
-//! `cut` cuts them at the sides of cells and `coverage` holds what each cell has got. Complete tiles go
+//! `cut` cuts them at the sides of cells and `coverage` holds what each cell has got. `natural` interpolates by
+//! natural neighbours, in the `circle` of each triangle. Complete tiles go
 //! through `stages`: `neighbours` derives slopes from the cells of elevations.
 
 mod axis;
 mod cell_mask;
+mod circle;
 mod coverage;
 mod covering;
 mod cut;
@@ -19,6 +21,7 @@ mod facet;
 mod fill;
 mod flush;
 mod highest;
+mod natural;
 mod neighbours;
 mod options;
 mod rasterizer;
@@ -41,6 +44,7 @@ use coverage::Coverage;
 use covering::Covering;
 use fill::Filler;
 use flush::Flush;
+use natural::Natural;
 use neighbours::Neighbours;
 use rasterizer::{Rasterizer, TileSink};
 use relief::Derivation;
@@ -127,6 +131,10 @@ pub fn rasterize<R: Read, W: Write + Seek>(
 ) -> Result<Stats> {
     let header = reader.header().clone();
     let column = check(&header, &options.quantity).map_err(|e| e.of_input(reader.name()))?;
+    if options.natural && (header.constrained.is_some() || header.part.is_some()) {
+        let what = "natural neighbours are those of a whole Delaunay mesh, and this one is constrained, cut or a part";
+        return Err(Error::usage(what).of_input(reader.name()));
+    }
     let around = options.surroundings(grid, &header);
     // Before anything is made for each tile.
     tiles_of(&around.drawn)?;
@@ -168,9 +176,14 @@ impl Run<'_> {
         let filler = options.fill.map(Filler::new).transpose()?;
         let differences = options.differences();
         let for_drawing = if differences.is_some() { memory / 2 } else { memory };
+        let for_cells = if options.natural { for_drawing / 2 } else { for_drawing };
         let temp_dir = options.raster.temp_dir.as_deref();
         let coordinates = reader.header().coordinates;
-        let mut rasterizer = Rasterizer::new(grid, &coordinates, options, self.system, for_drawing)?;
+        let mut rasterizer = Rasterizer::new(grid, &coordinates, options, self.system, for_cells)?;
+        if options.natural {
+            let natural = Natural::new(rasterizer.centers(), &grid, for_drawing - for_cells, temp_dir)?;
+            rasterizer.natural = Some(natural);
+        }
         if options.sample.is_whole() {
             // The header states nothing of attributes.
             let bounds = reader.header().bounds.filter(|_| self.column.is_none());
@@ -190,8 +203,9 @@ impl Run<'_> {
         });
         let neighbours = neighbours.transpose().map_err(|e| e.of_input(reader.name()))?;
         // Holes are filled from the elevations around them, so these stay until the end.
-        let is_written_early =
-            rasterizer.heights.is_none() && (neighbours.is_none() || options.fill.is_none());
+        let is_written_early = rasterizer.heights.is_none()
+            && rasterizer.natural.is_none()
+            && (neighbours.is_none() || options.fill.is_none());
         let mut stages = Stages::new(neighbours, target, self.around);
         let mut complete = |at: TilePlace, values: &[f32]| stages.take(at, values);
         let sink: Option<&mut TileSink> = if is_written_early { Some(&mut complete) } else { None };
@@ -200,6 +214,10 @@ impl Run<'_> {
         let mut covered = [0; 2];
         if let Some(covering) = rasterizer.covering.take() {
             covered = covering.finish()?.finish(&rasterizer.cache, &mut stages)?;
+        }
+        if let Some(mut natural) = rasterizer.natural.take() {
+            natural.put(&mut rasterizer.cache)?;
+            covered = natural.spilled();
         }
         let mut flush = Flush::new(&mut rasterizer, filler, options, self.around)?;
         flush.write_rest(&mut stages)?;

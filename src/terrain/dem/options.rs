@@ -81,6 +81,8 @@ pub struct Options {
     pub quantity: Quantity,
     /// What of the surface over a cell its value is. With any but [`Sample::Centre`], nothing is filled.
     pub sample: Sample,
+    /// Whether elevations are interpolated by natural neighbours, and not linearly in triangles.
+    pub natural: bool,
     /// What slopes, aspects and hillshades are those of.
     pub method: Method,
     /// Triangles with a longer edge are left out. Units: those of the world.
@@ -124,8 +126,9 @@ impl Options {
     /// are filled, from cells around it. `header` is that of the mesh.
     pub fn window(&self, grid: &Grid, header: &Header) -> Option<Bounds> {
         let grid = self.surroundings(grid, header).drawn;
-        // The way of a concave outline begins at the border of the mesh, however far away that is.
-        if self.concave.is_some() {
+        // The way of a concave outline begins at the border of the mesh, however far away that is. So large may
+        // circles of triangles be.
+        if self.concave.is_some() || self.natural {
             return None;
         }
         let reach = if self.sample.is_whole() { 0.5 * grid.step } else { 0.0 };
@@ -158,6 +161,9 @@ impl Options {
         }
         if self.concave.is_some() {
             return Some("a concave outline");
+        }
+        if self.natural {
+            return Some("a value of natural neighbours");
         }
         self.sample.is_whole().then_some("the surface over a whole cell")
     }

@@ -7,6 +7,7 @@ use super::axis::Centers;
 use super::cell_mask::CellMask;
 use super::covering::Covering;
 use super::facet::{Facet, place};
+use super::natural::Natural;
 use super::options::{Interpolation, Options, Quantity};
 use super::span::{Edges, Span};
 use super::tile::overlap;
@@ -37,6 +38,8 @@ pub(super) struct Rasterizer {
     pub(super) cache: TileCache,
     /// The surface over whole cells, if these are not sampled at their centres.
     pub(super) covering: Option<Covering>,
+    /// The weights of natural neighbours, if these interpolate.
+    pub(super) natural: Option<Natural>,
     /// The elevations, if the quantity of filled cells is derived from them.
     pub(super) heights: Option<TileCache>,
     /// Whether triangles that are left out are marked as holes, which are filled later.
@@ -81,6 +84,7 @@ impl Rasterizer {
                 .map(|length| ConcaveOutline::new(length, coordinates, for_outline, temp_dir)),
             cache: cache()?,
             covering: None,
+            natural: None,
             heights: has_heights.then(cache).transpose()?,
             marks_holes: options.fill.is_some(),
             predicates: FiniteFloatPredicates::default(),
@@ -91,6 +95,11 @@ impl Rasterizer {
         })
     }
 
+    /// The centres of cells.
+    pub(super) fn centers(&self) -> Centers {
+        self.centers
+    }
+
     /// Draws a triangle of vertices with ids, or keeps it until [`Rasterizer::draw_inside`] if it may be outside
     /// of the outline. The rest is as for [`Rasterizer::draw`].
     #[inline]
@@ -99,6 +108,9 @@ impl Rasterizer {
         vertices: [&(u64, Point); 3],
         complete: Option<&mut TileSink>,
     ) -> Result<()> {
+        if let Some(natural) = &mut self.natural {
+            natural.add(vertices)?;
+        }
         if self.outline.is_some() && self.keeps(vertices)? {
             return Ok(());
         }

@@ -256,6 +256,7 @@ impl Flags {
             mask: None,
             fill: None,
             memory: self.memory / 2,
+            natural: false,
             vertices_memory: None,
             raster: self.raster.options(format)?,
             crs: None,

@@ -67,6 +67,8 @@ Examples:
   Very many lines as a GeoPackage (the lines format cannot state the coordinate system):
     spdem --contours 0.5 ground.spm -o lines.geojsonl
     ogr2ogr -a_srs EPSG:2154 lines.gpkg lines.geojsonl
+  A surface without creases at the edges of triangles, by natural neighbours:
+    spdem --step 1 --interpolation natural ground.spm -o smooth.tif
   From a mesh of another program:
     spconvert terrain.ply --to spm | spdem --step 1 --bounds 0,0,1000,1000 -o terrain.tif
 ";
@@ -77,7 +79,7 @@ A cell has the value of the mesh at its centre; outside the mesh there is no dat
 drawn as they arrive. A tile of 256 by 256 cells is written as soon as it is full, so only incomplete tiles \
 take memory. Tiles beyond --memory wait in a temporary file. ESRI grids are written after the last triangle, \
 from the top, with 256 rows in memory. Of a mesh in parts, only the parts in the window of --bounds, --like \
-or --mask are read, but all with --concave.
+or --mask are read, but all with --concave and --interpolation natural.
 
 The outline is the convex hull. With --concave L, triangles are outside if a chain of triangles leads to them \
 from the hull in which every crossed edge, first one of the hull, is longer than L; all others stay, also with \
@@ -283,6 +285,7 @@ impl Flags {
         Ok(Options {
             quantity,
             sample: self.quantity.sample(),
+            natural: self.quantity.is_natural(),
             method: self.quantity.method(),
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,

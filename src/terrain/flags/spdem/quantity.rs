@@ -36,11 +36,11 @@ pub(super) struct QuantityFlags {
     #[arg(long, value_name = "NAME", conflicts_with = "contours")]
     pub(super) attribute: Option<String>,
 
-    /// How an attribute varies between points: linear, or the value of the nearest corner of the triangle, as
-    /// classes need it [default: linear]
-    #[arg(long, value_name = "HOW", requires = "attribute", conflicts_with = "contours")]
-    #[arg(value_parser = named(&[("linear", Interpolation::Linear), ("nearest", Interpolation::Nearest)]))]
-    interpolation: Option<Interpolation>,
+    /// How values vary between points: linearly in each triangle; of elevations, by natural neighbours (Sibson), which
+    /// is smooth but at the points; of an attribute, the value of the nearest corner of the triangle, as classes need
+    /// it [default: linear]
+    #[arg(long, value_name = "HOW", conflicts_with = "contours", value_parser = named(INTERPOLATIONS))]
+    interpolation: Option<Between>,
 
     /// Direction of the light of a hillshade, in degrees: clockwise from north, and above the horizon
     /// [default: 315,45]
@@ -55,6 +55,18 @@ pub(super) struct QuantityFlags {
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
 }
+
+/// How values vary between points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Between {
+    Linear,
+    Natural,
+    Nearest,
+}
+
+/// The values of `--interpolation`.
+const INTERPOLATIONS: Names<Between> =
+    &[("linear", Between::Linear), ("natural", Between::Natural), ("nearest", Between::Nearest)];
 
 /// The values of `--kind`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -119,7 +131,10 @@ impl QuantityFlags {
             ));
         }
         self.check(kind)?;
-        let interpolation = self.interpolation.unwrap_or(Interpolation::Linear);
+        let interpolation = match self.interpolation {
+            Some(Between::Nearest) => Interpolation::Nearest,
+            _ => Interpolation::Linear,
+        };
         let [azimuth, altitude] = self.light.unwrap_or([315.0, 45.0]);
         let shading = match self.multidirectional {
             true => Shading::Many(altitude),
@@ -133,6 +148,11 @@ impl QuantityFlags {
             (None, KindFlag::ShadedRelief) => Quantity::ShadedRelief(shading, self.range),
             (None, _) => Quantity::Elevation,
         })
+    }
+
+    /// Whether elevations are interpolated by natural neighbours.
+    pub(super) fn is_natural(&self) -> bool {
+        self.interpolation == Some(Between::Natural)
     }
 
     /// What of the surface over a cell its elevation is.
@@ -164,6 +184,18 @@ impl QuantityFlags {
             (
                 self.method.is_some() && kind == KindFlag::Elevation,
                 "--method is for slopes, aspects and hillshades: add --kind",
+            ),
+            (
+                self.attribute.is_none() && self.interpolation == Some(Between::Nearest),
+                "the nearest corner is for attributes: add --attribute, or leave out --interpolation",
+            ),
+            (
+                self.attribute.is_some() && self.is_natural(),
+                "natural neighbours are for elevations: leave out --attribute, or --interpolation natural",
+            ),
+            (
+                is_triangle && self.is_natural(),
+                "--method triangle takes the plane of a triangle: leave it out for natural neighbours",
             ),
             (is_triangle && self.sample().is_whole(), "--sample is of cells: leave out --method triangle"),
             (is_triangle && is_relief, "a shaded relief follows from cells: leave out --method triangle"),
