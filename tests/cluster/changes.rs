@@ -87,6 +87,9 @@ fn plans_move_with_their_roots() {
     let moved = format!("survey={there}");
     assert_eq!(succeed(&missing(&moved)), "");
     assert_eq!(missing("other=/").status.code(), Some(2));
+    let twice = ["--plan", &plan, "--root", &moved, "--root", "survey=/", &tile];
+    assert_outcome("spfinalize", &twice, &[], 2, "the root \"survey\" is given twice");
+    assert_outcome("spfinalize", &["--plan", &plan, "--root", &root, &tile], &[], 1, "is no folder");
     folder.write("there/a.txt", text.replacen('1', "2", 1));
     assert_eq!(missing(&moved).status.code(), Some(2));
 }
@@ -141,6 +144,11 @@ fn bad_tiles_are_left_out_and_listed() {
     assert_eq!(make(), [cut.as_str(), wrong], "the list says the same when it is read again");
     fs::write(cut, &whole_cut).unwrap();
     assert_eq!(make(), [wrong.as_str()]);
+    let misspelt = fs::read_to_string(&list).unwrap().replace("tile4", "tile44") + "/no/such.las\n";
+    let other = cluster.folder.write("other.tsv", misspelt);
+    let plan = cluster.folder.path("other.json");
+    let arguments = ["--plan", &plan, "--skip-bad", &other, &cluster.tiles[0]];
+    assert_outcome("spfinalize", &arguments, &[], 0, "files not among the inputs, such as /no/such.las");
     fs::write(wrong, &whole_wrong).unwrap();
     assert!(make().is_empty() && cluster.mesh() == mesh);
     assert_eq!(fs::read_to_string(&list).unwrap().lines().count(), 1);

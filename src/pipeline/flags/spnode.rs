@@ -224,7 +224,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 /// Reads a plan whose files are where `roots` says.
 fn read(path: &Path, roots: &RootFlags) -> Result<Plan> {
     let mut plan = Plan::read(path)?;
-    plan.move_roots(roots.roots())?;
+    plan.move_roots(roots.roots()?)?;
     Ok(plan)
 }
 

@@ -112,6 +112,13 @@ impl SkipList {
         }
     }
 
+    /// The files of the list that are not `given`: their names may be misspelt.
+    pub fn unknown(&self, given: &[PathBuf]) -> Vec<&Path> {
+        let given: HashSet<PathBuf> =
+            given.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
+        self.files.keys().map(PathBuf::as_path).filter(|path| !given.contains(*path)).collect()
+    }
+
     /// What manifests say of those of the files that were `given`.
     pub fn skipped(&self, given: &[PathBuf]) -> Vec<SkippedFile> {
         let given: HashSet<PathBuf> =

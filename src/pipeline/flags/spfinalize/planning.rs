@@ -72,8 +72,8 @@ pub(super) struct PlanFlags {
 }
 
 impl PlanFlags {
-    fn naming(&self) -> Naming {
-        Naming { roots: self.roots.roots(), by_content: self.hash }
+    fn naming(&self) -> Result<Naming> {
+        Ok(Naming { roots: self.roots.roots()?, by_content: self.hash })
     }
 }
 
@@ -89,6 +89,11 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     let list = flags.plan.skip_bad.as_deref();
     let mut bad = list.map_or(Ok(SkipList::default()), SkipList::read)?;
     let given = paths.clone();
+    if let Some(first) = bad.unknown(&given).first() {
+        let all = counted(bad.unknown(&given).len() as u64, "file", "files");
+        let message = format!("--skip-bad lists {all} not among the inputs, such as {}", first.display());
+        notice(TOOL, &flags.common, &message);
+    }
     paths.retain(|path| !bad.has(path));
     let mut output = Output::create(path, false)?;
     let mut progress = Progress::counting("files", &flags.common, "headers", Some(paths.len() as u64));
@@ -116,7 +121,7 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
         arguments: &arguments,
         beside: &beside,
         duplicates: flags.plan.duplicates,
-        naming: &flags.plan.naming(),
+        naming: &flags.plan.naming()?,
         skipped: &skipped,
     };
     let plan = plan_of(&survey, &paths, planning)?;
