@@ -68,6 +68,8 @@ pub(super) struct Natural {
     /// By the ids of the ends, the lesser one first.
     open: HashMap<[u64; 2], Side>,
     waiting: Vec<[Side; 2]>,
+    /// What [`WAITING_CELLS`] and [`WAITING_TIMES`] are here.
+    wide: [f64; 2],
     /// Elevations are counted from this one.
     base: Option<f64>,
 }
@@ -81,7 +83,14 @@ impl Natural {
         temp_dir: Option<&Path>,
     ) -> Result<Natural> {
         let cells = Accumulators::new(BLANK, grid, memory, temp_dir)?;
-        Ok(Natural { centers, cells, open: HashMap::new(), waiting: Vec::new(), base: None })
+        Ok(Natural {
+            centers,
+            cells,
+            open: HashMap::new(),
+            waiting: Vec::new(),
+            wide: [WAITING_CELLS, WAITING_TIMES],
+            base: None,
+        })
     }
 
     /// Tiles and bytes in the temporary file.
@@ -127,7 +136,8 @@ impl Natural {
         let of_circles: f64 = pair.iter().map(|side| side.circle.radius.powi(2)).sum::<f64>() * 4.0 * cells;
         let [a, b] = pair[0].ends;
         let edge = (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2);
-        of_circles > WAITING_CELLS && of_circles > WAITING_TIMES * edge * cells
+        let [most, times] = self.wide;
+        of_circles > most && of_circles > times * edge * cells
     }
 
     /// Adds what the edges that wait, and those of the hull, give to cells inside of the hull.
@@ -343,6 +353,10 @@ mod tests {
         }
         let centers = Centers::new(grid, &Coordinates::F64, 1.0);
         let mut natural = Natural::new(centers, &grid, 1 << 24, None).unwrap();
+        // All pairs wait for the hull, or only those that would without a test.
+        if random.below(2) == 0 {
+            natural.wide = [0.0; 2];
+        }
         for triangle in &triangles {
             let vertices = triangle.map(|vertex| (u64::from(vertex), points[vertex as usize]));
             natural.add(vertices.each_ref()).unwrap();
