@@ -121,6 +121,10 @@ impl Recipe {
         if self.flatten.water_points.is_none() {
             return Ok(None);
         }
+        if self.inputs.iter().any(|path| path.as_os_str() == "-") {
+            let message = "--water-points reads the points twice, with other classes: give files, and not stdin";
+            return Err(Error::usage(message));
+        }
         let filters =
             Filters { keep_class: vec![WATER_CLASS], drop_class: Vec::new(), ..self.source.filters.clone() };
         let source = SourceOptions { filters, ..self.source.clone() };
