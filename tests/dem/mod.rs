@@ -10,6 +10,8 @@ mod pieces;
 pub mod pipelines;
 mod samples;
 mod sheets;
+mod sheets_full;
+mod sheets_index;
 mod tiles;
 
 use std::io::Cursor;
@@ -61,6 +63,7 @@ fn options(quantity: Quantity) -> Options {
         quantity,
         sample: Sample::Centre,
         method: Method::Triangle,
+        z_factor: None,
         kill: None,
         concave: None,
         mask: None,

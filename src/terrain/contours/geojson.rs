@@ -5,6 +5,7 @@ use std::io::Write;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::crs::System;
+use spmesh_formats::raster::geojson_crs;
 use spmesh_stream::Crs;
 
 /// The format of lines.
@@ -20,8 +21,7 @@ pub enum LineFormat {
 const CHUNK_LEN: usize = 1 << 16;
 
 /// Writes lines as features. Coordinates are those of the stream. If the stream states an EPSG code, a
-/// collection has the member `crs` of the 2008 GeoJSON specification. RFC 7946 removed it and, without prior
-/// arrangement, allows only longitude and latitude in WGS 84; programs that know the member still read it.
+/// collection has the member `crs` ([`geojson_crs`]).
 pub(super) struct LineWriter<W> {
     output: W,
     format: LineFormat,
@@ -39,9 +39,7 @@ impl<W: Write> LineWriter<W> {
         if format == LineFormat::GeoJson {
             text.extend_from_slice(b"{\"type\":\"FeatureCollection\",");
             if let Some(code) = epsg_code(crs) {
-                let name = format!("urn:ogc:def:crs:EPSG::{code}");
-                let crs = format!(r#""crs":{{"type":"name","properties":{{"name":"{name}"}}}},"#);
-                text.extend_from_slice(crs.as_bytes());
+                text.extend_from_slice(geojson_crs(code).as_bytes());
             }
             text.extend_from_slice(b"\"features\":[");
         }

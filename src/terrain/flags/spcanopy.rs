@@ -147,7 +147,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     endings::check(&flags.output, &[endings::RASTER])?;
     let format = of_ending(cells::ENDINGS, &flags.output).unwrap_or_default();
-    let mut output = flags.sheets.create(&flags.output, format, &flags.cells)?;
+    let mut output = flags.sheets.create(&flags.output, format, &flags.cells, &flags.raster)?;
     let input = Input::open(&paths, &flags.source_options()?)?;
     input.notices().iter().for_each(|text| flags.notice(text));
     let grid = flags.cells.grid(&input.description().crs, || window(&input))?;
@@ -177,7 +177,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         draw(&points, &grid, &bottom, &settings, &thresholds, |done| progress.set(done))?;
     drop(progress);
     let (known, notices) = highest.write(output.destination(), &bottom, &input.description().crs)?;
-    let committed = output.commit()?;
+    let committed = output.commit(&input.description().crs)?;
     notices.iter().for_each(|text| flags.notice(text));
     if points.outside() > 0 {
         let outside =
@@ -251,6 +251,7 @@ impl Flags {
             quantity: Quantity::Elevation,
             sample: Sample::Centre,
             method: Method::Triangle,
+            z_factor: None,
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,
             mask: None,
