@@ -1,5 +1,7 @@
 //! Files beside sheets that describe them all.
 
+use std::ffi::OsStr;
+use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -43,10 +45,8 @@ impl Index {
         if self.has_items() && format != RasterFormat::GeoTiff {
             return Err(Error::usage("--tile-index stac is for GeoTIFF: take an output that ends in .tif"));
         }
-        if !self.kinds.is_empty() && path.file_name().is_some_and(|name| name.to_str().is_none()) {
-            return Err(Error::usage(
-                "a name that is not UTF-8 cannot stand in an index: give -o another one",
-            ));
+        if !self.kinds.is_empty() && path.to_str().is_none() {
+            return Err(not_text());
         }
         Ok(())
     }
@@ -66,9 +66,11 @@ impl Index {
         })
     }
 
-    /// The path of the item of a sheet, if there are items.
-    pub(super) fn item_of(&self, sheet: &Path) -> Option<PathBuf> {
-        self.has_items().then(|| sheet.with_extension("json"))
+    /// The path of the item of the sheet `name` of the raster `path`, if there are items.
+    pub(super) fn item_of(&self, path: &Path, name: &OsStr) -> Option<PathBuf> {
+        let mut name = name.to_os_string();
+        name.push(".json");
+        self.has_items().then(|| path.with_file_name(name))
     }
 
     /// Describes the sheets of the raster `path`, `count` in number. Returns the bytes of all files.
@@ -80,12 +82,16 @@ impl Index {
         sheet: &dyn Fn(usize) -> Sheet,
     ) -> Result<u64> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let mosaic = Mosaic { file, name: &name, date: self.date, count, sheet };
+        if self.kinds.is_empty() {
+            return Ok(0);
+        }
+        let folder = folder_of(path)?;
+        let mosaic = Mosaic { file, name: &name, folder: &folder, date: self.date, count, sheet };
         let mut bytes = 0;
         if self.has_items() {
             for sheet in (0..count).map(sheet) {
                 let item = mosaic.item(&sheet)?;
-                let path = path.with_file_name(&sheet.file_name).with_extension("json");
+                let path = path.with_file_name(format!("{}.json", sheet.name));
                 bytes += write_file(&path, |output| {
                     output.write_all(item.as_bytes()).map_err(|e| Error::io("writing", e))
                 })?;
@@ -96,6 +102,17 @@ impl Index {
         }
         Ok(bytes)
     }
+}
+
+fn not_text() -> Error {
+    Error::usage("a path that is not UTF-8 cannot stand in an index: give -o another one")
+}
+
+/// The folder of a file, from the root.
+fn folder_of(path: &Path) -> Result<String> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let found = fs::canonicalize(folder).map_err(|e| Error::io("looking for the folder", e))?;
+    found.into_os_string().into_string().map_err(|_| not_text())
 }
 
 fn write_file(path: &Path, write: impl FnOnce(&mut Output) -> Result<()>) -> Result<u64> {

@@ -1,7 +1,7 @@
 //! A raster in many files.
 
 use std::collections::HashMap;
-use std::ffi::OsStr;
+use std::ffi::OsString;
 use std::fs;
 use std::hash::BuildHasher;
 use std::io::Seek;
@@ -62,15 +62,24 @@ impl Sheets {
         Ok(Sheets { path: path.to_path_buf(), division, names, index, written: 0, blank: 0, bytes: 0 })
     }
 
+    /// The name of a sheet, without its ending.
+    fn name_of(&self, strips: &[Strips; 2], at: TilePlace) -> OsString {
+        self.names.name(self.path.file_stem().unwrap_or_default(), &self.division, strips, at)
+    }
+
     /// The path of a sheet.
     fn path_of(&self, strips: &[Strips; 2], at: TilePlace) -> PathBuf {
-        let [stem, ending] = [self.path.file_stem(), self.path.extension()].map(Option::unwrap_or_default);
-        let mut name = self.names.name(stem, &self.division, strips, at);
+        let (mut name, ending) = (self.name_of(strips, at), self.path.extension().unwrap_or_default());
         if !ending.is_empty() {
             name.push(".");
             name.push(ending);
         }
         self.path.with_file_name(name)
+    }
+
+    /// The path of the item of a sheet, if there are items.
+    fn item_of(&self, strips: &[Strips; 2], at: TilePlace) -> Option<PathBuf> {
+        self.index.item_of(&self.path, &self.name_of(strips, at))
     }
 
     /// Refuses sheets that would replace inputs or each other.
@@ -81,7 +90,7 @@ impl Sheets {
         for at in places([strips[0].len(), strips[1].len()]) {
             let path = self.path_of(strips, at);
             inputs::check_output(&path)?;
-            self.index.item_of(&path).map_or(Ok(()), |item| inputs::check_output(&item))?;
+            self.item_of(strips, at).map_or(Ok(()), |item| inputs::check_output(&item))?;
             if let Some(other) = seen.insert(hasher.hash_one(&path), at)
                 && self.path_of(strips, other) == path
             {
@@ -172,8 +181,7 @@ impl<'s> Cutter<'s> {
         }
         self.sheets.blank += 1;
         self.sheets
-            .index
-            .item_of(&path)
+            .item_of(&self.strips, [column, row])
             .map_or(Ok(()), |item| remove_earlier(&item, "the item of a raster"))?;
         remove_earlier(&path, "the raster")
     }
@@ -186,10 +194,9 @@ impl<'s> Cutter<'s> {
         let sheet = |number: usize| {
             let [column, row] = written[number];
             let path = sheets.path_of(strips, [column, row]);
-            let name = |name: Option<&OsStr>| name.unwrap_or_default().to_string_lossy().into_owned();
             Sheet {
-                name: name(path.file_stem()),
-                file_name: name(path.file_name()),
+                name: sheets.name_of(strips, [column, row]).to_string_lossy().into_owned(),
+                file_name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
                 cells: [strips[0][column].cells.clone(), strips[1][row].cells.clone()],
             }
         };

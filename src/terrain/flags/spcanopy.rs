@@ -83,12 +83,6 @@ pub struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    #[command(flatten)]
-    cells: CellFlags,
-
-    #[command(flatten)]
-    sheets: SheetFlags,
-
     /// Heights from which a surface of its own is made [default: 0,2,5,10,15 and so on]
     #[arg(long, value_name = "HEIGHTS", value_delimiter = ',', allow_negative_numbers = true)]
     layers: Vec<f64>,
@@ -125,13 +119,19 @@ pub struct Flags {
     threads: Option<NonZeroUsize>,
 
     #[command(flatten)]
-    raster: RasterFlags,
-
-    #[command(flatten)]
     stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
+
+    #[command(flatten)]
+    cells: CellFlags,
+
+    #[command(flatten)]
+    sheets: SheetFlags,
+
+    #[command(flatten)]
+    raster: RasterFlags,
 }
 
 /// Runs the tool.

@@ -107,7 +107,7 @@ complete. One without data is not written, and a file of its name is removed. ST
 degrees on WGS 84 have no geometry, since no coordinates are transformed; all state their own system.
 
 With --type, values are rounded to integers times --scale, plus --offset. A value that does not fit, or that would be \
-taken for no data, is an error. An ESRI grid gets its coordinate reference system in a .prj file beside it.
+taken for no data, is an error. An ESRI grid gets a .prj file beside it where its coordinate reference system is WKT 1.
 
 --points draws points without a mesh: how many are in each cell, how dense they are, or the least, the \
 greatest, the range, the mean and the standard deviation of their elevations or of an attribute. A point on a \
@@ -142,18 +142,6 @@ pub struct Flags {
     output: PathBuf,
 
     #[command(flatten)]
-    cells: CellFlags,
-
-    #[command(flatten)]
-    sheets: SheetFlags,
-
-    #[command(flatten)]
-    contours: ContourFlags,
-
-    #[command(flatten)]
-    quantity: QuantityFlags,
-
-    #[command(flatten)]
     outline: OutlineFlags,
 
     /// Fill cells without data, inside of the outline and the mask alone, from the nearest data in eight
@@ -173,9 +161,6 @@ pub struct Flags {
     memory: Option<u64>,
 
     #[command(flatten)]
-    raster: RasterFlags,
-
-    #[command(flatten)]
     crs: CrsFlag,
 
     #[command(flatten)]
@@ -183,6 +168,21 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
+
+    #[command(flatten)]
+    cells: CellFlags,
+
+    #[command(flatten)]
+    quantity: QuantityFlags,
+
+    #[command(flatten)]
+    sheets: SheetFlags,
+
+    #[command(flatten)]
+    contours: ContourFlags,
+
+    #[command(flatten)]
+    raster: RasterFlags,
 }
 
 /// What is written.

@@ -52,6 +52,8 @@ pub struct Mosaic<'a> {
     pub file: &'a RasterFile<'a>,
     /// Its name without an ending.
     pub name: &'a str,
+    /// The folder of all files, from the root: GDAL looks for the index of a GTI in the folder in which it was started.
+    pub folder: &'a str,
     /// The date of the data.
     pub date: Option<Date>,
     /// The number of files.

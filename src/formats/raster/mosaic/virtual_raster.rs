@@ -75,7 +75,7 @@ fn write_source(
 pub(super) fn write_gti(mosaic: &Mosaic, output: &mut dyn Write) -> io::Result<()> {
     let cells = mosaic.cells();
     let [columns, rows] = cells.each_ref().map(|cells| cells.end - cells.start);
-    let name = format!("{}.{}", mosaic.name, IndexKind::GeoJson.ending());
+    let name = format!("{}/{}.{}", mosaic.folder, mosaic.name, IndexKind::GeoJson.ending());
     writeln!(output, "<GDALTileIndexDataset>")?;
     writeln!(output, "  <IndexDataset>{}</IndexDataset>", escape(&name))?;
     writeln!(output, "  <LocationField>location</LocationField>")?;

@@ -69,12 +69,6 @@ pub(super) struct Flags {
     #[arg(long, value_name = "SITES", conflicts_with_all = ["step", "columns", "rows", "bounds", "like"])]
     at: Option<PathBuf>,
 
-    #[command(flatten)]
-    cells: CellFlags,
-
-    #[command(flatten)]
-    raster: RasterFlags,
-
     /// The attribute to evaluate
     #[arg(long, value_name = "KIND", default_value = "value", value_parser = named(KINDS))]
     kind: Attribute,
@@ -94,6 +88,12 @@ pub(super) struct Flags {
 
     #[command(flatten)]
     threads: Threads,
+
+    #[command(flatten)]
+    cells: CellFlags,
+
+    #[command(flatten)]
+    raster: RasterFlags,
 }
 
 impl Flags {
