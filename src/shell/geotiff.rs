@@ -9,7 +9,8 @@ use spmesh_formats::raster::{CellType, Compression, Date, Integers, NoData, Pred
 /// Flags for the numbers and the tags of a GeoTIFF.
 #[derive(Debug, Clone, Args)]
 pub(super) struct GeoTiffFlags {
-    /// The type of numbers in a GeoTIFF. Values are rounded to integers; one that does not fit is an error [default: float32]
+    /// The type of numbers in a GeoTIFF. Values are rounded to integers; one that does not fit is an error
+    /// [default: float32]
     #[arg(long, value_name = "TYPE", value_parser = named(TYPES))]
     r#type: Option<CellType>,
 
@@ -25,8 +26,8 @@ pub(super) struct GeoTiffFlags {
     #[arg(long, value_name = "METHOD", value_parser = named(COMPRESSIONS))]
     compression: Option<Compression>,
 
-    /// What is compressed: numbers, their differences, or differences of bytes of equal significance [default: float for
-    /// float32, otherwise horizontal]
+    /// What is compressed: numbers, their differences, or differences of bytes of equal significance
+    /// [default: float for float32, otherwise horizontal]
     #[arg(long, value_name = "WHAT", value_parser = named(PREDICTORS))]
     predictor: Option<Predictor>,
 
@@ -34,8 +35,8 @@ pub(super) struct GeoTiffFlags {
     #[arg(long)]
     statistics: bool,
 
-    /// The day of the data, or a second in UTC such as 2021-06-15T12:30:00Z: the tag DateTime of a GeoTIFF, and the date of
-    /// STAC items [default: none]
+    /// The day of the data, or a second in UTC such as 2021-06-15T12:30:00Z: the tag DateTime of a GeoTIFF,
+    /// and the date of STAC items [default: none]
     #[arg(long, value_name = "DATE")]
     date: Option<Date>,
 }

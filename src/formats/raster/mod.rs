@@ -1,8 +1,9 @@
 //! Rasters: values in cells of a grid, row by row from the top, and files of them.
 //!
 //! `grid` places cells, and `like` takes a grid from a file; `geotiff` and `ascii` write files, with
-//! `no_data` for cells without data, `storage` for the numbers of a GeoTIFF, `date` for its time and `reference` for the
-//! coordinate reference system; `mosaic` describes a raster in many files; `relief` derives slope, aspect and shading from gradients.
+//! `no_data` for cells without data, `storage` for the numbers of a GeoTIFF, `date` for its time and
+//! `reference` for the coordinate reference system; `mosaic` describes a raster in many files; `relief`
+//! derives slope, aspect and shading from gradients.
 
 mod ascii;
 pub mod colour_map;
@@ -81,9 +82,9 @@ impl Samples {
     }
 }
 
-/// The member of GeoJSON that states an EPSG code, with a comma behind it. RFC 7946 removed it from the specification of
-/// 2008 and, without prior arrangement, allows only longitude and latitude in WGS 84; programs that know the member still
-/// read it.
+/// The member of GeoJSON that states an EPSG code, with a comma behind it. RFC 7946 removed it from the
+/// specification of 2008 and, without prior arrangement, allows only longitude and latitude in WGS 84;
+/// programs that know the member still read it.
 pub fn geojson_crs(code: u32) -> String {
     format!(r#""crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::{code}"}}}},"#)
 }

@@ -21,11 +21,12 @@ pub struct Reference {
     crs: Crs,
 }
 
-/// Text that programs read beside ESRI grids: WKT 1. They take no notice of WKT 2, which the EPSG dataset has.
+/// Text that programs read beside ESRI grids: WKT 1. They take no notice of WKT 2, which the EPSG dataset
+/// has.
 const READ_BESIDE: [&str; 3] = ["PROJCS[", "GEOGCS[", "COMPD_CS["];
 
-/// Writes the system of an ESRI grid to a file beside it, which ends in `.prj`. Returns what cannot be held, as a sentence
-/// for users: the system of a grid on its way to another program.
+/// Writes the system of an ESRI grid to a file beside it, which ends in `.prj`. Returns what cannot be held,
+/// as a sentence for users: the system of a grid on its way to another program.
 ///
 /// # Errors
 /// If writing fails; usage, if the file is an input of this run.

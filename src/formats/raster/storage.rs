@@ -66,7 +66,8 @@ pub struct Integers {
 }
 
 impl Integers {
-    /// Integers of a type. Without a `no_data` number, it is the least of the type, or 255 of bytes, in which 0 is common.
+    /// Integers of a type. Without a `no_data` number, it is the least of the type, or 255 of bytes, in which
+    /// 0 is common.
     ///
     /// # Errors
     /// Usage, if the type is none of integers, the scale is not above zero, a number is not finite, or `no_data` is not one

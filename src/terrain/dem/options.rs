@@ -86,8 +86,8 @@ pub struct Options {
     pub sample: Sample,
     /// What slopes, aspects and hillshades are those of.
     pub method: Method,
-    /// How many units of x and y one unit of elevations is, for slopes; as the coordinate reference system states it if
-    /// `None`.
+    /// How many units of x and y one unit of elevations is, for slopes; as the coordinate reference system
+    /// states it if `None`.
     pub z_factor: Option<f64>,
     /// Triangles with a longer edge are left out. Units: those of the world.
     pub kill: Option<f64>,
@@ -208,8 +208,8 @@ impl Options {
     }
 }
 
-/// The error of slopes over angles. It names the factor for slopes to east and west in the middle of the mesh, as
-/// programs of ESRI take it; `metres` is the unit of elevations.
+/// The error of slopes over angles. It names the factor for slopes to east and west in the middle of the
+/// mesh, as programs of ESRI take it; `metres` is the unit of elevations.
 fn in_angles(horizontal: &Horizontal, metres: f64, header: &Header) -> Error {
     let latitude = header.bounds.map(|bounds| {
         let [south, north] = [bounds.min, bounds.max].map(|corner| header.coordinates.to_world(corner)[1]);

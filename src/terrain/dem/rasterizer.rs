@@ -52,7 +52,8 @@ pub(super) struct Rasterizer {
 }
 
 impl Rasterizer {
-    /// Nothing drawn so far. One unit of z is `unit_of_z` units of x and y. `memory` is for tiles, and for triangles that wait for the outline. Units: bytes.
+    /// Nothing drawn so far. One unit of z is `unit_of_z` units of x and y. `memory` is for tiles, and for
+    /// triangles that wait for the outline. Units: bytes.
     pub(super) fn new(
         grid: Grid,
         coordinates: &Coordinates,

@@ -1,8 +1,8 @@
 //! Files of rasters: complete tiles in, one file or many out.
 //!
 //! `tiles` says how tiles are passed on, and a `tile_store` holds them. `part` writes a file from tiles.
-//! `division` divides a raster into `sheets`, whose `names` follow a pattern, and `dependencies` says when all tiles of
-//! a sheet have come. `index` writes what describes all sheets.
+//! `division` divides a raster into `sheets`, whose `names` follow a pattern, and `dependencies` says when
+//! all tiles of a sheet have come. `index` writes what describes all sheets.
 
 mod dependencies;
 mod division;

@@ -31,7 +31,8 @@ struct Field {
 enum Kind {
     /// The number of the column or the row, from 0 at the lower left.
     Count,
-    /// A coordinate of a square: that of its lower left or its upper left corner, in units or in thousands of them.
+    /// A coordinate of a square: that of its lower left or its upper left corner, in units or in thousands of
+    /// them.
     Corner { is_upper: bool, are_thousands: bool },
 }
 

@@ -38,8 +38,8 @@ pub struct Sheets {
 }
 
 impl Sheets {
-    /// No sheets so far. `path` is the name of the raster: its folder and ending are those of sheets, whose names
-    /// follow a pattern. The folder is made if necessary.
+    /// No sheets so far. `path` is the name of the raster: its folder and ending are those of sheets, whose
+    /// names follow a pattern. The folder is made if necessary.
     ///
     /// # Errors
     /// If no files can be made there; usage, if the pattern does not fit the division.

@@ -26,20 +26,21 @@ pub(super) struct SheetFlags {
     #[arg(long, value_name = "LENGTH", requires = "tiles", allow_negative_numbers = true)]
     buffer: Option<f64>,
 
-    /// Give all rasters of --tiles SIZE the cells of a whole square and its margin; beyond the raster there are no data
+    /// Give all rasters of --tiles SIZE the cells of a whole square and its margin; beyond the raster there
+    /// are no data
     #[arg(long, requires = "tiles")]
     full: bool,
 
-    /// Names of rasters of --tiles, without their ending: {x} and {y} stand for the lower left corner of a square, {x_nw}
-    /// and {y_nw} for the upper left one, {x_km}, {y_km}, {x_nw_km} and {y_nw_km} for these in thousands of units,
-    /// {column} and {row} for numbers, {name} for that of -o. {x_km:4} is filled up to 4 digits [default: {name}_{x}_{y}, for
-    /// NX,NY {name}_{column}_{row}]
+    /// Names of rasters of --tiles, without their ending: {x} and {y} stand for the lower left corner of a
+    /// square, {x_nw} and {y_nw} for the upper left one, {x_km}, {y_km}, {x_nw_km} and {y_nw_km} for these in
+    /// thousands of units, {column} and {row} for numbers, {name} for that of -o. {x_km:4} is filled up to 4
+    /// digits [default: {name}_{x}_{y}, for NX,NY {name}_{column}_{row}]
     #[arg(long, value_name = "PATTERN", requires = "tiles")]
     tile_name: Option<Pattern>,
 
-    /// Describe the rasters of --tiles in files beside them, named as that of -o: vrt and gti, which GDAL reads as one
-    /// raster (gti for very many, with its geojson), geojson with their outlines, stac with a collection and an item for
-    /// each raster. The latter needs --date
+    /// Describe the rasters of --tiles in files beside them, named as that of -o: vrt and gti, which GDAL
+    /// reads as one raster (gti for very many, with its geojson), geojson with their outlines, stac with a
+    /// collection and an item for each raster. The latter needs --date
     #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = named(INDEXES), requires = "tiles")]
     tile_index: Vec<IndexKind>,
 }
@@ -90,8 +91,8 @@ impl RasterOutput {
         }
     }
 
-    /// Gives the file its name, and an ESRI grid its system beside it; those of `--tiles` have theirs. Returns the bytes
-    /// of all files.
+    /// Gives the file its name, and an ESRI grid its system beside it; those of `--tiles` have theirs.
+    /// Returns the bytes of all files.
     pub(super) fn commit(self, crs: &Crs) -> Result<Committed> {
         match self {
             RasterOutput::One(output, path, format) => {

@@ -1,4 +1,5 @@
-//! GeoTIFF files of one band of f32, bytes or integers, or of colours (OGC 19-008r4, GeoTIFF 1.1), with overviews on request.
+//! GeoTIFF files of one band of f32, bytes or integers, or of colours (OGC 19-008r4, GeoTIFF 1.1), with
+//! overviews on request.
 //!
 //! Tiles arrive in any order. `compressor` encodes them by `tile_code` on a separate thread, `overviews`
 //! reduces them, and `store` holds the encoded bytes until all tiles have come. `directory` writes the bytes

@@ -25,8 +25,8 @@ impl Statistics {
 
     /// Of the numbers of both.
     ///
-    /// Source: Chan, Golub and LeVeque, "Updating formulae and a pairwise algorithm for computing sample variances",
-    /// 1979.
+    /// Source: Chan, Golub and LeVeque, "Updating formulae and a pairwise algorithm for computing sample
+    /// variances", 1979.
     pub(super) fn and(self, other: Statistics) -> Statistics {
         let count = self.count + other.count;
         let (part, difference) = (other.count as f64 / count as f64, other.mean - self.mean);

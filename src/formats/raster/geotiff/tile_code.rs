@@ -1,8 +1,8 @@
 //! The bytes of a tile: rows of cells through a predictor, then compressed.
 //!
-//! The floating-point predictor (Adobe Photoshop TIFF technical note 3) groups bytes of equal significance and stores
-//! differences, which are small for slowly varying values. The horizontal one (TIFF 6.0, section 14) stores differences of
-//! numbers.
+//! The floating-point predictor (Adobe Photoshop TIFF technical note 3) groups bytes of equal significance
+//! and stores differences, which are small for slowly varying values. The horizontal one (TIFF 6.0, section
+//! 14) stores differences of numbers.
 
 use std::io::{Read, Write};
 
@@ -68,8 +68,8 @@ impl TileCode {
         self.samples.bands() * self.cell_type.len()
     }
 
-    /// Predicts each row, then compresses the result. NaN marks cells without data; `inside` is the number of cells along
-    /// each axis that are in the image.
+    /// Predicts each row, then compresses the result. NaN marks cells without data; `inside` is the number of
+    /// cells along each axis that are in the image.
     ///
     /// # Errors
     /// Usage, if a value does not fit the type of stored numbers.

@@ -7,8 +7,8 @@ use serde_json::json;
 use super::{Mosaic, ring};
 use crate::raster::geojson_crs;
 
-/// Writes a feature for each file, with its name and, as tile indexes of GDAL have it, its location. Coordinates are those
-/// of the raster.
+/// Writes a feature for each file, with its name and, as tile indexes of GDAL have it, its location.
+/// Coordinates are those of the raster.
 pub(super) fn write(mosaic: &Mosaic, output: &mut dyn Write) -> io::Result<()> {
     let crs = mosaic.file.reference.epsg_code().map(geojson_crs).unwrap_or_default();
     write!(output, "{{\"type\":\"FeatureCollection\",{crs}\"features\":[")?;

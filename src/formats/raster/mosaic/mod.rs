@@ -1,4 +1,5 @@
-//! Files that describe a raster which is in many files: what its files are, where they are, and how they make one raster.
+//! Files that describe a raster which is in many files: what its files are, where they are, and how they make
+//! one raster.
 
 mod index;
 mod stac;
@@ -52,7 +53,8 @@ pub struct Mosaic<'a> {
     pub file: &'a RasterFile<'a>,
     /// Its name without an ending.
     pub name: &'a str,
-    /// The folder of all files, from the root: GDAL looks for the index of a GTI in the folder in which it was started.
+    /// The folder of all files, from the root: GDAL looks for the index of a GTI in the folder in which it
+    /// was started.
     pub folder: &'a str,
     /// The date of the data.
     pub date: Option<Date>,

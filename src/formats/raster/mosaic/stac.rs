@@ -1,7 +1,8 @@
 //! Collections of SpatioTemporal assets (STAC 1.1.0), with the projection extension 2.0.0.
 //!
-//! STAC has places in longitude and latitude on WGS 84. Coordinates are not transformed here, so items in another system
-//! have no geometry, which the specification allows, but state their system and their place in it.
+//! STAC has places in longitude and latitude on WGS 84. Coordinates are not transformed here, so items in
+//! another system have no geometry, which the specification allows, but state their system and their place in
+//! it.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};

@@ -32,8 +32,8 @@ pub(super) struct QuantityFlags {
     #[arg(long, value_name = "METHOD", value_parser = named(METHODS))]
     method: Option<Method>,
 
-    /// How many units of x and y one unit of elevations is, for slopes, aspects and hillshades [default: as the coordinate
-    /// reference system states it, otherwise 1; necessary where x and y are angles]
+    /// How many units of x and y one unit of elevations is, for slopes, aspects and hillshades [default: as
+    /// the coordinate reference system states it, otherwise 1; necessary where x and y are angles]
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     pub(super) z_factor: Option<f64>,
 
