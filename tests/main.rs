@@ -24,6 +24,7 @@ mod point_rasters;
 #[allow(dead_code, reason = "other test programs use more of it")]
 mod programs;
 mod raster;
+mod raster_storage;
 mod soak;
 mod sources;
 mod stream;

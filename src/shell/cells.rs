@@ -4,14 +4,16 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::geotiff::GeoTiffFlags;
 use super::{Names, parse_numbers};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
-use spmesh_formats::raster::{Cells, Grid, NoData, RasterFormat, RasterOptions, Window};
+use spmesh_formats::raster::{Cells, Date, Grid, RasterFormat, RasterOptions, Window};
 use spmesh_stream::Crs;
 
 /// Flags for the grid of a raster.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Which cells there are")]
 pub struct CellFlags {
     /// Side of cells; their corners are at multiples of it [default: a thousand cells along the longer side]
     #[arg(long, value_name = "S", allow_negative_numbers = true, conflicts_with_all = ["columns", "rows"])]
@@ -72,14 +74,18 @@ impl CellFlags {
 
 /// Flags for the output of a raster.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "How rasters are written")]
 pub struct RasterFlags {
-    /// The value of cells without data: a number, or nan [default: -9999]
+    /// The number of cells without data, or nan [default: -9999; of integers the least, of bytes 255]
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
-    no_data: Option<f32>,
+    no_data: Option<f64>,
 
     /// Write a cloud-optimised GeoTIFF, with overviews before the image
     #[arg(long)]
     cog: bool,
+
+    #[command(flatten)]
+    geotiff: GeoTiffFlags,
 
     /// Folder for temporary files [default: the system's]
     #[arg(long, value_name = "FOLDER")]
@@ -95,12 +101,24 @@ impl RasterFlags {
         if self.cog && format != RasterFormat::GeoTiff {
             return Err(Error::usage("--cog is for GeoTIFF: take an output that ends in .tif"));
         }
-        if self.no_data.is_some_and(f32::is_infinite) {
-            return Err(Error::usage("--no-data takes a finite number of 32 bits, or nan"));
+        let (no_data, storage) = self.geotiff.storage(self.no_data)?;
+        if format != RasterFormat::GeoTiff {
+            self.geotiff.check_unused()?;
         }
-        let RasterFlags { no_data, cog, temp_dir } = self.clone();
-        let no_data = no_data.map(NoData).unwrap_or_default();
-        Ok(RasterOptions { format, no_data, has_overviews: cog, temp_dir })
+        Ok(RasterOptions {
+            format,
+            no_data,
+            has_overviews: self.cog,
+            storage,
+            has_statistics: self.geotiff.has_statistics(),
+            date: self.date(),
+            temp_dir: self.temp_dir.clone(),
+        })
+    }
+
+    /// The date that rasters state.
+    pub fn date(&self) -> Option<Date> {
+        self.geotiff.date()
     }
 
     /// The folder of temporary files, if it is not the system's.
@@ -118,20 +136,20 @@ impl RasterFlags {
                 "pictures are bytes in which 0 stands for no data: leave out --no-data",
             ));
         }
-        Ok(())
+        self.geotiff.check_bytes()
     }
 
     /// Checks that no flag for rasters is given when the output is not a raster.
     ///
     /// # Errors
-    /// Usage, if `--cog` or `--no-data` is given.
+    /// Usage, if one of them is given.
     pub fn check_unused(&self) -> Result<()> {
         if self.cog || self.no_data.is_some() {
             return Err(Error::usage(
                 "--cog and --no-data are for rasters: take an output that ends in .tif or .asc",
             ));
         }
-        Ok(())
+        self.geotiff.check_unused()
     }
 }
 

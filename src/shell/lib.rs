@@ -6,6 +6,7 @@ pub mod compression;
 pub mod crs;
 pub mod endings;
 mod files;
+mod geotiff;
 mod meshes;
 pub mod messages;
 mod named;

@@ -11,6 +11,8 @@ mod pieces;
 pub mod pipelines;
 mod samples;
 mod sheets;
+mod sheets_full;
+mod sheets_index;
 mod tiles;
 
 use std::io::Cursor;
@@ -62,6 +64,7 @@ fn options(quantity: Quantity) -> Options {
         quantity,
         sample: Sample::Centre,
         method: Method::Triangle,
+        z_factor: None,
         kill: None,
         concave: None,
         mask: None,

@@ -10,10 +10,10 @@ use crate::programs::{Folder, assert_outcome, mesh_of_cloud, outcome, run, sampl
 use spmesh_formats::raster::{Differences, Grid, RasterFormat, RasterOptions};
 use spmesh_stream::StreamReader;
 use spmesh_terrain::dem::{Method, Options, Quantity, Sample, rasterize};
-use spmesh_terrain::files::{Destination, Division, SheetSize, Sheets};
+use spmesh_terrain::files::{Destination, Division, Index, Pattern, SheetSize, Sheets};
 
 /// The files of a raster by name, and how many sheets have no data. Sheets replace or remove `old` files.
-fn sheets(
+pub(super) fn sheets(
     stream: &[u8],
     grid: &Grid,
     options: &Options,
@@ -24,7 +24,9 @@ fn sheets(
     let path = folder.root().join("all.x");
     // Of an earlier run.
     old.iter().chain(&["other.x"]).for_each(|name| drop(folder.file(name, "old")));
-    let mut sheets = Sheets::new(&path, division, options.raster.format).unwrap();
+    let mut sheets =
+        Sheets::new(&path, division, Pattern::usual(division.size), Index::default(), options.raster.format)
+            .unwrap();
     let mut reader = StreamReader::new(stream, "mesh").unwrap();
     let output: Destination<Cursor<Vec<u8>>> = Destination::Sheets(&mut sheets);
     rasterize(&mut reader, output, grid, options, |_| {}).unwrap();
@@ -53,7 +55,7 @@ fn check_parts(
     [side, margin]: [f64; 2],
     old: &[&str],
 ) {
-    let division = Division { size: SheetSize::Side(side), anchor: [0.0; 2], buffer: margin };
+    let division = Division { size: SheetSize::Side(side), anchor: [0.0; 2], buffer: margin, is_full: false };
     let (mut files, blank) = sheets(stream, grid, options, division, old);
     let squares = |low: f64, high: f64| (low / side).floor() as i64..=((high / side).ceil() as i64 - 1);
     let (right, all) = (grid.left + f64::from(grid.columns) * grid.step, squares);

@@ -45,6 +45,23 @@ impl From<&GeoKeys> for System {
     }
 }
 
+/// The definition of `crs` as well-known text: what it says, or what its EPSG codes say.
+pub fn text(crs: &Crs) -> Option<String> {
+    match crs {
+        Crs::Unknown => None,
+        Crs::Wkt(text) => Some(text.clone()),
+        Crs::GeoKeys { .. } => {
+            let system = System::of(crs);
+            let horizontal =
+                system.horizontal.filter(|known| compare::contradictions(known).is_empty())?.code?;
+            match system.vertical.and_then(|heights| heights.code) {
+                Some(vertical) => request::of_codes(&format!("{horizontal}+{vertical}")).ok(),
+                None => epsg::text(horizontal).map(ToOwned::to_owned),
+            }
+        }
+    }
+}
+
 /// A short name of `crs`: its EPSG codes ("EPSG:26910", "EPSG:2991+5703") where it states them, else the names
 /// it gives itself.
 pub fn name(crs: &Crs) -> Option<String> {

@@ -42,7 +42,7 @@ fn strip_authority(text: &str) -> Option<&str> {
 }
 
 /// The text of one code, or of a horizontal and a vertical one together.
-fn of_codes(codes: &str) -> Result<String> {
+pub(crate) fn of_codes(codes: &str) -> Result<String> {
     let text = |code: &str| {
         let number = code.trim().parse().map_err(|_| {
             Error::usage(format!("--crs EPSG:{codes}: expected a code, as in EPSG:25832 or EPSG:25832+7837"))

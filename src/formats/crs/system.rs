@@ -1,7 +1,7 @@
 //! What a coordinate reference system means, whatever it is written in.
 
 use crate::crs::methods::{Method, Role};
-use crate::crs::names::is_empty;
+use crate::crs::names::{is_empty, is_same_datum};
 use crate::crs::units::Unit;
 
 /// The meaning of a coordinate reference system.
@@ -132,6 +132,17 @@ impl System {
         };
         let vertical = self.vertical.as_ref().and_then(|vertical| vertical.code);
         format!(" EPSG:{code}{}", vertical.map_or(String::new(), |code| format!("+{code}")))
+    }
+
+    /// Whether x and y are degrees of longitude and latitude on WGS 84.
+    pub fn is_wgs84(&self) -> bool {
+        let Some(Horizontal { kind: Kind::Geographic(base), unit, .. }) = &self.horizontal else {
+            return false;
+        };
+        unit.is_same(&Unit::degree())
+            && base.meridian == 0.0
+            && !is_empty(&base.datum)
+            && is_same_datum(&base.datum, "WGS_1984")
     }
 
     /// How many units of x and y one unit of z is, where both are lengths or x and y are degrees on the

@@ -1,5 +1,7 @@
 //! Where the cells of a raster are.
 
+use std::ops::Range;
+
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::points::Point2;
 
@@ -126,6 +128,19 @@ impl Grid {
             columns: counts[0] as u32,
             rows: counts[1] as u32,
         })
+    }
+
+    /// The grid of some columns and rows, which may be beyond those of this one.
+    ///
+    /// Domain: ranges of at most `u32::MAX` cells.
+    pub fn part(&self, [columns, rows]: &[Range<i64>; 2]) -> Grid {
+        Grid {
+            left: self.left + columns.start as f64 * self.step,
+            top: self.top - rows.start as f64 * self.step,
+            step: self.step,
+            columns: (columns.end - columns.start) as u32,
+            rows: (rows.end - rows.start) as u32,
+        }
     }
 
     /// The centre of a cell.

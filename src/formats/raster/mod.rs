@@ -1,26 +1,34 @@
 //! Rasters: values in cells of a grid, row by row from the top, and files of them.
 //!
 //! `grid` places cells, and `like` takes a grid from a file; `geotiff` and `ascii` write files, with
-//! `no_data` for cells without data and `reference` for the coordinate reference system; `relief` derives slope, aspect and shading from gradients.
+//! `no_data` for cells without data, `storage` for the numbers of a GeoTIFF, `date` for its time and
+//! `reference` for the coordinate reference system; `mosaic` describes a raster in many files; `relief`
+//! derives slope, aspect and shading from gradients.
 
 mod ascii;
 pub mod colour_map;
+mod date;
 mod geotiff;
 mod grid;
 mod like;
+mod mosaic;
 mod no_data;
 mod reference;
 mod relief;
+mod storage;
 mod tags;
 
 use std::io::{Seek, Write};
 use std::path::PathBuf;
 
+pub use date::Date;
 pub use geotiff::{Reduction, TILE, Tiles, write_tiles};
 pub use grid::{Cells, Grid, Window};
+pub use mosaic::{IndexKind, Mosaic, Sheet};
 pub use no_data::NoData;
-pub use reference::Reference;
+pub use reference::{Reference, write_prj};
 pub use relief::{Differences, Gradient, Light, Shading, aspect, rounded_aspect, slope};
+pub use storage::{CellType, Compression, Integers, Predictor, Storage};
 
 use spmesh_base::error::Result;
 
@@ -44,6 +52,12 @@ pub struct RasterOptions {
     /// Whether a GeoTIFF has overviews, and a layout for remote readers: overviews before the image, and
     /// tiles row by row.
     pub has_overviews: bool,
+    /// How the numbers of a GeoTIFF become bytes.
+    pub storage: Storage,
+    /// Whether a GeoTIFF states statistics of its numbers.
+    pub has_statistics: bool,
+    /// The date that a GeoTIFF states.
+    pub date: Option<Date>,
     /// Folder of temporary files; the system's if `None`.
     pub temp_dir: Option<PathBuf>,
 }
@@ -90,6 +104,34 @@ impl RasterFile<'_> {
     /// The value of cells without data.
     fn no_data(&self) -> NoData {
         if self.samples == Samples::Floats { self.options.no_data } else { NoData(0.0) }
+    }
+
+    /// The integers that stand for values, if there are any.
+    fn integers(&self) -> Option<&Integers> {
+        self.options.storage.integers.as_ref().filter(|_| self.samples == Samples::Floats)
+    }
+
+    /// The type of stored numbers.
+    pub fn cell_type(&self) -> CellType {
+        match (self.samples, self.integers()) {
+            (Samples::Floats, integers) => integers.map_or(CellType::Float32, |it| it.cell_type),
+            (Samples::Bytes | Samples::Colours, _) => CellType::Byte,
+        }
+    }
+
+    /// The stored number of cells without data, as text.
+    pub fn no_data_text(&self) -> String {
+        storage::no_data_text(self.integers(), self.no_data())
+    }
+
+    /// Scale and offset of stored numbers, unless these are the values.
+    pub fn transform(&self) -> Option<[f64; 2]> {
+        self.integers().map(|integers| [integers.scale, integers.offset])
+    }
+
+    /// Whether tiles of a GeoTIFF can be read back without loss while it is written.
+    pub fn is_readable(&self) -> bool {
+        self.samples == Samples::Floats && self.options.storage == Storage::default()
     }
 }
 

@@ -122,7 +122,8 @@ impl Recipe {
             return Ok(None);
         }
         if self.inputs.iter().any(|path| path.as_os_str() == "-") {
-            let message = "--water-points reads the points twice, with other classes: give files, and not stdin";
+            let message =
+                "--water-points reads the points twice, with other classes: give files, and not stdin";
             return Err(Error::usage(message));
         }
         let filters =

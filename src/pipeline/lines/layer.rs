@@ -12,7 +12,7 @@ use super::stations::Stations;
 use super::water::{Stated, Water, WaterPolygon};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::network::Network;
-use spmesh_formats::source::collection_head;
+use spmesh_formats::source::{collection_head, epsg_code};
 use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::model::decimal::Decimal;
 
@@ -101,7 +101,7 @@ impl Layer<'_> {
     }
 
     fn features(&self, shores: &[(Shore, Vec<Vec<Point>>)], output: &mut dyn Write) -> io::Result<()> {
-        output.write_all(collection_head(&self.target.crs).as_bytes())?;
+        output.write_all(collection_head(epsg_code(&self.target.crs)).as_bytes())?;
         for (number, (shore, rings)) in shores.iter().enumerate() {
             output.write_all(if number > 0 { b",\n" } else { b"\n" })?;
             let properties = shore.properties();

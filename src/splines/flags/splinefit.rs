@@ -69,7 +69,7 @@ enum Action {
     /// Fit a spline to points
     Fit(Box<fit::Flags>),
     /// Evaluate a spline at sites, or in the cells of a raster
-    Eval(eval::Flags),
+    Eval(Box<eval::Flags>),
     /// Report domain, condition, smoothness and residuals of a spline
     Info(info::Flags),
     /// Write the control mesh of a spline: Greville sites with coefficients as elevations, as a triangle mesh

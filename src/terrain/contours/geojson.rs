@@ -5,7 +5,7 @@ use std::io::Write;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::crs::System;
-use spmesh_formats::source::collection_head;
+use spmesh_formats::source::{collection_head, epsg_code};
 use spmesh_stream::Crs;
 
 /// The format of lines.
@@ -36,7 +36,7 @@ impl<W: Write> LineWriter<W> {
     pub(super) fn new(output: W, format: LineFormat, crs: &Crs) -> LineWriter<W> {
         let mut text = Vec::with_capacity(2 * CHUNK_LEN);
         if format == LineFormat::GeoJson {
-            text.extend_from_slice(collection_head(crs).as_bytes());
+            text.extend_from_slice(collection_head(epsg_code(crs)).as_bytes());
         }
         let unit = System::of(crs).vertical.map_or(String::new(), |vertical| {
             format!(",\"unit\":{}", serde_json::Value::from(vertical.unit.symbol))

@@ -7,7 +7,6 @@ use super::surroundings::Surroundings;
 use super::{Run, Stats, check};
 use crate::files::{CELLS, Destination, TilePlace, TileSource, TileStore, TileTarget, places, tiles_of};
 use spmesh_base::error::Result;
-use spmesh_formats::crs::System;
 use spmesh_formats::raster::{Grid, Reference};
 use spmesh_stream::{Crs, StreamReader};
 
@@ -40,8 +39,9 @@ impl Highest {
     pub fn add<R: Read>(&mut self, reader: &mut StreamReader<R>, options: &Options) -> Result<Stats> {
         let header = reader.header().clone();
         let column = check(&header, &options.quantity).map_err(|e| e.of_input(reader.name()))?;
-        let (system, around) = (System::of(&header.crs), Surroundings::new(&self.grid, 0, None));
-        let run = Run { around: &around, options, column, system: &system };
+        let around = Surroundings::new(&self.grid, 0, None);
+        // Heights have no slopes.
+        let run = Run { around: &around, options, column, unit_of_z: 1.0 };
         run.draw(reader, self, options.memory / 2, |_| {})
     }
 
@@ -56,7 +56,7 @@ impl Highest {
         crs: &Crs,
     ) -> Result<(u64, Vec<String>)> {
         // Heights above the ground are no elevations.
-        let mut reference = Reference::of(&System::of(crs), false, options.raster.format);
+        let mut reference = Reference::of_crs(crs, false, options.raster.format);
         let notices = std::mem::take(&mut reference.notices);
         let (file, grid) = (options.file(self.grid, &reference), self.grid);
         let around = Surroundings::new(&grid, 0, None);

@@ -138,10 +138,11 @@ pub fn rasterize<R: Read, W: Write + Seek>(
     let around = options.surroundings(grid, &header);
     // Before anything is made for each tile.
     tiles_of(&around.drawn)?;
-    let system = System::of(options.crs.as_ref().unwrap_or(&header.crs));
-    let reference = options.reference(&system);
+    let crs = options.crs.as_ref().unwrap_or(&header.crs);
+    let unit_of_z = options.unit_of_z(&System::of(crs), &header).map_err(|e| e.of_input(reader.name()))?;
+    let reference = options.reference(crs);
     let file = options.file(*grid, &reference);
-    let run = Run { around: &around, options, column, system: &system };
+    let run = Run { around: &around, options, column, unit_of_z };
     let draw = |target: &mut dyn TileTarget, memory| run.draw(reader, target, memory, progress);
     let place = (&around.drawn, &around.raster);
     let (stats, [spilled, spilled_bytes]) = output.write_part(&file, place, options.memory, draw)?;
@@ -160,7 +161,8 @@ struct Run<'r> {
     options: &'r Options,
     /// The attribute that is drawn.
     column: Option<Column>,
-    system: &'r System,
+    /// Units of x and y that one unit of z is.
+    unit_of_z: f64,
 }
 
 impl Run<'_> {
@@ -179,7 +181,7 @@ impl Run<'_> {
         let for_cells = if options.natural { for_drawing / 2 } else { for_drawing };
         let temp_dir = options.raster.temp_dir.as_deref();
         let coordinates = reader.header().coordinates;
-        let mut rasterizer = Rasterizer::new(grid, &coordinates, options, self.system, for_cells)?;
+        let mut rasterizer = Rasterizer::new(grid, &coordinates, options, self.unit_of_z, for_cells)?;
         if options.natural {
             let natural = Natural::new(rasterizer.centers(), &grid, for_drawing - for_cells, temp_dir)?;
             rasterizer.natural = Some(natural);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::facet::out_of_range;
 use super::surroundings::Surroundings;
-use spmesh_base::error::Result;
+use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::crs::{Horizontal, System};
 use spmesh_formats::raster::{
@@ -13,6 +13,9 @@ use spmesh_formats::raster::{
 use spmesh_formats::source::Mask;
 use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Crs, Header};
+
+/// The equatorial radius of the Earth (WGS 84). Units: metres.
+const EARTH_RADIUS: f64 = 6_378_137.0;
 
 /// How values between vertices follow from those of the vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,6 +88,9 @@ pub struct Options {
     pub natural: bool,
     /// What slopes, aspects and hillshades are those of.
     pub method: Method,
+    /// How many units of x and y one unit of elevations is, for slopes; as the coordinate reference system
+    /// states it if `None`.
+    pub z_factor: Option<f64>,
     /// Triangles with a longer edge are left out. Units: those of the world.
     pub kill: Option<f64>,
     /// Triangles outside of the concave outline are left out: a chain of triangles leads to them from the
@@ -107,16 +113,24 @@ pub struct Options {
 
 impl Options {
     /// What the raster says of its coordinates.
-    pub(super) fn reference(&self, system: &System) -> Reference {
-        let are_elevations = self.quantity == Quantity::Elevation;
-        let mut reference = Reference::of(system, are_elevations, self.raster.format);
-        let is_angular = system.horizontal.as_ref().is_some_and(Horizontal::is_angular);
-        if self.quantity.is_derived() && is_angular {
-            reference.notices.push(
-                "x and y are angles, so slopes are too steep by far: project the points first".to_string(),
-            );
+    pub(super) fn reference(&self, crs: &Crs) -> Reference {
+        Reference::of_crs(crs, self.quantity == Quantity::Elevation, self.raster.format)
+    }
+
+    /// How many units of x and y one unit of elevations is, for slopes in the mesh with this header.
+    ///
+    /// # Errors
+    /// Usage, if slopes are drawn over angles, of which a unit has no length that is the same everywhere.
+    pub(super) fn unit_of_z(&self, system: &System, header: &Header) -> Result<f64> {
+        let stated = self.z_factor.or_else(|| system.vertical_ratio());
+        let angular = system.horizontal.as_ref().filter(|known| known.is_angular());
+        match angular {
+            Some(horizontal) if stated.is_none() && self.quantity.is_derived() => {
+                let metres = system.vertical.as_ref().map_or(1.0, |heights| heights.unit.size);
+                Err(in_angles(horizontal, metres, header))
+            }
+            _ => Ok(stated.unwrap_or(1.0)),
         }
-        reference
     }
 
     /// The closed box of the world whose triangles decide the raster, in a mesh of which only these may be
@@ -198,6 +212,23 @@ impl Options {
             _ => None,
         }
     }
+}
+
+/// The error of slopes over angles. It names the factor for slopes to east and west in the middle of the
+/// mesh, as programs of ESRI take it; `metres` is the unit of elevations.
+fn in_angles(horizontal: &Horizontal, metres: f64, header: &Header) -> Error {
+    let latitude = header.bounds.map(|bounds| {
+        let [south, north] = [bounds.min, bounds.max].map(|corner| header.coordinates.to_world(corner)[1]);
+        0.5 * (south + north) * horizontal.unit.size
+    });
+    let example = latitude.filter(|angle| angle.abs() < 1.5).map_or(String::new(), |angle| {
+        let factor = metres / (EARTH_RADIUS * horizontal.unit.size * angle.cos());
+        format!(", which is about {factor:.3e} for slopes to east and west here")
+    });
+    Error::usage(format!(
+        "x and y are angles, over which slopes are not those of the ground: project the points first, or give --z-factor, \
+         the part of a unit of x that one of z is long{example}"
+    ))
 }
 
 impl Quantity {

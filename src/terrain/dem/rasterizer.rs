@@ -16,7 +16,6 @@ use crate::files::TilePlace;
 use crate::surface::is_counterclockwise;
 use spmesh_base::error::Result;
 use spmesh_delaunay::predicates::FiniteFloatPredicates;
-use spmesh_formats::crs::System;
 use spmesh_formats::outline::{ConcaveOutline, EdgeLimit, Waiting};
 use spmesh_formats::raster::{Grid, TILE};
 use spmesh_stream::Coordinates;
@@ -56,12 +55,13 @@ pub(super) struct Rasterizer {
 }
 
 impl Rasterizer {
-    /// Nothing drawn so far. `memory` is for tiles, and for triangles that wait for the outline. Units: bytes.
+    /// Nothing drawn so far. One unit of z is `unit_of_z` units of x and y. `memory` is for tiles, and for
+    /// triangles that wait for the outline. Units: bytes.
     pub(super) fn new(
         grid: Grid,
         coordinates: &Coordinates,
         options: &Options,
-        system: &System,
+        unit_of_z: f64,
         memory: u64,
     ) -> Result<Rasterizer> {
         let temp_dir = options.raster.temp_dir.as_deref();
@@ -73,7 +73,6 @@ impl Rasterizer {
         let for_cache = if has_heights { for_tiles / 2 } else { for_tiles };
         let mask = options.mask.as_ref().map(|mask| Arc::new(CellMask::new(mask, grid)));
         let cache = || TileCache::new(grid, for_cache, temp_dir, mask.clone());
-        let unit_of_z = system.vertical_ratio().unwrap_or(1.0);
         Ok(Rasterizer {
             centers: Centers::new(grid, coordinates, unit_of_z),
             unit_of_z,

@@ -1,10 +1,13 @@
 //! Files of rasters: complete tiles in, one file or many out.
 //!
 //! `tiles` says how tiles are passed on, and a `tile_store` holds them. `part` writes a file from tiles.
-//! `division` divides a raster into `sheets`, and `dependencies` says when all tiles of a sheet have come.
+//! `division` divides a raster into `sheets`, whose `names` follow a pattern, and `dependencies` says when
+//! all tiles of a sheet have come. `index` writes what describes all sheets.
 
 mod dependencies;
 mod division;
+mod index;
+mod names;
 mod part;
 mod sheets;
 mod tile_store;
@@ -15,6 +18,8 @@ use std::ops::Range;
 
 pub(crate) use dependencies::Dependencies;
 pub use division::{Division, SheetSize};
+pub use index::Index;
+pub use names::Pattern;
 use part::Part;
 use sheets::Cutter;
 pub use sheets::Sheets;
@@ -56,7 +61,9 @@ impl<W: Write + Seek> Destination<'_, W> {
         let half = memory / 2;
         match self {
             Destination::File(output)
-                if file.options.format == RasterFormat::GeoTiff && *grid == file.grid =>
+                if file.options.format == RasterFormat::GeoTiff
+                    && *grid == file.grid
+                    && (!file.is_staged || file.is_readable()) =>
             {
                 let drawn = raster::write_tiles(output, file, |tiles| draw(tiles, memory))?;
                 Ok((drawn, [0; 2]))
@@ -65,7 +72,9 @@ impl<W: Write + Seek> Destination<'_, W> {
                 let mut store = TileStore::new(file.samples.bands(), half, file.options.temp_dir.as_deref());
                 let drawn = draw(&mut store, half)?;
                 let file = RasterFile { is_staged: false, ..*file };
-                part::write(output, &file, &mut Part::new(&mut store, cells.clone(), file.samples.bands()))?;
+                let place = cells.each_ref().map(|cells| cells.start.into()..cells.end.into());
+                let mut part = Part::new(&mut store, place, cells.clone(), file.samples.bands());
+                part::write(output, &file, &mut part)?;
                 Ok((drawn, [store.spilled, store.spill_len()]))
             }
             Destination::Sheets(sheets) => {

@@ -51,7 +51,9 @@ impl Band {
 pub(super) struct Part<'s> {
     source: &'s mut dyn TileSource,
     /// Columns and rows of the source.
-    cells: [Range<u32>; 2],
+    cells: [Range<i64>; 2],
+    /// Those of them that are part of the raster; others have no data.
+    raster: [Range<u32>; 2],
     bands: usize,
     tile: Vec<f32>,
     /// Whether tiles that were read have data.
@@ -59,26 +61,36 @@ pub(super) struct Part<'s> {
 }
 
 impl<'s> Part<'s> {
-    /// The cells in these columns and rows.
-    pub(super) fn new(source: &'s mut dyn TileSource, cells: [Range<u32>; 2], bands: usize) -> Part<'s> {
-        Part { source, cells, bands, tile: vec![f32::NAN; bands * CELLS], has_data: false }
+    /// The cells in these columns and rows of a source, which has data for those of `raster`.
+    pub(super) fn new(
+        source: &'s mut dyn TileSource,
+        cells: [Range<i64>; 2],
+        raster: [Range<u32>; 2],
+        bands: usize,
+    ) -> Part<'s> {
+        Part { source, cells, raster, bands, tile: vec![f32::NAN; bands * CELLS], has_data: false }
     }
 }
 
 impl TileSource for Part<'_> {
     fn get(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool> {
-        // Columns and rows of the source that the tile covers.
+        // Columns and rows of the source that the tile covers, and those of them that have data.
+        let first = [0, 1].map(|axis| self.cells[axis].start + (at[axis] * TILE) as i64);
         let window = [0, 1].map(|axis| {
-            let Range { start, end } = self.cells[axis];
-            let first = start as usize + at[axis] * TILE;
-            first..(first + TILE).min(end as usize)
+            let Range { start, end } = self.raster[axis];
+            let last = (first[axis] + TILE as i64).min(self.cells[axis].end).min(end.into()).max(0);
+            let start = first[axis].max(start.into());
+            start as usize..(last as usize).max(start as usize)
         });
-        let [columns, rows] = window.clone().map(|cells| cells.start / TILE..cells.end.div_ceil(TILE));
+        let [columns, rows] = window.clone().map(|cells| match cells.is_empty() {
+            true => 0..0,
+            false => cells.start / TILE..cells.end.div_ceil(TILE),
+        });
         values.fill(f32::NAN);
         let mut has_data = false;
         for from in rows.flat_map(|row| columns.clone().map(move |column| [column, row])) {
             if self.source.get(from, &mut self.tile)? {
-                has_data |= copy(&self.tile, from, &window, values, self.bands);
+                has_data |= copy(&self.tile, from, &window, first, values, self.bands);
             }
         }
         self.has_data |= has_data;
@@ -86,17 +98,27 @@ impl TileSource for Part<'_> {
     }
 }
 
-/// Copies what a tile has of a window; returns whether that has data.
-fn copy(tile: &[f32], at: TilePlace, window: &[Range<usize>; 2], values: &mut [f32], bands: usize) -> bool {
+/// Copies what a tile has of a window to values whose first cell is `first`; returns whether that has data.
+fn copy(
+    tile: &[f32],
+    at: TilePlace,
+    window: &[Range<usize>; 2],
+    first: [i64; 2],
+    values: &mut [f32],
+    bands: usize,
+) -> bool {
     let [columns, rows] = [0, 1]
         .map(|axis| window[axis].start.max(at[axis] * TILE)..window[axis].end.min((at[axis] + 1) * TILE));
     let mut has_data = false;
     for band in 0..bands {
         for row in rows.clone() {
-            let place = |first: [usize; 2]| band * CELLS + (row - first[1]) * TILE + columns.start - first[0];
-            let from = &tile[place(at.map(|at| at * TILE))..][..columns.len()];
+            let place = |first: [i64; 2]| {
+                let [column, row] = [columns.start as i64 - first[0], row as i64 - first[1]];
+                band * CELLS + row as usize * TILE + column as usize
+            };
+            let from = &tile[place(at.map(|at| (at * TILE) as i64))..][..columns.len()];
             has_data |= from.iter().any(|value| !value.is_nan());
-            values[place([window[0].start, window[1].start])..][..columns.len()].copy_from_slice(from);
+            values[place(first)..][..columns.len()].copy_from_slice(from);
         }
     }
     has_data

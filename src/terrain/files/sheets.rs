@@ -1,19 +1,24 @@
 //! A raster in many files.
 
+use std::collections::HashMap;
+use std::ffi::OsString;
 use std::fs;
+use std::hash::BuildHasher;
 use std::io::Seek;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::dependencies::Dependencies;
-use super::division::{Division, Strips};
+use super::division::{Division, Strip, Strips};
+use super::index::Index;
+use super::names::Pattern;
 use super::part::{Part, write};
 use super::tile_store::TileStore;
 use super::tiles::{TilePlace, TileSource, TileTarget, places, tiles_of};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::output::{Output, create_folder, remove_earlier};
-use spmesh_formats::raster::{Grid, RasterFile, RasterFormat, TILE};
+use spmesh_formats::raster::{Grid, RasterFile, RasterFormat, Sheet, TILE};
 
 /// A raster in many files, each of which gets its name when it is complete. Sheets without data are not
 /// written; a file that has the name of one is removed.
@@ -22,6 +27,8 @@ pub struct Sheets {
     /// The name of the raster, to which those of sheets are added.
     path: PathBuf,
     division: Division,
+    names: Pattern,
+    index: Index,
     /// Number of files.
     pub written: u64,
     /// Number of sheets without data.
@@ -31,31 +38,38 @@ pub struct Sheets {
 }
 
 impl Sheets {
-    /// No sheets so far. `path` is the name of the raster: sheets of `dir/name.tif` are `dir/name_X_Y.tif`.
-    /// Their folder is made if necessary.
+    /// No sheets so far. `path` is the name of the raster: its folder and ending are those of sheets, whose
+    /// names follow a pattern. The folder is made if necessary.
     ///
     /// # Errors
-    /// If no files can be made there.
-    pub fn new(path: &Path, division: Division, format: RasterFormat) -> Result<Sheets> {
+    /// If no files can be made there; usage, if the pattern does not fit the division.
+    pub fn new(
+        path: &Path,
+        division: Division,
+        names: Pattern,
+        index: Index,
+        format: RasterFormat,
+    ) -> Result<Sheets> {
         let is_stream = path == Path::new("-") || fs::metadata(path).is_ok_and(|found| !found.is_file());
         if is_stream || path.file_name().is_none() {
             return Err(Error::usage("--tiles writes many files: give their name, as in -o folder/name.tif"));
         }
+        names.check(division.size)?;
+        index.check(path, format)?;
         path.parent().map_or(Ok(()), create_folder)?;
         // Fails now rather than after the work; it leaves no file.
         Output::create(path, format == RasterFormat::GeoTiff)?;
-        Ok(Sheets { path: path.to_path_buf(), division, written: 0, blank: 0, bytes: 0 })
+        Ok(Sheets { path: path.to_path_buf(), division, names, index, written: 0, blank: 0, bytes: 0 })
+    }
+
+    /// The name of a sheet, without its ending.
+    fn name_of(&self, strips: &[Strips; 2], at: TilePlace) -> OsString {
+        self.names.name(self.path.file_stem().unwrap_or_default(), &self.division, strips, at)
     }
 
     /// The path of a sheet.
-    fn path_of(&self, names: [&str; 2]) -> PathBuf {
-        let [mut name, ending] = [self.path.file_stem(), self.path.extension()]
-            .map(Option::unwrap_or_default)
-            .map(ToOwned::to_owned);
-        for part in names {
-            name.push("_");
-            name.push(part);
-        }
+    fn path_of(&self, strips: &[Strips; 2], at: TilePlace) -> PathBuf {
+        let (mut name, ending) = (self.name_of(strips, at), self.path.extension().unwrap_or_default());
         if !ending.is_empty() {
             name.push(".");
             name.push(ending);
@@ -63,11 +77,29 @@ impl Sheets {
         self.path.with_file_name(name)
     }
 
-    /// Refuses sheets that would replace inputs.
+    /// The path of the item of a sheet, if there are items.
+    fn item_of(&self, strips: &[Strips; 2], at: TilePlace) -> Option<PathBuf> {
+        self.index.item_of(&self.path, &self.name_of(strips, at))
+    }
+
+    /// Refuses sheets that would replace inputs or each other.
     fn check_apart(&self, strips: &[Strips; 2]) -> Result<()> {
-        for [column, row] in places([strips[0].len(), strips[1].len()]) {
-            let path = self.path_of([&strips[0][column].name, &strips[1][row].name]);
+        // Names may be many, so only what is made of them is kept.
+        let (hasher, mut seen) = (foldhash::fast::RandomState::default(), HashMap::new());
+        self.index.paths(&self.path).try_for_each(|(_, path)| inputs::check_output(&path))?;
+        for at in places([strips[0].len(), strips[1].len()]) {
+            let path = self.path_of(strips, at);
             inputs::check_output(&path)?;
+            self.item_of(strips, at).map_or(Ok(()), |item| inputs::check_output(&item))?;
+            if let Some(other) = seen.insert(hasher.hash_one(&path), at)
+                && self.path_of(strips, other) == path
+            {
+                return Err(Error::usage(format!(
+                    "two rasters would have the name {}: give --tile-name a pattern that tells them apart, such as \
+                     {{x}}_{{y}}",
+                    path.display()
+                )));
+            }
         }
         Ok(())
     }
@@ -81,11 +113,13 @@ pub(super) struct Cutter<'s> {
     sheets: &'s mut Sheets,
     file: RasterFile<'s>,
     strips: [Strips; 2],
-    /// The first column and row of the raster among those of the tiles.
-    first: [u32; 2],
+    /// The columns and rows of the raster among those of the tiles.
+    raster: [Range<u32>; 2],
     tiles: [usize; 2],
     dependencies: Dependencies,
     store: TileStore,
+    /// Sheets with data.
+    written: Vec<TilePlace>,
 }
 
 impl<'s> Cutter<'s> {
@@ -101,12 +135,14 @@ impl<'s> Cutter<'s> {
         let tiles = tiles_of(grid)?;
         let strips = sheets.division.strips(&file.grid)?;
         sheets.check_apart(&strips)?;
-        let needs = [0, 1].map(|axis| {
-            strips[axis].iter().map(|strip| tiles_of_cells(&behind(&strip.cells, first[axis]))).collect()
-        });
+        let counts = [file.grid.columns, file.grid.rows];
+        let raster = [0, 1].map(|axis| first[axis]..first[axis] + counts[axis]);
+        let tiles_of_strip =
+            |strip: &Strip, axis: usize| tiles_of_cells(&behind(&strip.cells, &raster[axis]), &raster[axis]);
+        let needs = [0, 1].map(|axis| strips[axis].iter().map(|strip| tiles_of_strip(strip, axis)).collect());
         let dependencies = Dependencies::new(tiles, needs);
         let store = TileStore::new(file.samples.bands(), memory, file.options.temp_dir.as_deref());
-        Ok(Cutter { sheets, file: *file, strips, first, tiles, dependencies, store })
+        Ok(Cutter { sheets, file: *file, strips, raster, tiles, dependencies, store, written: Vec::new() })
     }
 
     /// Writes the sheets that are left. Returns the number of tiles and the bytes that were in temporary
@@ -117,6 +153,7 @@ impl<'s> Cutter<'s> {
                 self.come(at)?;
             }
         }
+        self.write_index()?;
         Ok([self.store.spilled, self.store.spill_len()])
     }
 
@@ -131,31 +168,54 @@ impl<'s> Cutter<'s> {
 
     /// Writes a sheet, or removes the file that has its name if it has no data.
     fn write(&mut self, [column, row]: TilePlace) -> Result<()> {
-        let [columns, rows] = [&self.strips[0][column], &self.strips[1][row]];
-        let path = self.sheets.path_of([&columns.name, &rows.name]);
-        let cells = [columns.cells.clone(), rows.cells.clone()];
+        let path = self.sheets.path_of(&self.strips, [column, row]);
+        let cells = [self.strips[0][column].cells.clone(), self.strips[1][row].cells.clone()];
         // Most sheets without data have no tiles either, and a file takes much longer than this test.
-        let [columns, rows] = self.drawn(&cells).each_ref().map(tiles_of_cells);
+        let drawn = self.drawn(&cells);
+        let [across, down] = [0, 1].map(|axis| tiles_of_cells(&drawn[axis], &self.raster[axis]));
         let has_tiles =
-            rows.into_iter().any(|row| columns.clone().any(|column| self.store.holds([column, row])));
+            down.into_iter().any(|row| across.clone().any(|column| self.store.holds([column, row])));
         if has_tiles && self.write_file(&path, cells)? {
+            self.written.push([column, row]);
             return Ok(());
         }
         self.sheets.blank += 1;
+        self.sheets
+            .item_of(&self.strips, [column, row])
+            .map_or(Ok(()), |item| remove_earlier(&item, "the item of a raster"))?;
         remove_earlier(&path, "the raster")
     }
 
+    /// Writes what describes all sheets, after them.
+    fn write_index(&mut self) -> Result<()> {
+        // Row by row, in whatever order tiles have come.
+        self.written.sort_unstable_by_key(|&[column, row]| [row, column]);
+        let Cutter { sheets, strips, written, .. } = &*self;
+        let sheet = |number: usize| {
+            let [column, row] = written[number];
+            let path = sheets.path_of(strips, [column, row]);
+            Sheet {
+                name: sheets.name_of(strips, [column, row]).to_string_lossy().into_owned(),
+                file_name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+                cells: [strips[0][column].cells.clone(), strips[1][row].cells.clone()],
+            }
+        };
+        let bytes = sheets.index.write(&sheets.path, &self.file, written.len(), &sheet)?;
+        self.sheets.bytes += bytes;
+        Ok(())
+    }
+
     /// Columns and rows of the raster as those of the tiles.
-    fn drawn(&self, cells: &[Range<u32>; 2]) -> [Range<u32>; 2] {
-        [0, 1].map(|axis| behind(&cells[axis], self.first[axis]))
+    fn drawn(&self, cells: &[Range<i64>; 2]) -> [Range<i64>; 2] {
+        [0, 1].map(|axis| behind(&cells[axis], &self.raster[axis]))
     }
 
     /// Writes the file of a sheet, if it has data; returns whether it has.
-    fn write_file(&mut self, path: &Path, cells: [Range<u32>; 2]) -> Result<bool> {
+    fn write_file(&mut self, path: &Path, cells: [Range<i64>; 2]) -> Result<bool> {
         let of_path = |error: Error| error.of_input(path.display().to_string());
-        let file = RasterFile { grid: window(&self.file.grid, &cells), is_staged: false, ..self.file };
+        let file = RasterFile { grid: self.file.grid.part(&cells), is_staged: false, ..self.file };
         let drawn = self.drawn(&cells);
-        let mut part = Part::new(&mut self.store, drawn, file.samples.bands());
+        let mut part = Part::new(&mut self.store, drawn, self.raster.clone(), file.samples.bands());
         let mut output = Output::create(path, file.options.format == RasterFormat::GeoTiff)?;
         write(&mut output, &file, &mut part).map_err(of_path)?;
         if !part.has_data {
@@ -164,19 +224,24 @@ impl<'s> Cutter<'s> {
         // Not the bytes written, of which some replace others.
         self.sheets.bytes += output.stream_position().map_err(|e| of_path(Error::io("writing", e)))?;
         self.sheets.written += 1;
+        if file.options.format == RasterFormat::Ascii {
+            file.reference.write_prj(path)?;
+        }
         output.commit()?;
         Ok(true)
     }
 }
 
-/// Cells along an axis that begins `first` cells earlier.
-fn behind(cells: &Range<u32>, first: u32) -> Range<u32> {
+/// Cells of the raster, along an axis on which it is in this place.
+fn behind(cells: &Range<i64>, raster: &Range<u32>) -> Range<i64> {
+    let first = i64::from(raster.start);
     cells.start + first..cells.end + first
 }
 
-/// The tiles along an axis that hold these cells.
-fn tiles_of_cells(cells: &Range<u32>) -> Range<usize> {
-    cells.start as usize / TILE..(cells.end as usize).div_ceil(TILE)
+/// The tiles along an axis that hold those of these cells that are in the raster.
+fn tiles_of_cells(cells: &Range<i64>, raster: &Range<u32>) -> Range<usize> {
+    let [start, end] = [cells.start.max(raster.start.into()), cells.end.min(raster.end.into())];
+    start as usize / TILE..(end as usize).div_ceil(TILE)
 }
 
 impl TileSource for Cutter<'_> {
@@ -194,16 +259,5 @@ impl TileTarget for Cutter<'_> {
 
     fn skip(&mut self, at: TilePlace) -> Result<()> {
         if self.file.is_staged { Ok(()) } else { self.come(at) }
-    }
-}
-
-/// The grid of some columns and rows.
-fn window(grid: &Grid, [columns, rows]: &[Range<u32>; 2]) -> Grid {
-    Grid {
-        left: grid.left + f64::from(columns.start) * grid.step,
-        top: grid.top - f64::from(rows.start) * grid.step,
-        step: grid.step,
-        columns: columns.end - columns.start,
-        rows: rows.end - rows.start,
     }
 }

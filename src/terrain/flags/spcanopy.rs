@@ -83,12 +83,6 @@ pub struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    #[command(flatten)]
-    cells: CellFlags,
-
-    #[command(flatten)]
-    sheets: SheetFlags,
-
     /// Heights from which a surface of its own is made [default: 0,2,5,10,15 and so on]
     #[arg(long, value_name = "HEIGHTS", value_delimiter = ',', allow_negative_numbers = true)]
     layers: Vec<f64>,
@@ -125,13 +119,19 @@ pub struct Flags {
     threads: Option<NonZeroUsize>,
 
     #[command(flatten)]
-    raster: RasterFlags,
-
-    #[command(flatten)]
     stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
+
+    #[command(flatten)]
+    cells: CellFlags,
+
+    #[command(flatten)]
+    sheets: SheetFlags,
+
+    #[command(flatten)]
+    raster: RasterFlags,
 }
 
 /// Runs the tool.
@@ -147,7 +147,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     endings::check(&flags.output, &[endings::RASTER])?;
     let format = of_ending(cells::ENDINGS, &flags.output).unwrap_or_default();
-    let mut output = flags.sheets.create(&flags.output, format, &flags.cells)?;
+    let mut output = flags.sheets.create(&flags.output, format, &flags.cells, &flags.raster)?;
     let input = Input::open(&paths, &flags.source_options()?)?;
     input.notices().iter().for_each(|text| flags.notice(text));
     let grid = flags.cells.grid(&input.description().crs, || window(&input))?;
@@ -177,7 +177,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         draw(&points, &grid, &bottom, &settings, &thresholds, |done| progress.set(done))?;
     drop(progress);
     let (known, notices) = highest.write(output.destination(), &bottom, &input.description().crs)?;
-    let committed = output.commit()?;
+    let committed = output.commit(&input.description().crs)?;
     notices.iter().for_each(|text| flags.notice(text));
     if points.outside() > 0 {
         let outside =
@@ -251,6 +251,7 @@ impl Flags {
             quantity: Quantity::Elevation,
             sample: Sample::Centre,
             method: Method::Triangle,
+            z_factor: None,
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,
             mask: None,

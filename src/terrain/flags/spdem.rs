@@ -58,6 +58,10 @@ Examples:
     spdem --step 1 --fill 20 --cog ground.spm -o terrain.tif
   Many rasters of 1000 by 1000 metres, each with a margin of 20 metres: dtm/ground_650000_4820000.tif and so on
     spdem --step 1 --tiles 1000 --buffer 20 ground.spm -o dtm/ground.tif
+  Whole squares with names by kilometres, and a virtual raster of all: dtm/D0650_4821.tif and so on, dtm/all.vrt
+    spdem --step 1 --tiles 1000 --full --tile-name 'D{x_km:4}_{y_nw_km:4}' --tile-index vrt ground.spm -o dtm/all.tif
+  Integers of centimetres, compressed with zstd:
+    spdem --step 1 --type int16 --scale 0.01 --compression zstd ground.spm -o terrain.tif
   A part as a text grid:
     spdem --step 1 --bounds 4000,7000,5000,8000 ground.spm -o part.asc
   Contour lines every five metres; then a raster and lines from one pipe:
@@ -97,11 +101,15 @@ level ground has none. Hillshades are bytes from 1 to 255, and 0 for no data. Th
 the raster of elevations: from a cell and its eight neighbours, so a cell without all of them has no value. A \
 shaded relief has the colours of elevations in that light, and is transparent where there are no data. \
 --method triangle takes the slope of one triangle instead. Where the coordinate reference system states the unit of elevations, slopes take it \
-into account; otherwise it must be that of x and y.
+into account; otherwise it must be that of x and y, or --z-factor says what it is. Over degrees, slopes need it.
 
 --tiles writes many rasters in one pass. A cell belongs to the raster that has its centre; with --buffer, rasters \
 overlap. They have the same values as one raster: slopes have no seams. A raster gets its name when its cells are \
-complete. One without data is not written, and a file of its name is removed.
+complete. One without data is not written, and a file of its name is removed. STAC items of rasters that are not in \
+degrees on WGS 84 have no geometry, since no coordinates are transformed; all state their own system.
+
+With --type, values are rounded to integers times --scale, plus --offset. A value that does not fit, or that would be \
+taken for no data, is an error. An ESRI grid gets a .prj file beside it where its coordinate reference system is WKT 1.
 
 --points draws points without a mesh: how many are in each cell, how dense they are, or the least, the \
 greatest, the range, the mean and the standard deviation of their elevations or of an attribute. A point on a \
@@ -136,18 +144,6 @@ pub struct Flags {
     output: PathBuf,
 
     #[command(flatten)]
-    cells: CellFlags,
-
-    #[command(flatten)]
-    sheets: SheetFlags,
-
-    #[command(flatten)]
-    contours: ContourFlags,
-
-    #[command(flatten)]
-    quantity: QuantityFlags,
-
-    #[command(flatten)]
     outline: OutlineFlags,
 
     /// Fill cells without data, inside of the outline and the mask alone, from the nearest data in eight
@@ -167,9 +163,6 @@ pub struct Flags {
     memory: Option<u64>,
 
     #[command(flatten)]
-    raster: RasterFlags,
-
-    #[command(flatten)]
     crs: CrsFlag,
 
     #[command(flatten)]
@@ -177,6 +170,21 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
+
+    #[command(flatten)]
+    cells: CellFlags,
+
+    #[command(flatten)]
+    quantity: QuantityFlags,
+
+    #[command(flatten)]
+    sheets: SheetFlags,
+
+    #[command(flatten)]
+    contours: ContourFlags,
+
+    #[command(flatten)]
+    raster: RasterFlags,
 }
 
 /// What is written.
@@ -223,6 +231,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             output: &flags.output,
             cells: &flags.cells,
             sheets: &flags.sheets,
+            raster: &flags.raster,
             stats: flags.stats,
             common: &flags.common,
         };
@@ -230,7 +239,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     advise_on_memory(TOOL, "take larger cells, or less --memory");
     let mut options = flags.options()?;
-    let mut output = flags.sheets.create(&flags.output, options.raster.format, &flags.cells)?;
+    let mut output =
+        flags.sheets.create(&flags.output, options.raster.format, &flags.cells, &flags.raster)?;
     let mesh = Mesh::open(&flags.input)?;
     dem::check(mesh.header(), &options.quantity).map_err(|e| e.of_input(mesh.name()))?;
     let window = || dem::window(mesh.header()).map_err(|e| e.of_input(mesh.name()));
@@ -243,7 +253,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let done = |vertices| progress.set(vertices);
     let stats = dem::rasterize(&mut reader, output.destination(), &grid, &options, done)?;
     drop(progress);
-    let committed = output.commit()?;
+    let committed = output.commit(options.crs.as_ref().unwrap_or(&reader.header().crs))?;
     let messages = stats.notices.iter().cloned();
     let messages =
         messages.chain([cells::summary(&grid, stats.cells - stats.known)]).chain(committed.notice());
@@ -287,6 +297,7 @@ impl Flags {
             sample: self.quantity.sample(),
             natural: self.quantity.is_natural(),
             method: self.quantity.method(),
+            z_factor: self.quantity.z_factor,
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,
             mask: None,

@@ -14,7 +14,6 @@ use crate::accumulators::Accumulators;
 use crate::files::{CELLS, Destination, TilePlace, TileSource, places, tiles_of};
 use place::Placement;
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::crs::System;
 use spmesh_formats::raster::{Grid, RasterFile, RasterOptions, Reduction, Reference, Samples, TILE, Window};
 use spmesh_stream::model::attributes::Column;
 use spmesh_stream::{Coordinates, Crs, Event, Header, Kind, StreamReader};
@@ -120,9 +119,9 @@ pub fn rasterize<R: Read, W: Write + Seek>(
     let header = reader.header().clone();
     let column = check(&header, options).map_err(|e| e.of_input(reader.name()))?;
     tiles_of(grid)?;
-    let system = System::of(options.crs.as_ref().unwrap_or(&header.crs));
+    let crs = options.crs.as_ref().unwrap_or(&header.crs);
     let are_elevations = column.is_none() && options.statistic.is_value();
-    let reference = Reference::of(&system, are_elevations, options.raster.format);
+    let reference = Reference::of_crs(crs, are_elevations, options.raster.format);
     let file = RasterFile {
         options: &options.raster,
         grid: *grid,

@@ -1,4 +1,5 @@
-//! GeoTIFF files of one band of f32 or bytes, or of colours (OGC 19-008r4, GeoTIFF 1.1), with overviews on request.
+//! GeoTIFF files of one band of f32, bytes or integers, or of colours (OGC 19-008r4, GeoTIFF 1.1), with
+//! overviews on request.
 //!
 //! Tiles arrive in any order. `compressor` encodes them by `tile_code` on a separate thread, `overviews`
 //! reduces them, and `store` holds the encoded bytes until all tiles have come. `directory` writes the bytes
@@ -6,7 +7,9 @@
 
 mod compressor;
 mod directory;
+mod metadata;
 mod overviews;
+mod statistics;
 mod store;
 mod tile_code;
 
@@ -16,12 +19,13 @@ use compressor::{Compressed, Compressor};
 use directory::{Directory, Size, Values};
 pub use overviews::Reduction;
 use overviews::{Overviews, TileName, level_sizes, tiles_of};
+use statistics::Statistics;
 use store::{Extent, Store};
 
 use crate::crs::GeoKeys;
-use crate::raster::{Grid, RasterFile, RasterOptions, Samples};
+use crate::raster::{CellType, Compression, Grid, Predictor, RasterFile, RasterOptions, Samples};
 use spmesh_base::error::{Error, Result};
-use tile_code::TileCode;
+use tile_code::{Encoded, TileCode};
 
 /// Side of a tile in cells.
 pub const TILE: usize = 256;
@@ -29,12 +33,20 @@ pub const TILE: usize = 256;
 /// some tiles.
 const BIG: u64 = 4_000_000_000;
 
+/// What wrote the file.
+const WRITER: &str = concat!("spmesh ", env!("CARGO_PKG_VERSION"));
+
+/// Numbers of compressions; that of Zstandard is one of libtiff.
+const UNCOMPRESSED: u16 = 1;
 const DEFLATE: u16 = 8;
+const ZSTD: u16 = 50000;
+const NO_PREDICTOR: u16 = 1;
+const HORIZONTAL_PREDICTOR: u16 = 2;
 const FLOAT_PREDICTOR: u16 = 3;
+const UNSIGNED: u16 = 1;
+const SIGNED: u16 = 2;
 const FLOAT: u16 = 3;
 const BLACK_IS_ZERO: u16 = 1;
-const HORIZONTAL_PREDICTOR: u16 = 2;
-const UNSIGNED: u16 = 1;
 const RGB: u16 = 2;
 const UNASSOCIATED_ALPHA: u16 = 2;
 const REDUCED_IMAGE: u32 = 1;
@@ -47,6 +59,8 @@ const BITS_PER_SAMPLE: u16 = 258;
 const COMPRESSION: u16 = 259;
 const PHOTOMETRIC_INTERPRETATION: u16 = 262;
 const SAMPLES_PER_PIXEL: u16 = 277;
+const SOFTWARE: u16 = 305;
+const DATE_TIME: u16 = 306;
 const PREDICTOR: u16 = 317;
 const TILE_WIDTH: u16 = 322;
 const TILE_LENGTH: u16 = 323;
@@ -81,15 +95,17 @@ struct Level {
     size: [u32; 2],
     /// Place of each tile in the store.
     tiles: Vec<Extent>,
+    /// Statistics of each tile, if they are asked for.
+    statistics: Vec<Option<Statistics>>,
 }
 
 /// Writes a file of the tiles that `fill` supplies; cells of missing tiles have no data. Returns what `fill`
 /// does.
 ///
-/// Memory: some tiles, and 16 bytes for each tile of the file.
+/// Memory: some tiles, and for each tile of the file 16 bytes, with statistics 64.
 ///
 /// # Errors
-/// Those of `fill`; if writing fails.
+/// Those of `fill`; usage, if a value does not fit the type of stored numbers; if writing fails.
 pub fn write_tiles<W: Write + Seek, T>(
     output: &mut W,
     file: &RasterFile,
@@ -97,9 +113,12 @@ pub fn write_tiles<W: Write + Seek, T>(
 ) -> Result<T> {
     let Grid { columns, rows, .. } = file.grid;
     let sizes = level_sizes([columns, rows], file.options.has_overviews);
-    let levels: Vec<Level> = sizes.iter().map(|&size| Level::new(size)).collect();
+    let mut levels: Vec<Level> = sizes.iter().map(|&size| Level::new(size)).collect();
+    if file.options.has_statistics {
+        levels[0].statistics = vec![None; levels[0].tiles.len()];
+    }
     let cells: u64 = sizes.iter().map(|&[columns, rows]| u64::from(columns) * u64::from(rows)).sum();
-    let code = TileCode { samples: file.samples, no_data: file.no_data() };
+    let code = TileCode::of(file);
     let size = if cells * code.cell_len() as u64 > BIG { Size::Big } else { Size::Classic };
     let head_len = directory::encode(&directories(file, &levels), size).len() as u64;
     let RasterOptions { has_overviews, temp_dir, .. } = file.options;
@@ -129,12 +148,21 @@ pub fn write_tiles<W: Write + Seek, T>(
 impl Level {
     fn new(size: [u32; 2]) -> Level {
         let [across, down] = tiles_of(size);
-        Level { size, tiles: vec![[0; 2]; across * down] }
+        Level { size, tiles: vec![[0; 2]; across * down], statistics: Vec::new() }
     }
 
-    fn tile(&mut self, [column, row]: [usize; 2]) -> &mut Extent {
-        let [across, _] = tiles_of(self.size);
-        &mut self.tiles[row * across + column]
+    fn number(&self, [column, row]: [usize; 2]) -> usize {
+        row * tiles_of(self.size)[0] + column
+    }
+
+    /// Number of cells of a tile that are in the image, along each axis.
+    fn inside(&self, at: [usize; 2]) -> [usize; 2] {
+        [0, 1].map(|axis| (self.size[axis] as usize - at[axis] * TILE).min(TILE))
+    }
+
+    /// Statistics of all tiles, in an order that does not depend on that in which they came.
+    fn summary(&self) -> Option<Statistics> {
+        self.statistics.iter().flatten().copied().reduce(Statistics::and)
     }
 }
 
@@ -160,7 +188,7 @@ impl Tiles<'_> {
     /// If it cannot be read.
     pub fn read(&mut self, column: usize, row: usize, values: &mut [f32]) -> Result<bool> {
         self.store_all()?;
-        let extent = *self.levels[0].tile([column, row]);
+        let extent = self.levels[0].tiles[self.levels[0].number([column, row])];
         self.store.read(extent, &mut self.bytes)?;
         if self.bytes.is_empty() {
             return Ok(false);
@@ -200,7 +228,8 @@ impl Tiles<'_> {
                 Some(overviews) => overviews.add(name, &values)?,
                 None => None,
             };
-            if let Some(done) = self.compressor.push(name, values) {
+            let inside = self.levels[name.0].inside(name.1);
+            if let Some(done) = self.compressor.push(name, inside, values) {
                 self.store(done)?;
             }
         }
@@ -228,8 +257,14 @@ impl Tiles<'_> {
         Ok(())
     }
 
-    fn store(&mut self, Compressed { name: (level, at), bytes, values }: Compressed) -> Result<()> {
-        *self.levels[level].tile(at) = self.store.put(&bytes)?;
+    fn store(&mut self, Compressed { name: (level, at), encoded, values }: Compressed) -> Result<()> {
+        let Encoded { bytes, statistics } = encoded?;
+        let level = &mut self.levels[level];
+        let number = level.number(at);
+        level.tiles[number] = self.store.put(&bytes)?;
+        if let Some(of_tile) = level.statistics.get_mut(number) {
+            *of_tile = statistics;
+        }
         self.spare = values;
         Ok(())
     }
@@ -239,7 +274,9 @@ impl Tiles<'_> {
 fn directories(file: &RasterFile, levels: &[Level]) -> Vec<Directory> {
     let mut directories: Vec<Directory> = levels.iter().map(|level| describe(level, file)).collect();
     directories[0].extend(refer(&file.grid, &file.reference.keys));
-    directories[0].extend(file.reference.unit.as_deref().map(unit_of_cells));
+    directories[0].extend(metadata::tag(file, levels[0].summary().as_ref()));
+    directories[0].push((SOFTWARE, Values::Text(WRITER.to_string())));
+    directories[0].extend(file.options.date.map(|date| (DATE_TIME, Values::Text(date.of_tiff()))));
     let overviews = directories.iter_mut().skip(1);
     overviews.for_each(|directory| directory.push((NEW_SUBFILE_TYPE, Values::Longs(vec![REDUCED_IMAGE]))));
     directories
@@ -248,9 +285,21 @@ fn directories(file: &RasterFile, levels: &[Level]) -> Vec<Directory> {
 /// The tags that describe the samples and where the tiles are.
 fn describe(level: &Level, file: &RasterFile) -> Directory {
     let bands = file.samples.bands();
-    let (bits, format, predictor) = match file.samples {
-        Samples::Floats => (32, FLOAT, FLOAT_PREDICTOR),
-        Samples::Bytes | Samples::Colours => (8, UNSIGNED, HORIZONTAL_PREDICTOR),
+    let cell_type = file.cell_type();
+    let format = match cell_type {
+        CellType::Float32 => FLOAT,
+        CellType::Byte => UNSIGNED,
+        CellType::Int16 | CellType::Int32 => SIGNED,
+    };
+    let predictor = match TileCode::of(file).predictor {
+        Predictor::None => NO_PREDICTOR,
+        Predictor::Horizontal => HORIZONTAL_PREDICTOR,
+        Predictor::Float => FLOAT_PREDICTOR,
+    };
+    let compression = match file.options.storage.compression {
+        Compression::Deflate => DEFLATE,
+        Compression::Zstd => ZSTD,
+        Compression::None => UNCOMPRESSED,
     };
     let each = |number: u16| Values::Shorts(vec![number; bands]);
     let short = |number: u16| Values::Shorts(vec![number]);
@@ -259,8 +308,8 @@ fn describe(level: &Level, file: &RasterFile) -> Directory {
     let mut tags = vec![
         (IMAGE_WIDTH, long(level.size[0])),
         (IMAGE_LENGTH, long(level.size[1])),
-        (BITS_PER_SAMPLE, each(bits)),
-        (COMPRESSION, short(DEFLATE)),
+        (BITS_PER_SAMPLE, each(8 * cell_type.len() as u16)),
+        (COMPRESSION, short(compression)),
         (PHOTOMETRIC_INTERPRETATION, short(if bands == 1 { BLACK_IS_ZERO } else { RGB })),
         (SAMPLES_PER_PIXEL, short(bands as u16)),
         (PREDICTOR, short(predictor)),
@@ -273,17 +322,9 @@ fn describe(level: &Level, file: &RasterFile) -> Directory {
     // What is transparent has no data.
     tags.push(match file.samples {
         Samples::Colours => (EXTRA_SAMPLES, short(UNASSOCIATED_ALPHA)),
-        _ => (GDAL_NO_DATA, Values::Text(file.no_data().to_string())),
+        _ => (GDAL_NO_DATA, Values::Text(file.no_data_text())),
     });
     tags
-}
-
-/// The tag that names the unit of cells, in XML.
-fn unit_of_cells(unit: &str) -> (u16, Values) {
-    let unit: String =
-        unit.chars().filter(|c| c.is_ascii_graphic() && !"<>&".contains(*c) || *c == ' ').collect();
-    let item = format!("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>");
-    (GDAL_METADATA, Values::Text(format!("<GDALMetadata>\n  {item}\n</GDALMetadata>\n")))
 }
 
 /// The tags that georeference the cells.

@@ -10,7 +10,7 @@ use crate::splinefit::{Attribute, Layout, Spline};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_formats::detect::SPLINEFIT;
-use spmesh_formats::raster::Grid;
+use spmesh_formats::raster::{Grid, RasterFormat, write_prj};
 use spmesh_formats::sink::MatrixFormat;
 use spmesh_formats::source::{Input, InvalidAdvice, SourceOptions};
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
@@ -69,12 +69,6 @@ pub(super) struct Flags {
     #[arg(long, value_name = "SITES", conflicts_with_all = ["step", "columns", "rows", "bounds", "like"])]
     at: Option<PathBuf>,
 
-    #[command(flatten)]
-    cells: CellFlags,
-
-    #[command(flatten)]
-    raster: RasterFlags,
-
     /// The attribute to evaluate
     #[arg(long, value_name = "KIND", default_value = "value", value_parser = named(KINDS))]
     kind: Attribute,
@@ -94,6 +88,12 @@ pub(super) struct Flags {
 
     #[command(flatten)]
     threads: Threads,
+
+    #[command(flatten)]
+    cells: CellFlags,
+
+    #[command(flatten)]
+    raster: RasterFlags,
 }
 
 impl Flags {
@@ -176,9 +176,13 @@ impl Flags {
                 (outside, Vec::new())
             }
         };
+        let lost = match form {
+            Form::Raster(RasterFormat::Ascii) => write_prj(&self.output, spline.crs())?,
+            _ => None,
+        };
         output.commit()?;
         drop(progress);
-        notices.iter().for_each(|text| say(common, text));
+        notices.iter().chain(&lost).for_each(|text| say(common, text));
         say(common, &cells::summary(&grid, outside));
         Ok(())
     }

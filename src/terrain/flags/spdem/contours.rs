@@ -21,13 +21,14 @@ pub(super) const LACK_OF_MEMORY: &str =
 
 /// Flags about contour lines.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Contour lines")]
 pub(super) struct ContourFlags {
     /// Write contour lines instead of a raster, at multiples of this elevation
     #[arg(
         long,
         value_name = "D",
         allow_negative_numbers = true,
-        conflicts_with_all = ["CellFlags", "SheetFlags", "RasterFlags", "kind", "method", "light", "multidirectional", "range", "fill"]
+        conflicts_with_all = ["CellFlags", "SheetFlags", "RasterFlags", "GeoTiffFlags", "kind", "method", "z_factor", "light", "multidirectional", "range", "fill"]
     )]
     contours: Option<f64>,
 

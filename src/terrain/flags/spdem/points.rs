@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::flags::sheets::SheetFlags;
 use crate::points::{self, Options, Stats};
 use spmesh_base::error::Result;
-use spmesh_shell::cells::{self, CellFlags};
+use spmesh_shell::cells::{self, CellFlags, RasterFlags};
 use spmesh_shell::open_stream;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
@@ -18,13 +18,14 @@ pub(super) struct Job<'f> {
     pub(super) output: &'f Path,
     pub(super) cells: &'f CellFlags,
     pub(super) sheets: &'f SheetFlags,
+    pub(super) raster: &'f RasterFlags,
     pub(super) stats: StatsFlag,
     pub(super) common: &'f Common,
 }
 
 /// Writes the raster.
 pub(super) fn run(job: &Job, options: &Options, started: Instant) -> Result<()> {
-    let mut output = job.sheets.create(job.output, options.raster.format, job.cells)?;
+    let mut output = job.sheets.create(job.output, options.raster.format, job.cells, job.raster)?;
     let mut reader = open_stream(job.input)?;
     points::check(reader.header(), options).map_err(|e| e.of_input(reader.name()))?;
     let window = || points::window(reader.header()).map_err(|e| e.of_input(reader.name()));
@@ -33,7 +34,7 @@ pub(super) fn run(job: &Job, options: &Options, started: Instant) -> Result<()> 
     let done = |points| progress.set(points);
     let stats = points::rasterize(&mut reader, output.destination(), &grid, options, done)?;
     drop(progress);
-    let committed = output.commit()?;
+    let committed = output.commit(options.crs.as_ref().unwrap_or(&reader.header().crs))?;
     let say = |message: &str| notice(super::TOOL, job.common, message);
     stats.notices.iter().for_each(|message| say(message));
     say(&cells::summary(&grid, stats.cells - stats.known));

@@ -10,10 +10,11 @@ use spmesh_shell::{Names, named, parse_numbers};
 
 /// Flags that say what cells hold.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "What the cells hold")]
 pub(super) struct QuantityFlags {
     /// Read points instead of a mesh, and draw the statistic of --kind of those in each cell: of their elevations, or of
     /// an --attribute
-    #[arg(long, conflicts_with_all = ["contours", "OutlineFlags", "fill", "interpolation", "sample", "method", "light", "multidirectional", "range"])]
+    #[arg(long, conflicts_with_all = ["contours", "OutlineFlags", "fill", "interpolation", "sample", "method", "z_factor", "light", "multidirectional", "range"])]
     pub(super) points: bool,
 
     /// The quantity in the cells; with --points, from count on [default: elevation; with --points, count]
@@ -30,6 +31,11 @@ pub(super) struct QuantityFlags {
     /// triangle at the centre [default: horn]
     #[arg(long, value_name = "METHOD", value_parser = named(METHODS))]
     method: Option<Method>,
+
+    /// How many units of x and y one unit of elevations is, for slopes, aspects and hillshades [default: as
+    /// the coordinate reference system states it, otherwise 1; necessary where x and y are angles]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    pub(super) z_factor: Option<f64>,
 
     /// Draw an attribute of the points instead of elevations: its name, with :1, :2 ... for one of several
     /// components; red, green and blue are those of rgb
@@ -172,6 +178,9 @@ impl QuantityFlags {
         }
         let is_lit = matches!(kind, KindFlag::Hillshade | KindFlag::ShadedRelief);
         let is_relief = kind == KindFlag::ShadedRelief;
+        if self.z_factor.is_some_and(|factor| !(factor > 0.0 && factor.is_finite())) {
+            return Err(Error::usage("--z-factor takes a number above zero"));
+        }
         let is_triangle = self.method == Some(Method::Triangle);
         let refusals = [
             (
@@ -196,6 +205,10 @@ impl QuantityFlags {
             (
                 is_triangle && self.is_natural(),
                 "--method triangle takes the plane of a triangle: leave it out for natural neighbours",
+            ),
+            (
+                self.z_factor.is_some() && (kind == KindFlag::Elevation || self.attribute.is_some()),
+                "--z-factor is for slopes, aspects and hillshades: add --kind",
             ),
             (is_triangle && self.sample().is_whole(), "--sample is of cells: leave out --method triangle"),
             (is_triangle && is_relief, "a shaded relief follows from cells: leave out --method triangle"),
