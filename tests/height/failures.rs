@@ -29,7 +29,7 @@ fn wrong_requests_are_refused_with_a_remedy() {
         (vec!["--ground", &ground, &points], "--output"),
         (vec!["--ground", &ground, "-o", &out], "no input"),
         (vec!["--ground", &ground, &points, &points, "-o", &out], "--out-dir"),
-        (vec!["--ground", &ground, &points, &points, "--out-dir", &path("two")], "mixed"),
+        (vec!["--ground", &ground, &points, &points, "--out-dir", &path("two")], "given twice"),
         (vec!["--ground", &ground, &points, "-o", &path("out.tif")], ".las or NAME.laz"),
         (vec!["--ground", &ground, &points, "-o", &path("out.copc.laz")], "COPC files are not written"),
         (vec!["--ground", &ground, &points, "-o", &points], "replace the input"),
