@@ -4,6 +4,7 @@ mod batches;
 mod failures;
 mod files;
 mod heights;
+mod text;
 
 use laz::record::{RecordDecompressor, SequentialPointRecordDecompressor};
 use spmesh_stream::model::bounds::Point;

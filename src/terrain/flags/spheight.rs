@@ -12,20 +12,25 @@ use clap::{Parser, ValueEnum};
 
 use names::ENDINGS;
 
-use crate::height::{Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights};
+use crate::height::{
+    Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights, write_text_heights,
+};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::check_apart;
-use spmesh_formats::las::LasFile;
 use spmesh_formats::ledger::{Outcome, modified_of};
+use spmesh_formats::source::PointFile;
 use spmesh_shell::batch::BatchFlags;
+use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
+use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{
     Common, Mesh, MeshReader, Names, Needs, Report, StatsFlag, advise_on_memory, named, notice, of_ending,
     parse_size, parse_threads, peak_memory, threads,
 };
+use spmesh_stream::Crs;
 use spmesh_stream::model::bounds::Bounds;
 
 const TOOL: &str = "spheight";
@@ -57,6 +62,9 @@ to a step of the file's z (half away from zero). Without --replace-z, it is a ne
 integers with the scale of z. Points outside of the mesh of the ground have no height there: the field states which \
 integer stands for that. With --replace-z they get the height above the nearest place of the mesh.
 
+Lines of text are written again with one more column of heights, which have as many decimals as the elevation of the \
+first point, from 3 to 9; NaN stands for no height. A line of names gets --name.
+
 COPC files are written as LAZ: their index does not fit the new records. The ground may be larger than memory: its \
 triangles wait in a temporary file (13 bytes each, 19 if coordinates are no integers), and each file is read and written once, in batches. Each output \
 gets its name when it is complete. After a failure, the outputs of earlier files are complete, and there are no others.
@@ -69,18 +77,20 @@ fails leaves no output of an earlier run.
 Exit codes: 0 success, 1 I/O or runtime failure, or a file failed with --keep-going, 2 usage, 3 malformed or truncated input, 5 not enough \
 memory, 6 input of another version of spmesh.";
 
-/// Write LAS and LAZ files again with the heights of their points above the ground.
+/// Write LAS, LAZ and text files again with the heights of their points above the ground.
 ///
-/// Reads a triangle mesh of the ground, as spdelaunay2d writes it, and LAS, LAZ or COPC files.
+/// Reads a triangle mesh of the ground, as spdelaunay2d writes it, and LAS, LAZ or COPC files, or text.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+#[command(mut_arg("crs", |crs| crs.help("The coordinate reference system of text, which states none: EPSG:CODE, \
+    EPSG:CODE+CODE with one for heights, well-known text, or a file of it (.prj)")))]
 #[command(mut_arg("out_dir", |folder| folder.help("Folder for the files with heights, which keep their names; it is \
     made if necessary")))]
 #[command(mut_arg("summary", |summary| summary.help("Where the summary goes, a line per file: JSON Lines, a table if \
     the name ends in .tsv, or Parquet if it ends in .parquet; - is stdout [default: summary.jsonl in the folder, with \
     --keep-going or --skip-existing]")))]
 pub struct Flags {
-    /// LAS, LAZ or COPC files; several only with --out-dir
+    /// LAS, LAZ, COPC or text files; several only with --out-dir
     #[arg(value_name = "FILE")]
     inputs: Vec<PathBuf>,
 
@@ -89,7 +99,7 @@ pub struct Flags {
     #[arg(long, value_name = "STREAM")]
     ground: PathBuf,
 
-    /// File for the points with heights: .las or .laz
+    /// File for the points with heights: .las or .laz, or another ending for text
     #[arg(short, long, value_name = "FILE", required_unless_present = "out_dir", conflicts_with = "out_dir")]
     output: Option<PathBuf>,
 
@@ -128,10 +138,17 @@ pub struct Flags {
     temp_dir: Option<PathBuf>,
 
     #[command(flatten)]
+    crs: CrsFlag,
+
+    #[command(flatten)]
     stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
+
+    // The last, as its heading holds for all flags after it.
+    #[command(flatten)]
+    text: TextFlags,
 }
 
 /// The values of `--outside`.
@@ -172,8 +189,12 @@ struct Stated {
 }
 
 impl Stated {
-    fn by(file: &LasFile) -> Stated {
-        Stated { points: file.points(), bounds: file.stated_bounds() }
+    /// A text states nothing.
+    fn by(file: &PointFile) -> Stated {
+        match file {
+            PointFile::Las(file) => Stated { points: file.points(), bounds: file.stated_bounds() },
+            PointFile::Text(_) => Stated { points: u64::MAX, bounds: None },
+        }
     }
 }
 
@@ -232,11 +253,16 @@ fn run_plain(flags: &Flags, paths: &[PathBuf], outputs: &[PathBuf]) -> Result<Fi
     let named: Vec<_> = outputs.iter().map(|output| (flag, output.as_path())).collect();
     check_apart([], &named)?;
     // All headers are looked at before the work begins.
-    let files: Vec<LasFile> = paths.iter().map(|path| flags.open(path)).collect::<Result<_>>()?;
-    files.iter().flat_map(LasFile::notices).for_each(|text| flags.notice(text));
+    let files: Vec<PointFile> =
+        paths.iter().zip(outputs).map(|(path, output)| flags.open(path, output)).collect::<Result<_>>()?;
+    files.iter().flat_map(PointFile::notices).for_each(|text| flags.notice(text));
     let (ground, ground_bytes) = flags.ground(flags.window(files.iter().map(Stated::by)), outputs)?;
-    let total = files.iter().map(LasFile::points).sum();
-    let mut progress = Progress::new(&flags.common, "finding heights", Some(total));
+    let points = |file: &PointFile| match file {
+        PointFile::Las(file) => Some(file.points()),
+        PointFile::Text(_) => None,
+    };
+    let total = files.iter().map(points).sum();
+    let mut progress = Progress::new(&flags.common, "finding heights", total);
     let mut sums = Sums::default();
     for (file, output) in files.iter().zip(outputs) {
         let before = sums.points;
@@ -271,8 +297,10 @@ impl Flags {
         Ok(files)
     }
 
-    fn open(&self, input: &Path) -> Result<LasFile> {
-        LasFile::open(input, self.temp_dir.as_deref())
+    fn open(&self, input: &Path, output: &Path) -> Result<PointFile> {
+        let file = PointFile::open(input, self.temp_dir.as_deref(), &self.text.options())?;
+        self.check_ending(&file, output)?;
+        Ok(file)
     }
 
     /// Reads the ground in a window, or all of it; also returns the number of bytes that were read.
@@ -302,13 +330,19 @@ impl Flags {
     fn write(
         &self,
         ground: &Ground,
-        file: &LasFile,
+        file: &PointFile,
         output: &Path,
         progress: impl FnMut(u64),
     ) -> Result<Written> {
         let options = self.options(output)?;
         let created = Output::create(output, true)?;
-        let (written, counts) = write_heights(ground, file, created, &options, progress)?;
+        let (written, counts) = match file {
+            PointFile::Las(file) => write_heights(ground, file, created, &options, progress)?,
+            PointFile::Text(file) => {
+                let crs = self.crs.system()?.unwrap_or(Crs::Unknown);
+                write_text_heights(ground, file, &crs, created, &options, progress)?
+            }
+        };
         written.commit()?;
         // Fewer than were written: the header is written twice.
         let failed = |e| Error::io("looking at the output", e).of_input(output.display().to_string());

@@ -6,11 +6,11 @@ use super::{Finished, Flags, Stated, TOOL, Written};
 use crate::height::{Ground, Outside};
 use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::places::Inputs;
-use spmesh_formats::las::LasFile;
 use spmesh_formats::ledger::{
     self, Attempt, Batch, Columns, Ledger, Left, News, OUTPUT_TIME, Row, SharedInput, contained,
 };
 use spmesh_formats::sink::ColumnKind::{Integer, Number, Text};
+use spmesh_formats::source::PointFile;
 use spmesh_shell::batch::BatchMessages;
 use spmesh_shell::value_name;
 
@@ -48,7 +48,7 @@ struct Job<'f> {
     /// Name of the output in the folder.
     output: PathBuf,
     /// The file, if it can be opened once only.
-    kept: Option<LasFile>,
+    kept: Option<PointFile>,
 }
 
 type End = Attempt<Written, ()>;
@@ -132,7 +132,7 @@ fn survey(flags: &Flags, jobs: &mut [Job<'_>]) -> Result<Vec<Stated>> {
     let mut stated = Vec::new();
     for job in jobs {
         let path = job.left.file;
-        match flags.open(path) {
+        match flags.open(path, &job.output) {
             Ok(file) => {
                 stated.push(Stated::by(&file));
                 job.kept = Some(file).filter(|_| !path.is_file());
@@ -150,7 +150,7 @@ fn attempt(flags: &Flags, ground: Option<&Ground>, job: &Job<'_>, folder: &Path,
     let (path, output) = (job.left.file, folder.join(&job.output));
     let write = || -> Result<Written> {
         let ground = ground.ok_or_else(|| Error::usage("there is no ground"))?;
-        let opened = if job.kept.is_none() { Some(flags.open(path)?) } else { None };
+        let opened = if job.kept.is_none() { Some(flags.open(path, &output)?) } else { None };
         let file = job.kept.as_ref().or(opened.as_ref()).expect("one of them is there");
         let mut written = flags.write(ground, file, &output, |_| {})?;
         written.notices.splice(0..0, file.notices().iter().cloned());
@@ -194,6 +194,7 @@ impl Flags {
         if let Some(format) = self.format {
             text += &format!(" --format {}", value_name(super::names::ENDINGS, &format));
         }
-        text
+        let crs = self.crs.text().map_or(String::new(), |crs| format!(" --crs {crs}"));
+        text + &crs + &self.text.to_string()
     }
 }

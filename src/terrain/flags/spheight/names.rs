@@ -6,10 +6,14 @@ use std::path::{Path, PathBuf};
 use super::{Flags, FormatFlag};
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::ledger::check_distinct;
-use spmesh_shell::{Names, of_ending};
+use spmesh_formats::source::PointFile;
+use spmesh_shell::{Names, endings, of_ending};
 
 /// The formats that endings of names stand for.
 pub(super) const ENDINGS: Names<FormatFlag> = &[("las", FormatFlag::Las), ("laz", FormatFlag::Laz)];
+
+/// Endings of names of LAS files, and of text.
+const OWN: &[&str] = &["las", "laz", "xyz", "csv", "tsv", "txt", "asc", "dat"];
 
 impl Flags {
     /// The output of each input.
@@ -23,9 +27,8 @@ impl Flags {
                 let what = "COPC files are not written: give a name that ends in .laz alone";
                 return Err(Error::usage(what).of_input(name));
             }
-            if self.format.is_none() && of_ending(ENDINGS, output).is_none() {
-                let what = "points are written to NAME.las or NAME.laz, or choose with --format";
-                return Err(Error::usage(what).of_input(name));
+            if self.format.is_none() {
+                endings::check(output, &[OWN])?;
             }
             return Ok(vec![output.clone()]);
         }
@@ -42,6 +45,22 @@ impl Flags {
         check_distinct(inputs)?;
         check_apart(inputs, &outputs)?;
         Ok(outputs)
+    }
+
+    /// Checks that the name of an output goes with the format of the file, which stays.
+    pub(super) fn check_ending(&self, file: &PointFile, output: &Path) -> Result<()> {
+        let is_las = of_ending(ENDINGS, output).is_some();
+        let what = match file {
+            PointFile::Las(_) if self.output.is_some() && self.format.is_none() && !is_las => {
+                "points are written to NAME.las or NAME.laz, or choose with --format"
+            }
+            PointFile::Text(_) if self.format.is_some() => "--format is for LAS files: text stays text",
+            PointFile::Text(_) if self.output.is_some() && is_las => {
+                "text stays text: give a name such as heights.csv"
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::usage(what).of_input(output.display().to_string()))
     }
 
     /// The name of the output of the file `name`.
