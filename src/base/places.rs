@@ -109,9 +109,10 @@ pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&
             return Err(Error::usage(message).of_input(name_of_output(path)));
         }
     }
-    for (i, &(flag, path)) in outputs.iter().enumerate() {
-        for &(other_flag, other) in &outputs[..i] {
-            if is_same(path, other) {
+    let mut flags: HashMap<Mixed, &str> = HashMap::new();
+    for &(flag, path) in outputs {
+        for place in Mixed::all_of(path) {
+            if let Some(other_flag) = flags.insert(place, flag) {
                 let message =
                     format!("{other_flag} and {flag} would be mixed: give one of them another file");
                 return Err(Error::usage(message).of_input(name_of_output(path)));
@@ -119,6 +120,22 @@ pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&
         }
     }
     Ok(())
+}
+
+/// What two outputs must not have in common.
+#[derive(Debug, PartialEq, Eq, Hash)]
+enum Mixed {
+    Stdout,
+    File(Place),
+    Pipe(u64, u64),
+}
+
+impl Mixed {
+    fn all_of(path: &Path) -> impl Iterator<Item = Mixed> {
+        let stdout = is_standard(path).then_some(Mixed::Stdout);
+        let pipe = pipe_at(path, io::stdout().as_fd()).map(|(device, inode)| Mixed::Pipe(device, inode));
+        [stdout, Place::of_output(path).map(Mixed::File), pipe].into_iter().flatten()
+    }
 }
 
 /// Refuses a named pipe that is given as two inputs: its data can be read once, and the second time the
@@ -136,16 +153,6 @@ pub fn check_pipes<'p>(inputs: impl IntoIterator<Item = &'p Path>) -> Result<()>
         }
     }
     Ok(())
-}
-
-/// Whether two outputs are one: a file, or a pipe.
-fn is_same(a: &Path, b: &Path) -> bool {
-    let stdout = io::stdout();
-    let place = Place::of_output;
-    let pipe = |path| pipe_at(path, stdout.as_fd());
-    is_standard(a) && is_standard(b)
-        || place(a).is_some_and(|a| Some(a) == place(b))
-        || pipe(a).is_some_and(|a| Some(a) == pipe(b))
 }
 
 fn is_standard(path: &Path) -> bool {

@@ -6,6 +6,7 @@ pub mod detect;
 pub mod drivers;
 mod historical;
 pub mod las;
+pub mod ledger;
 mod lines;
 pub mod molecules;
 mod npy;

@@ -15,6 +15,11 @@ pub struct CrsFlag {
 }
 
 impl CrsFlag {
+    /// What was given.
+    pub fn text(&self) -> Option<&str> {
+        self.crs.as_deref()
+    }
+
     /// The system, if the flag is given.
     ///
     /// # Errors

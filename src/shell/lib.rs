@@ -1,6 +1,7 @@
 //! What every program has: parsed flags, messages, progress, and errors as exit codes. Flags that several
 //! programs share are here, too.
 
+pub mod batch;
 pub mod cells;
 pub mod compression;
 pub mod crs;

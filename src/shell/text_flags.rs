@@ -1,5 +1,7 @@
 //! Flags that say how points as text are laid out.
 
+use std::fmt;
+
 use clap::Args;
 
 use spmesh_formats::source::{Column, Separator, TextOptions};
@@ -25,6 +27,23 @@ pub struct TextFlags {
     /// Skip lines that start with PREFIX, as those that start with # or // always are
     #[arg(long, value_name = "PREFIX", allow_hyphen_values = true, value_parser = clap::builder::NonEmptyStringValueParser::new())]
     comment: Option<String>,
+}
+
+/// The flags that are given, each after a blank.
+impl fmt::Display for TextFlags {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let TextFlags { columns, separator, skip_lines, comment } = self;
+        if !columns.is_empty() {
+            write!(f, " --columns {columns:?}")?;
+        }
+        if let Some(separator) = separator {
+            write!(f, " --separator {separator:?}")?;
+        }
+        if *skip_lines > 0 {
+            write!(f, " --skip-lines {skip_lines}")?;
+        }
+        comment.iter().try_for_each(|comment| write!(f, " --comment {comment}"))
+    }
 }
 
 impl TextFlags {

@@ -20,7 +20,7 @@ fn wrong_requests_are_refused_with_a_remedy() {
     folder.file("ground.spm", mesh_of(&points.bytes()));
     folder.file("points.las", points.bytes());
     folder.file("other.las", LasFile { projection: vec![geo_keys(32631)], ..points.clone() }.bytes());
-    folder.file("text.xyz", "1 2 3\n");
+    folder.file("mesh.obj", "v 1 2 3\n");
     let stream = run("spfinalize", &["-q", "-"], &points.bytes());
     folder.file("points.spm", stream.stdout);
     let path = |name: &str| folder.path(name);
@@ -29,8 +29,8 @@ fn wrong_requests_are_refused_with_a_remedy() {
         (vec!["--ground", &ground, &points], "--output"),
         (vec!["--ground", &ground, "-o", &out], "no input"),
         (vec!["--ground", &ground, &points, &points, "-o", &out], "--out-dir"),
-        (vec!["--ground", &ground, &points, &points, "--out-dir", &path("two")], "mixed"),
-        (vec!["--ground", &ground, &points, "-o", &path("out.tif")], ".las or NAME.laz"),
+        (vec!["--ground", &ground, &points, &points, "--out-dir", &path("two")], "given twice"),
+        (vec!["--ground", &ground, &points, "-o", &path("out.tif")], "this program writes .las"),
         (vec!["--ground", &ground, &points, "-o", &path("out.copc.laz")], "COPC files are not written"),
         (vec!["--ground", &ground, &points, "-o", &points], "replace the input"),
         (vec!["--ground", &ground, &points, "-o", &ground, "--format", "las"], "replace the input"),
@@ -46,7 +46,7 @@ fn wrong_requests_are_refused_with_a_remedy() {
         assert_eq!(code, Some(2), "{arguments:?}: {message}");
         assert!(message.contains(part), "{arguments:?}: {message}");
     }
-    for (input, part) in [(path("text.xyz"), "LAS"), (sample("truncated.las"), "truncated")] {
+    for (input, part) in [(path("mesh.obj"), "LAS"), (sample("truncated.las"), "truncated")] {
         let (code, message) = refused(&folder, &["--ground", &ground, &input, "-o", &out]);
         assert!(code == Some(3) && message.contains(part), "{message}");
     }

@@ -1,8 +1,10 @@
 //! `spheight`: heights against exact arithmetic on all triangles, and all other bytes of the files.
 
+mod batches;
 mod failures;
 mod files;
 mod heights;
+mod text;
 
 use laz::record::{RecordDecompressor, SequentialPointRecordDecompressor};
 use spmesh_stream::model::bounds::Point;

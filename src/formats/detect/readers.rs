@@ -58,7 +58,7 @@ pub const TESS3: Reader = reader("tess3", || [structures(), vec![Format::Off], p
 pub const SPCANOPY: Reader = reader("spcanopy", || vec![Format::Las]);
 
 /// `spheight`, for the files whose points get heights.
-pub const SPHEIGHT: Reader = reader("spheight", || vec![Format::Las]);
+pub const SPHEIGHT: Reader = reader("spheight", || vec![Format::Las, Format::Text, Format::OtherText]);
 
 /// `dd4`.
 pub const DD4: Reader =

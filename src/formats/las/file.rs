@@ -1,17 +1,13 @@
 //! A LAS or LAZ file, opened for reading its records.
 
-use std::path::{Path, PathBuf};
-
 use laz::DecompressionSelection;
 
-use crate::detect::{Format, SPHEIGHT, read_head};
 use crate::las::header::{LasHeader, RECORD_LENS};
 use crate::las::laz::LazRecords;
-use crate::source::name_of;
-use crate::source::origin::{Admitted, FileView, Origin};
+use crate::source::origin::{FileView, Origin};
 use crate::source::record_reader::RecordReader;
 use crate::source::records::PlainRecords;
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Crs};
 
@@ -25,31 +21,11 @@ pub struct LasFile {
 }
 
 impl LasFile {
-    /// Opens the file at `path` ("-" is stdin) and reads its header.
-    ///
-    /// Cost: the header. Stdin, and files within gzip, are copied to an unlinked temporary file in
-    /// `temp_dir`, or in the system's folder for temporary files.
-    ///
-    /// # Errors
-    /// If the file cannot be opened, is of another format, or its header is damaged; the file is named.
-    pub fn open(path: &Path, temp_dir: Option<&Path>) -> Result<LasFile> {
-        let name = name_of(path);
-        let temp_dir = temp_dir.map_or_else(std::env::temp_dir, PathBuf::from);
-        let mut notices = Vec::new();
-        let mut origin = Origin::new(path, Admitted::Formats(&SPHEIGHT), &temp_dir, &mut notices)?;
-        let mut read = || -> Result<(LasHeader, Vec<String>)> {
-            let mut plain = origin.plain()?;
-            let head = read_head(&mut plain).map_err(|e| Error::io("reading", e))?;
-            let format = SPHEIGHT.detect(&head)?;
-            debug_assert_eq!(format, Format::Las);
-            if plain.is_compressed() {
-                origin = origin.unpacked(&name, &temp_dir, &mut notices)?;
-            }
-            let mut own = Vec::new();
-            let header = LasHeader::read(&origin.view()?, false, &mut own)?;
-            Ok((header, own))
-        };
-        let (header, own) = read().map_err(|e| e.of_input(&name))?;
+    /// Reads the header of a file that is not compressed as a whole. It is called `name` in messages.
+    pub(crate) fn of(origin: Origin, name: String, mut notices: Vec<String>) -> Result<LasFile> {
+        let mut own = Vec::new();
+        let header = origin.view().and_then(|view| LasHeader::read(&view, false, &mut own));
+        let header = header.map_err(|e| e.of_input(&name))?;
         notices.extend(own.into_iter().map(|notice| format!("{name}: {notice}")));
         Ok(LasFile { name, origin, header, notices })
     }

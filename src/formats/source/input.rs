@@ -16,6 +16,7 @@ use crate::source::origin::{Origin, name_of};
 use crate::source::pass::{Content, Opening, Pass, Sort, Stated};
 use crate::source::reader::{Description, PointReader};
 use crate::source::row_plan::RowPlan;
+use crate::text::options::TextOptions;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Bounds;
 
@@ -260,16 +261,22 @@ fn find_format(
     Ok((origin, format, is_compressed))
 }
 
+/// Refuses options of text for a file of another format.
+pub(crate) fn check_text_options(options: &TextOptions, format: Format) -> Result<()> {
+    if options.is_given() && !matches!(format, Format::Text | Format::OtherText) {
+        let what = "options of columns, separators and comments";
+        return Err(Error::usage(format!("{what} are for points as text: this is {}", format.name())));
+    }
+    Ok(())
+}
+
 /// Reads the header of a file.
 fn open_points(file: &Opening, notices: &mut Vec<String>) -> Result<Content> {
     let Opening { options, format, .. } = file;
     if let Some(kind) = options.raw {
         return raw::open(&file.origin.view()?, kind, options.salvage);
     }
-    if options.text.is_given() && !matches!(format, Format::Text | Format::OtherText) {
-        let what = "options of columns, separators and comments";
-        return Err(Error::usage(format!("{what} are for points as text: this is {}", format.name())));
-    }
+    check_text_options(&options.text, *format)?;
     let no_points = || Error::usage(format!("{} holds no points of space", format.name()));
     format.row().points.ok_or_else(no_points)?(file, notices)
 }

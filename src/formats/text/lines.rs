@@ -21,6 +21,8 @@ pub(crate) struct Lines<R> {
     line: Vec<u8>,
     number: u64,
     ended: bool,
+    /// Whether a carriage return came before the last line end.
+    returned: bool,
     longest: usize,
     /// Number of the input's last line, if that has no line end.
     unended: Option<u64>,
@@ -43,6 +45,7 @@ impl<R: Read> Lines<R> {
             line: Vec::new(),
             number: 0,
             ended: true,
+            returned: false,
             longest,
             unended: None,
             bytes: 0,
@@ -74,7 +77,8 @@ impl<R: Read> Lines<R> {
                 self.check_len()?;
             }
         }
-        if self.line.last() == Some(&b'\r') {
+        self.returned = self.line.last() == Some(&b'\r');
+        if self.returned {
             self.line.pop();
         }
         if self.number == 1 && self.line.starts_with(BYTE_ORDER_MARK) {
@@ -135,6 +139,16 @@ impl<R: Read> Lines<R> {
     /// Whether the last line read has a line end. Truncated texts mostly end without one.
     pub(crate) fn is_ended(&self) -> bool {
         self.ended
+    }
+
+    /// The line end of the last line read.
+    pub(crate) fn line_end(&self) -> &'static [u8] {
+        match (self.returned, self.ended) {
+            (false, false) => b"",
+            (true, false) => b"\r",
+            (false, true) => b"\n",
+            (true, true) => b"\r\n",
+        }
     }
 
     /// Bytes of all lines so far, with their line ends.

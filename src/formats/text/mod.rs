@@ -1,6 +1,7 @@
 //! Lines of numbers: columns, their options, and values.
 
 pub(crate) mod columns;
+pub(crate) mod copy;
 pub(crate) mod decimal_grid;
 pub(crate) mod lines;
 pub(crate) mod numbers;

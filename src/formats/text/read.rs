@@ -154,7 +154,8 @@ fn read_others(line: &[u8], columns: &Columns, plan: &RowPlan, record: &mut Vec<
     Ok(())
 }
 
-fn parse(line: &[u8], columns: &Columns) -> Result<Point> {
+/// The coordinates in a line without comments.
+pub(crate) fn parse(line: &[u8], columns: &Columns) -> Result<Point> {
     let mut point = [0.0; 3];
     let mut found = 0;
     let mut count = 0;

@@ -15,25 +15,29 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use crate::tess3::sweep::{News, Outcome, Sweep, sweep};
+use crate::tess3::sweep::{COLUMNS, Sweep, sweep};
 use crate::tess3::{Arithmetic, Options, Product, Radius, Stats};
 use balls::BallFlags;
 use method::MethodFlags;
 use picture::PictureFlags;
 use selection::SelectionFlags;
-use spmesh_base::error::{Error, ErrorKind, Result, counted};
+use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_base::parallel::available_threads;
 use spmesh_formats::drivers::Format;
+use spmesh_formats::ledger::Batch;
 use spmesh_formats::molecules::{Structure, read_structure};
 use spmesh_formats::sink::TableFormat;
+use spmesh_shell::batch::{BatchFlags, BatchMessages, SUMMARY_ENDINGS};
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::{
-    Common, Names, StatsFlag, advise_on_memory, named, notice, parse_threads, progress::Progress, read_list,
-    refuse_terminal, value_name,
+    Common, Names, StatsFlag, advise_on_memory, named, notice, parse_threads, refuse_terminal, value_name,
 };
 
+const TOOL: &str = "tess3";
+
+/// The name of the summary in the folder of a sweep.
 const SUMMARY_NAME: &str = "summary.tsv";
 
 const EXAMPLES: &str = "\
@@ -74,8 +78,16 @@ truncated input, 5 not enough memory, 6 input of another version of spmesh, 141 
 /// volumes, contacts and pockets of atoms as balls. The triangulation is exact and canonical: it depends on
 /// the set of points only.
 #[derive(Debug, Parser)]
-#[command(name = "tess3", version, after_help = EXAMPLES)]
+#[command(name = TOOL, version, after_help = EXAMPLES)]
 #[command(mut_arg("stats", |stats| stats.help("Print statistics on stderr")))]
+#[command(mut_arg("out_dir", |folder| folder.help("Sweep: write an output for each file to this folder, and a \
+    summary")))]
+#[command(mut_arg("lof", |list| list.requires("out_dir")))]
+#[command(mut_arg("summary", |summary| summary.help("Where the summary of a sweep goes, a line per mesh: a table, \
+    JSON Lines if the name ends in .jsonl, or Parquet if it ends in .parquet; - is stdout [default: summary.tsv in \
+    the folder]")))]
+#[command(mut_arg("keep_going", |flag| flag.help("Go on with the other files when one fails; this is the \
+    default")))]
 pub struct Flags {
     /// Structure or points; - is stdin. Several only with --out-dir
     #[arg(value_name = "FILE")]
@@ -118,34 +130,15 @@ pub struct Flags {
     #[arg(long, value_name = "FORMAT", value_parser = named(FORMATS))]
     from: Option<Format>,
 
-    /// Sweep: write an output for each file to this folder, and a summary
-    #[arg(long, value_name = "FOLDER")]
-    out_dir: Option<PathBuf>,
-
-    /// File with names of input files, one per line; - is stdin
-    #[arg(long, value_name = "FILE", requires = "out_dir")]
-    lof: Option<PathBuf>,
+    #[command(flatten)]
+    batch: BatchFlags,
 
     /// Number of files of a sweep in parallel, or of threads for one structure [default: one per core]
     #[arg(long, value_name = "N", value_parser = parse_threads())]
     threads: Option<NonZeroUsize>,
 
-    /// Where the summary of a sweep goes, a line per mesh: a table, JSON Lines if the name ends in .jsonl, or
-    /// Parquet if it ends in .parquet; - is stdout [default: summary.tsv in the folder]
-    #[arg(long, value_name = "FILE", requires = "out_dir")]
-    summary: Option<PathBuf>,
-
-    /// Skip the files that an earlier sweep to the same folder has done with the same flags, and that are the
-    /// same still by size, and by time or content
-    #[arg(long, requires = "out_dir")]
-    resume: bool,
-
-    /// Go on with the other files when one fails; this is the default
-    #[arg(long, requires = "out_dir", conflicts_with = "strict")]
-    keep_going: bool,
-
     /// Stop a sweep at the first file that fails
-    #[arg(long, requires = "out_dir")]
+    #[arg(long, requires = "out_dir", conflicts_with = "keep_going")]
     strict: bool,
 
     #[command(flatten)]
@@ -186,8 +179,8 @@ const FORMATS: Names<Format> = &[
 /// As [`crate::tess3::run`] and [`sweep`]; and if files of a sweep failed.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
-    advise_on_memory("tess3", "take fewer points, or fewer --threads in a sweep");
-    let stats = match &flags.out_dir {
+    advise_on_memory(TOOL, "take fewer points, or fewer --threads in a sweep");
+    let stats = match &flags.batch.out_dir {
         Some(folder) => run_sweep(&flags, folder)?,
         None => run_one(&flags)?,
     };
@@ -223,7 +216,7 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     let ending = match options.product {
         Product::Mesh => endings::STREAM,
         Product::Filtration => endings::NUMBERS,
-        _ => tables::ENDINGS,
+        _ => SUMMARY_ENDINGS,
     };
     if picture.is_none() {
         endings::check(&flags.output, &[ending])?;
@@ -261,58 +254,27 @@ fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Resu
 }
 
 fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
-    let shown = flags.summary.clone().unwrap_or_else(|| folder.join(SUMMARY_NAME));
-    endings::check(&shown, &[tables::ENDINGS])?;
-    let is_parquet = TableFormat::of(&shown) == Some(TableFormat::Parquet);
-    // Parquet is written at the end. Until then, and for --resume, the summary is in its usual place.
-    let summary = if is_parquet { folder.join(SUMMARY_NAME) } else { shown.clone() };
-    if flags.resume && summary == Path::new("-") {
-        return Err(Error::usage(
-            "--resume reads the summary of the earlier run: give it a file with --summary",
-        ));
-    }
+    let paths = flags.batch.summary_paths(folder, SUMMARY_NAME)?;
     let options = flags.options()?;
     flags.picture.refuse("does not go with sweeps, which write tables: give -o FILE.ply or FILE.vtu")?;
-    let wanted = Sweep {
-        files: flags.files()?,
-        list: flags.lof.clone(),
-        format: flags.from,
-        options_text: flags.options_text(&options),
+    let batch = Batch {
+        program: TOOL,
         version: env!("CARGO_PKG_VERSION").to_string(),
-        options,
+        files: flags.batch.files(&flags.inputs)?,
+        list: flags.batch.lof.clone(),
+        shared: None,
+        options: flags.options_text(&options),
         folder: folder.to_path_buf(),
-        summary,
-        parquet: is_parquet.then(|| shown.clone()),
-        threads: flags.threads().get(),
-        resume: flags.resume,
+        summary: paths.summary,
+        parquet: paths.parquet,
+        columns: COLUMNS,
+        resume: flags.batch.resume,
         strict: flags.strict,
     };
-    let mut progress = None;
-    let mut done = 0;
-    let outcome = sweep(&wanted, &mut |news| {
-        match news {
-            News::Files(files) => {
-                progress = Some(Progress::counting("files", &flags.common, "triangulating", Some(files)));
-            }
-            News::Done => done += 1,
-            News::Failed(error) => {
-                done += 1;
-                progress.iter().for_each(|bar| bar.say(&format!("tess3: {error}")));
-            }
-        }
-        progress.iter_mut().for_each(|bar| bar.set(done));
-    })?;
-    drop(progress);
-    let Outcome { done, skipped, failed, stats } = outcome;
-    let before = if skipped > 0 { format!(", {skipped} had been done before") } else { String::new() };
-    let summary = if shown == Path::new("-") { String::new() } else { format!("; see {}", shown.display()) };
-    if failed > 0 {
-        let files = counted(done + skipped + failed, "file", "files");
-        let message = format!("{failed} of {files} failed{before}{summary}");
-        return Ok(Finished { stats, failure: Some(Error::new(ErrorKind::Io, message)) });
-    }
-    flags.notice(&format!("{} done{before}{summary}", counted(done, "file", "files")));
-    Ok(Finished { stats, failure: None })
+    let wanted = Sweep { batch, format: flags.from, options, threads: flags.threads().get() };
+    let mut messages = BatchMessages::new(TOOL, "triangulating", &flags.common);
+    let (outcome, stats) = sweep(&wanted, &mut |news| messages.hear(news))?;
+    Ok(Finished { stats, failure: messages.conclude(&outcome, &paths.shown) })
 }
 
 impl Flags {
@@ -325,7 +287,7 @@ impl Flags {
             _ => Product::Mesh,
         };
         // A sweep has threads for its files.
-        let threads = if self.out_dir.is_some() { NonZeroUsize::MIN } else { self.threads() };
+        let threads = if self.batch.out_dir.is_some() { NonZeroUsize::MIN } else { self.threads() };
         let method = self.method.method(threads)?;
         let balls = self.balls.options(product, threads)?;
         let has_weights = product == Product::Filtration || balls.is_some();
@@ -349,7 +311,7 @@ impl Flags {
 
     /// The output of a run without a folder.
     fn output_file(&self) -> Option<&Path> {
-        self.out_dir.is_none().then_some(&*self.output)
+        self.batch.out_dir.is_none().then_some(&*self.output)
     }
 
     fn threads(&self) -> NonZeroUsize {
@@ -382,25 +344,7 @@ impl Flags {
         text + options.balls.as_ref().map_or("", |balls| &balls.text)
     }
 
-    /// The files of the command line, then those of `--lof`.
-    fn files(&self) -> Result<Vec<PathBuf>> {
-        let mut files = self.inputs.clone();
-        if let Some(path) = &self.lof {
-            files.extend(read_list(path)?);
-        }
-        if self.lof.as_deref() == Some(Path::new("-")) && files.iter().any(|file| file == Path::new("-")) {
-            return Err(Error::usage("the list of files and a file cannot both come from stdin"));
-        }
-        if files.is_empty() {
-            return Err(Error::usage("no input: give files, or a list of them with --lof (see --help)"));
-        }
-        if files.iter().any(|file| file == Path::new("-")) {
-            refuse_terminal()?;
-        }
-        Ok(files)
-    }
-
     fn notice(&self, message: &str) {
-        notice("tess3", &self.common, message);
+        notice(TOOL, &self.common, message);
     }
 }

@@ -1,17 +1,17 @@
 //! The files of a plan, as they were when it was made.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::{self, Read};
+use std::fs;
+use std::io;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Component, Path, PathBuf};
 
 use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use spmesh_base::error::{Error, Result};
 use spmesh_base::places::file_and_layer;
+use spmesh_formats::ledger;
 use spmesh_formats::source::Extent;
 use spmesh_stream::model::bounds::Bounds;
 
@@ -140,15 +140,5 @@ fn content_of(path: &Path) -> Result<String> {
 /// The SHA-256 of a file.
 pub(super) fn digest_of(path: &Path) -> Result<[u8; 32]> {
     let reading = |e| Error::io("reading", e).of_input(path.display().to_string());
-    let mut hasher = Sha256::new();
-    let mut file = File::open(path).map_err(reading)?;
-    let mut buffer = vec![0; 1 << 20];
-    loop {
-        match file.read(&mut buffer) {
-            Ok(0) => return Ok(hasher.finalize().into()),
-            Ok(count) => hasher.update(&buffer[..count]),
-            Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
-            Err(e) => return Err(reading(e)),
-        }
-    }
+    Ok(ledger::digest_of(path).map_err(reading)?.0)
 }

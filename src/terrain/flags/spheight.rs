@@ -1,23 +1,36 @@
 //! `spheight`: flags, and the counts of `--stats`.
 
+mod batch;
+mod names;
+
+use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
 
-use crate::height::{Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights};
+use names::ENDINGS;
+
+use crate::height::{
+    Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights, write_text_heights,
+};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::check_apart;
-use spmesh_formats::las::LasFile;
+use spmesh_formats::ledger::{Outcome, modified_of};
+use spmesh_formats::source::PointFile;
+use spmesh_shell::batch::BatchFlags;
+use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
+use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{
     Common, Mesh, MeshReader, Names, Needs, Report, StatsFlag, advise_on_memory, named, notice, of_ending,
-    parse_size, parse_threads, peak_memory, read_list, threads,
+    parse_size, parse_threads, peak_memory, threads,
 };
+use spmesh_stream::Crs;
 use spmesh_stream::model::bounds::Bounds;
 
 const TOOL: &str = "spheight";
@@ -37,6 +50,8 @@ Examples:
     spfinalize tiles/*.laz --keep-class 2 | spdelaunay2d | spheight --ground - tiles/*.laz --out-dir normalized
   Heights instead of elevations, for programs that look at z:
     spheight --ground ground.spm tile.laz --replace-z -o heights.laz
+  A night's work: bad files do not stop the others, and what is done is skipped when it runs again:
+    find tiles -name '*.laz' | spheight --ground ground.spm --lof - --out-dir normalized --keep-going --skip-existing
 ";
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -47,39 +62,49 @@ to a step of the file's z (half away from zero). Without --replace-z, it is a ne
 integers with the scale of z. Points outside of the mesh of the ground have no height there: the field states which \
 integer stands for that. With --replace-z they get the height above the nearest place of the mesh.
 
+Lines of text are written again with one more column of heights, which have as many decimals as the elevation of the \
+first point, from 3 to 9; NaN stands for no height. A line of names gets --name.
+
 COPC files are written as LAZ: their index does not fit the new records. The ground may be larger than memory: its \
 triangles wait in a temporary file (13 bytes each, 19 if coordinates are no integers), and each file is read and written once, in batches. Each output \
 gets its name when it is complete. After a failure, the outputs of earlier files are complete, and there are no others.
 
-Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
+With --keep-going, --skip-existing or --summary, a summary has a line for each file as soon as it is done: its output, \
+whether it failed and why, counts of points, also of those without a height, seconds, and what the output depends on. \
+--skip-existing takes what it says for done if input, ground, flags, version and output are the same still. A file that \
+fails leaves no output of an earlier run.
+
+Exit codes: 0 success, 1 I/O or runtime failure, or a file failed with --keep-going, 2 usage, 3 malformed or truncated input, 5 not enough \
 memory, 6 input of another version of spmesh.";
 
-/// Write LAS and LAZ files again with the heights of their points above the ground.
+/// Write LAS, LAZ and text files again with the heights of their points above the ground.
 ///
-/// Reads a triangle mesh of the ground, as spdelaunay2d writes it, and LAS, LAZ or COPC files.
+/// Reads a triangle mesh of the ground, as spdelaunay2d writes it, and LAS, LAZ or COPC files, or text.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+#[command(mut_arg("crs", |crs| crs.help("The coordinate reference system of text, which states none: EPSG:CODE, \
+    EPSG:CODE+CODE with one for heights, well-known text, or a file of it (.prj)")))]
+#[command(mut_arg("out_dir", |folder| folder.help("Folder for the files with heights, which keep their names; it is \
+    made if necessary")))]
+#[command(mut_arg("summary", |summary| summary.help("Where the summary goes, a line per file: JSON Lines, a table if \
+    the name ends in .tsv, or Parquet if it ends in .parquet; - is stdout [default: summary.jsonl in the folder, with \
+    --keep-going or --skip-existing]")))]
 pub struct Flags {
-    /// LAS, LAZ or COPC files; several only with --out-dir
+    /// LAS, LAZ, COPC or text files; several only with --out-dir
     #[arg(value_name = "FILE")]
     inputs: Vec<PathBuf>,
-
-    /// Read the paths of the files from this list, one a line; - is stdin
-    #[arg(long, value_name = "LIST", conflicts_with = "inputs")]
-    lof: Option<PathBuf>,
 
     /// Stream of the triangle mesh of the ground; - is stdin. Of a mesh in parts, only those below the points
     /// are read
     #[arg(long, value_name = "STREAM")]
     ground: PathBuf,
 
-    /// File for the points with heights: .las or .laz
+    /// File for the points with heights: .las or .laz, or another ending for text
     #[arg(short, long, value_name = "FILE", required_unless_present = "out_dir", conflicts_with = "out_dir")]
     output: Option<PathBuf>,
 
-    /// Folder for the files with heights, which keep their names; it is made if necessary
-    #[arg(long, value_name = "FOLDER")]
-    out_dir: Option<PathBuf>,
+    #[command(flatten)]
+    batch: BatchFlags,
 
     /// Write heights to z instead of a new field. The header states z from 0 on
     #[arg(long)]
@@ -92,7 +117,7 @@ pub struct Flags {
     /// Heights of points outside of the mesh of the ground: none, or those above its nearest place
     /// [default: no-data; with --replace-z, nearest]
     #[arg(long, value_name = "HOW")]
-    #[arg(value_parser = named(&[("no-data", Outside::NoData), ("nearest", Outside::Nearest)]))]
+    #[arg(value_parser = named(OUTSIDE))]
     outside: Option<Outside>,
 
     /// Whether points are compressed [default: by the extension of --output, else as in the input]
@@ -113,11 +138,21 @@ pub struct Flags {
     temp_dir: Option<PathBuf>,
 
     #[command(flatten)]
+    crs: CrsFlag,
+
+    #[command(flatten)]
     stats: StatsFlag,
 
     #[command(flatten)]
     common: Common,
+
+    // The last, as its heading holds for all flags after it.
+    #[command(flatten)]
+    text: TextFlags,
 }
+
+/// The values of `--outside`.
+const OUTSIDE: Names<Outside> = &[("no-data", Outside::NoData), ("nearest", Outside::Nearest)];
 
 /// The values of `--format`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -136,51 +171,107 @@ struct Sums {
     output_bytes: u64,
 }
 
+impl Sums {
+    fn add(&mut self, written: &Written) {
+        let Written { counts, bytes, .. } = written;
+        self.files += 1;
+        self.points += counts.points;
+        self.outside += counts.outside;
+        self.without += counts.without;
+        self.output_bytes += bytes;
+    }
+}
+
+/// What a header states of its points.
+struct Stated {
+    points: u64,
+    bounds: Option<Bounds>,
+}
+
+impl Stated {
+    /// A text states nothing.
+    fn by(file: &PointFile) -> Stated {
+        match file {
+            PointFile::Las(file) => Stated { points: file.points(), bounds: file.stated_bounds() },
+            PointFile::Text(_) => Stated { points: u64::MAX, bounds: None },
+        }
+    }
+}
+
+/// A file with heights.
+struct Written {
+    counts: Counts,
+    bytes: u64,
+    /// When it was last changed: see [`modified_of`].
+    modified: String,
+    notices: Vec<String>,
+}
+
+/// All of a run.
+#[derive(Default)]
+struct Finished {
+    sums: Sums,
+    outcome: Outcome,
+    triangles: u64,
+    ground_bytes: u64,
+    failure: Option<Error>,
+}
+
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`Ground::read`] and [`write_heights`], and if an input or output cannot be opened.
+/// As [`Ground::read`] and [`write_heights`]; if an input or output cannot be opened; and if files of a batch
+/// failed.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     let started = Instant::now();
     let paths = flags.inputs()?;
     let outputs = flags.outputs(&paths)?;
+    outputs.iter().take(1).try_for_each(|output| flags.options(output).map(drop))?;
+    let finished = match &flags.batch {
+        BatchFlags { out_dir: Some(folder), summary, resume, keep_going, .. }
+            if *keep_going || *resume || summary.is_some() =>
+        {
+            batch::run(&flags, folder, paths, outputs)?
+        }
+        _ => run_plain(&flags, &paths, &outputs)?,
+    };
+    if finished.sums.outside > 0 {
+        flags.notice(&flags.about_outside(&finished.sums, finished.triangles > 0));
+    }
+    flags.stats.print(|| Report::of(started.elapsed()).counts(counts(&finished)));
+    finished.failure.map_or(Ok(()), |failure| Err(failure.into()))
+}
+
+/// Writes file by file until one fails.
+fn run_plain(flags: &Flags, paths: &[PathBuf], outputs: &[PathBuf]) -> Result<Finished> {
     // Before the check, which needs the folder to tell its files.
-    if let Some(folder) = &flags.out_dir {
+    if let Some(folder) = &flags.batch.out_dir {
         create_folder(folder)?;
     }
     let flag = if flags.output.is_some() { "--output" } else { "--out-dir" };
     let named: Vec<_> = outputs.iter().map(|output| (flag, output.as_path())).collect();
     check_apart([], &named)?;
     // All headers are looked at before the work begins.
-    let files: Vec<LasFile> = paths.iter().map(|path| flags.open(path)).collect::<Result<_>>()?;
-    let needs = Needs { window: flags.window(&files), beyond: Some("a height above the ground") };
-    let MeshReader { mut reader, window } = Mesh::open(&flags.ground)?.read(&needs)?;
-    outputs.iter().try_for_each(|output| inputs::check_output(output))?;
-    let mut progress = Progress::new(&flags.common, "reading the ground", reader.header().points);
-    let ground = Ground::read(&mut reader, flags.temp_dir.as_deref(), flags.memory, |vertices| {
-        progress.set(vertices)
-    })?
-    .within(window);
-    drop(progress);
-    let total = files.iter().map(LasFile::points).sum();
-    let mut progress = Progress::new(&flags.common, "finding heights", Some(total));
+    let files: Vec<PointFile> =
+        paths.iter().zip(outputs).map(|(path, output)| flags.open(path, output)).collect::<Result<_>>()?;
+    files.iter().flat_map(PointFile::notices).for_each(|text| flags.notice(text));
+    let (ground, ground_bytes) = flags.ground(flags.window(files.iter().map(Stated::by)), outputs)?;
+    let points = |file: &PointFile| match file {
+        PointFile::Las(file) => Some(file.points()),
+        PointFile::Text(_) => None,
+    };
+    let total = files.iter().map(points).sum();
+    let mut progress = Progress::new(&flags.common, "finding heights", total);
     let mut sums = Sums::default();
-    for (file, output) in files.iter().zip(&outputs) {
+    for (file, output) in files.iter().zip(outputs) {
         let before = sums.points;
-        let (counts, bytes) = flags.write(&ground, file, output, |points| progress.set(before + points))?;
-        sums.files += 1;
-        sums.points += counts.points;
-        sums.outside += counts.outside;
-        sums.without += counts.without;
-        sums.output_bytes += bytes;
+        let written = flags.write(&ground, file, output, |points| progress.set(before + points))?;
+        written.notices.iter().for_each(|text| flags.notice(&format!("{}: {text}", file.name())));
+        sums.add(&written);
     }
-    drop(progress);
-    if sums.outside > 0 {
-        flags.notice(&flags.about_outside(&sums, ground.triangles() > 0));
-    }
-    flags.stats.print(|| Report::of(started.elapsed()).counts(counts(&sums, &ground, reader.bytes_read())));
-    Ok(())
+    let outcome = Outcome { done: sums.files, ..Outcome::default() };
+    Ok(Finished { sums, outcome, triangles: ground.triangles(), ground_bytes, failure: None })
 }
 
 impl Flags {
@@ -189,92 +280,76 @@ impl Flags {
     }
 
     fn inputs(&self) -> Result<Vec<PathBuf>> {
-        let inputs = self.lof.as_ref().map_or_else(|| Ok(self.inputs.clone()), |list| read_list(list))?;
         let is_stdin = |path: &&PathBuf| path.as_os_str() == "-";
-        let listed = self.lof.iter().chain([&self.ground]).chain(&inputs).filter(is_stdin).count();
-        match inputs.len() {
-            0 => Err(Error::usage("no input: give LAS or LAZ files (see --help)")),
-            _ if listed > 1 => Err(Error::usage("stdin can be one input only: give the others as files")),
-            2.. if self.output.is_some() => {
-                Err(Error::usage("several files need a folder for their outputs: --out-dir FOLDER"))
-            }
-            _ => Ok(inputs),
-        }
-    }
-
-    /// The output of each input.
-    fn outputs(&self, inputs: &[PathBuf]) -> Result<Vec<PathBuf>> {
-        if let Some(output) = &self.output {
-            let name = output.display().to_string();
-            if stem(&name, ".copc.laz").is_some() {
-                let what = "COPC files are not written: give a name that ends in .laz alone";
-                return Err(Error::usage(what).of_input(name));
-            }
-            if self.format.is_none() && of_ending(ENDINGS, output).is_none() {
-                let what = "points are written to NAME.las or NAME.laz, or choose with --format";
-                return Err(Error::usage(what).of_input(name));
-            }
-            return Ok(vec![output.clone()]);
-        }
-        let folder = self.out_dir.as_deref().unwrap_or(Path::new("."));
-        let output = |input: &PathBuf| -> Result<PathBuf> {
-            let name = input.file_name().filter(|name| *name != "-").and_then(|name| name.to_str());
-            let name = name.ok_or_else(|| {
-                Error::usage("has no name for its output: give --output FILE")
-                    .of_input(input.display().to_string())
-            })?;
-            Ok(folder.join(self.output_name(name)))
+        let check = |files: &[PathBuf]| -> Result<()> {
+            let inputs = self.batch.lof.iter().chain([&self.ground]).chain(files);
+            let is_shared = inputs.filter(is_stdin).count() > 1;
+            let refused = Error::usage("stdin can be one input only: give the others as files");
+            if is_shared { Err(refused) } else { Ok(()) }
         };
-        inputs.iter().map(output).collect()
+        // Before the list is read, and of what it names.
+        check(&self.inputs)?;
+        let files = self.batch.files(&self.inputs)?;
+        check(&files)?;
+        if files.len() > 1 && self.output.is_some() {
+            return Err(Error::usage("several files need a folder for their outputs: --out-dir FOLDER"));
+        }
+        Ok(files)
     }
 
-    /// The name of the output of the file `name`.
-    fn output_name(&self, name: &str) -> String {
-        let name = stem(name, ".gz").unwrap_or_else(|| name.to_string());
-        let name = stem(&name, ".copc.laz").map_or(name, |stem| format!("{stem}.laz"));
-        let end = match self.format {
-            None => return name,
-            Some(FormatFlag::Las) => ".las",
-            Some(FormatFlag::Laz) => ".laz",
-        };
-        let bare = stem(&name, ".las").or_else(|| stem(&name, ".laz")).unwrap_or(name);
-        format!("{bare}{end}")
-    }
-
-    fn open(&self, input: &Path) -> Result<LasFile> {
-        let file = LasFile::open(input, self.temp_dir.as_deref())?;
-        file.notices().iter().for_each(|text| self.notice(text));
+    fn open(&self, input: &Path, output: &Path) -> Result<PointFile> {
+        let file = PointFile::open(input, self.temp_dir.as_deref(), &self.text.options())?;
+        self.check_ending(&file, output)?;
         Ok(file)
+    }
+
+    /// Reads the ground in a window, or all of it; also returns the number of bytes that were read.
+    fn ground(&self, window: Option<Bounds>, outputs: &[PathBuf]) -> Result<(Ground, u64)> {
+        let needs = Needs { window, beyond: Some("a height above the ground") };
+        let MeshReader { mut reader, window } = Mesh::open(&self.ground)?.read(&needs)?;
+        outputs.iter().try_for_each(|output| inputs::check_output(output))?;
+        let mut progress = Progress::new(&self.common, "reading the ground", reader.header().points);
+        let temp_dir = self.temp_dir.as_deref();
+        let ground = Ground::read(&mut reader, temp_dir, self.memory, |vertices| progress.set(vertices))?;
+        Ok((ground.within(window), reader.bytes_read()))
     }
 
     /// The box that the headers of the files state; `None` if the ground is needed beyond it: the place
     /// nearest to a point may be anywhere.
-    fn window(&self, files: &[LasFile]) -> Option<Bounds> {
+    fn window(&self, files: impl IntoIterator<Item = Stated>) -> Option<Bounds> {
         if self.outside() == Outside::Nearest {
             return None;
         }
-        let stated = files.iter().filter(|file| file.points() > 0).map(LasFile::stated_bounds);
+        let stated = files.into_iter().filter(|file| file.points > 0).map(|file| file.bounds);
         let Bounds { min: [x, y, _], max: [max_x, max_y, _] } =
             stated.collect::<Option<Vec<Bounds>>>()?.into_iter().reduce(Bounds::union)?;
         Some(Bounds::over([x, y], [max_x, max_y]))
     }
 
-    /// Writes one file; returns its counts, and the bytes of the output.
+    /// Writes one file.
     fn write(
         &self,
         ground: &Ground,
-        file: &LasFile,
+        file: &PointFile,
         output: &Path,
         progress: impl FnMut(u64),
-    ) -> Result<(Counts, u64)> {
+    ) -> Result<Written> {
         let options = self.options(output)?;
         let created = Output::create(output, true)?;
-        let (written, counts) = write_heights(ground, file, created, &options, progress)?;
-        let bytes = written.bytes_written();
+        let (written, counts) = match file {
+            PointFile::Las(file) => write_heights(ground, file, created, &options, progress)?,
+            PointFile::Text(file) => {
+                let crs = self.crs.system()?.unwrap_or(Crs::Unknown);
+                write_text_heights(ground, file, &crs, created, &options, progress)?
+            }
+        };
         written.commit()?;
+        // Fewer than were written: the header is written twice.
+        let failed = |e| Error::io("looking at the output", e).of_input(output.display().to_string());
+        let found = fs::metadata(output).map_err(failed)?;
         let notices = counts.notices.iter().cloned().chain(about_below(counts.below, counts.points));
-        notices.for_each(|text| self.notice(&format!("{}: {text}", file.name())));
-        Ok((counts, bytes))
+        let (bytes, modified) = (found.len(), modified_of(&found));
+        Ok(Written { bytes, modified, notices: notices.collect(), counts })
     }
 
     fn options(&self, output: &Path) -> Result<FileOptions> {
@@ -321,23 +396,17 @@ impl Flags {
     }
 }
 
-/// A name without an ending, in whatever case; `None` if it has another one.
-fn stem(name: &str, end: &str) -> Option<String> {
-    let at = name.len().checked_sub(end.len())?;
-    name.is_char_boundary(at).then_some(()).filter(|()| name[at..].eq_ignore_ascii_case(end))?;
-    Some(name[..at].to_string())
-}
-
-/// The formats that endings of names stand for.
-const ENDINGS: Names<FormatFlag> = &[("las", FormatFlag::Las), ("laz", FormatFlag::Laz)];
-
-fn counts(sums: &Sums, ground: &Ground, ground_bytes: u64) -> [Row<u64>; 7] {
+fn counts(finished: &Finished) -> [Row<u64>; 10] {
+    let Finished { sums, outcome, triangles, ground_bytes, .. } = finished;
     [
-        ("ground (bytes)", "ground_bytes", ground_bytes),
-        ("triangles of the ground", "triangles", ground.triangles()),
+        ("ground (bytes)", "ground_bytes", *ground_bytes),
+        ("triangles of the ground", "triangles", *triangles),
         ("files", "files", sums.files),
+        ("files done before", "skipped", outcome.skipped),
+        ("files that failed", "failed", outcome.failed),
         ("points", "points", sums.points),
         ("points outside of the ground", "outside", sums.outside),
+        ("points without a height", "without_height", sums.without),
         ("output (bytes)", "output_bytes", sums.output_bytes),
         ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
     ]

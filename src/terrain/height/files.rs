@@ -12,9 +12,9 @@ use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::Point;
 
 /// Most points of a batch.
-const BATCH_MAX: u64 = 1 << 20;
+pub(super) const BATCH_MAX: u64 = 1 << 20;
 /// Bytes of memory for each point of a batch, beside two records.
-const POINT_LEN: u64 = 112;
+pub(super) const POINT_LEN: u64 = 112;
 /// Records that are written at once.
 const PIECE_LEN: usize = 1 << 12;
 

@@ -3,7 +3,7 @@
 //! `ground` puts the triangles of the mesh into blocks of neighbours, in a temporary file (`block_writer`).
 //! For a batch of points, `heights` reads the blocks around them one by one (`blocks`), and each triangle
 //! meets the points near it (`point_grid`). `surface` has the elevation at a place of a triangle; `nearest` finds the
-//! place nearest to a point outside of the mesh. `files` reads and writes LAS and LAZ files; `points` holds
+//! place nearest to a point outside of the mesh. `files` reads and writes LAS and LAZ files, `text` text; `points` holds
 //! heights for `spcanopy`.
 
 mod block_writer;
@@ -16,11 +16,13 @@ mod nearest;
 mod point_grid;
 mod points;
 mod surface;
+mod text;
 
 pub use files::{Counts, FileOptions, HeightPlace, write_heights};
 pub use ground::Ground;
 pub use heights::{Outside, Unit};
 pub use points::{HeightPoints, LayerReader};
+pub use text::write_text_heights;
 
 /// A warning if most of some points are `below` the ground, which happens when z is not the elevation that it
 /// is taken for.

@@ -6,11 +6,12 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use spmesh_formats::drivers::Format;
-use spmesh_formats::las::{Changes, LasCopy, LasFile};
+use spmesh_formats::las::{Changes, LasCopy};
 use spmesh_formats::molecules::{Radii, read_structure_from};
 use spmesh_formats::source::{
-    AttributeChoice, Column, EventSource, Input, Interval, Plain, RawType, Separator, SourceOptions,
-    open_obj, open_ply, open_sma, open_smb, read_ply_surface, read_polylines, read_values,
+    AttributeChoice, Column, EventSource, Input, Interval, Plain, PointFile, RawType, Separator,
+    SourceOptions, TextOptions, open_obj, open_ply, open_sma, open_smb, read_ply_surface, read_polylines,
+    read_values,
 };
 use spmesh_formats::volumes::{
     Condition, From4, RawLayout, Request, Selection, Spacing, parse_sizes, read_points4,
@@ -79,7 +80,9 @@ fn pass(path: &Path, options: SourceOptions) {
 
 /// LAS and LAZ as they are, written again: the records are the same.
 pub fn copy(bytes: &[u8]) {
-    let Ok(source) = LasFile::open(&file_named("tile.las", bytes), None) else { return };
+    let open =
+        |name: &str, bytes: &[u8]| PointFile::open(&file_named(name, bytes), None, &TextOptions::default());
+    let Ok(PointFile::Las(source)) = open("tile.las", bytes) else { return };
     let changes = Changes { field: None, has_new_z: true, is_compressed: bytes.len().is_multiple_of(2) };
     let Ok(mut copy) = LasCopy::start(&source, Cursor::new(Vec::new()), &changes, 1, 1 << 20) else { return };
     let Ok(mut records) = source.records(1) else { return };
@@ -91,7 +94,7 @@ pub fn copy(bytes: &[u8]) {
         }
     }
     let Ok(written) = copy.finish() else { return };
-    let written = LasFile::open(&file_named("copy.las", written.get_ref()), None).expect("a sound file");
+    let Ok(PointFile::Las(written)) = open("copy.las", written.get_ref()) else { panic!("a sound file") };
     let mut records = written.records(1).expect("a sound file");
     let mut found = Vec::new();
     while records.next(&mut batch).map(|()| !batch.is_empty()).expect("a sound file") {

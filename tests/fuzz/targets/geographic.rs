@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use spmesh_formats::crs::{System, differences, geotiff_keys, name};
-use spmesh_formats::source::{read_breaklines, read_polygons};
+use spmesh_formats::source::{Reading, read_breaklines, read_polygons};
 use spmesh_stream::{Coordinates, Crs};
 
 use crate::files::{file, file_named};
@@ -16,7 +16,9 @@ pub fn lines(bytes: &[u8]) {
 }
 
 fn read_both(path: &Path) {
-    if let Ok(found) = read_breaklines(path, usize::MAX) {
+    if let Ok(found) =
+        read_breaklines(path, &Reading { elevation: Some("elev".into()), ..Reading::default() })
+    {
         assert!(found.lines.iter().all(|line| are_finite(&line.vertices)));
     }
     if let Ok((found, _)) = read_polygons(&[path.to_path_buf()], &Coordinates::F64, &Crs::Unknown) {

@@ -7,9 +7,6 @@ use spmesh_base::error::{Error, Result};
 use spmesh_formats::sink::TableFormat;
 use spmesh_shell::Names;
 
-/// Endings of tables. Lines of JSON are no JSON, and tabs no commas, so `.json` and `.csv` are none of them.
-pub(super) const ENDINGS: &[&str] = &["tsv", "txt", "xyz", "jsonl", "ndjson", "parquet"];
-
 /// Values of `--format`.
 pub(super) const NAMES: Names<TableFormat> =
     &[("tsv", TableFormat::Tsv), ("jsonl", TableFormat::JsonLines), ("parquet", TableFormat::Parquet)];

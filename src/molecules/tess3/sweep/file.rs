@@ -4,18 +4,16 @@ use std::collections::{HashMap, HashSet};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::path::{Component, Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::Sweep;
-use super::done::{self, DoneFile, Input};
-use super::summary::{Line, Written};
 use crate::tess3::heap::peak_during;
 use crate::tess3::{ModelName, Options, Product, Report, job};
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, Result};
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::Inputs;
+use spmesh_formats::ledger::{self, Attempt, DoneFile, check_free, contained};
 use spmesh_formats::molecules::{Models, Structure, read_structure};
-use spmesh_formats::source::panic_guard::guarded;
 use spmesh_stream::ends_with_end;
 
 /// A file to triangulate.
@@ -28,58 +26,29 @@ pub(super) struct Job<'f> {
     pub(super) outputs: Vec<PathBuf>,
 }
 
-/// The result of a job.
-#[derive(Debug)]
-pub(super) struct End {
-    pub(super) result: Result<Vec<Model>>,
-    input: Option<Input>,
-    time: Duration,
-    peak_memory: Option<u64>,
-}
+/// The models of a file, and the peak of memory in bytes, if it was measured.
+pub(super) type End = Attempt<Vec<Model>, Option<u64>>;
 
 /// A model that was written.
 #[derive(Debug)]
 pub(super) struct Model {
     pub(super) report: Report,
-    output: PathBuf,
-    bytes: u64,
-    warnings: Vec<String>,
+    /// Path of the output, relative to the folder of outputs.
+    pub(super) output: PathBuf,
+    pub(super) bytes: u64,
+    pub(super) warnings: Vec<String>,
 }
 
-impl End {
-    /// The lines of the summary: one per model, or one for the failure.
-    pub(super) fn lines<'l>(&'l self, file: &'l Path, sweep: &'l Sweep) -> Vec<Line<'l>> {
-        let (options, version) = (&sweep.options_text[..], &sweep.version[..]);
-        let (peak_memory, input) = (self.peak_memory, self.input.as_ref());
-        let line = |time, result| Line { file, options, version, time, peak_memory, input, result };
-        match &self.result {
-            Err(error) => vec![line(self.time, Err(error))],
-            Ok(models) => {
-                let written = models.iter().map(|Model { report, output, bytes, warnings }| {
-                    line(report.times.total(), Ok(Written { report, output, bytes: *bytes, warnings }))
-                });
-                written.collect()
-            }
-        }
-    }
-}
-
-/// Checks before the work that the output of a file replaces none of the files that are `taken`.
-pub(super) fn check(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<()> {
-    check_free(&sweep.folder.join(output_name(&job.stem, &sweep.options, None)), taken)
-}
-
-fn check_free(output: &Path, taken: &Inputs) -> Result<()> {
-    let Some(file) = taken.at(output) else { return Ok(()) };
-    let message = format!("the output would replace {file}: give another --out-dir");
-    Err(Error::usage(message).of_input(output.display().to_string()))
+/// The path of the output of a file that makes one.
+pub(super) fn usual_output(job: &Job<'_>, sweep: &Sweep) -> PathBuf {
+    sweep.batch.folder.join(output_name(&job.stem, &sweep.options, None))
 }
 
 /// The name of the outputs that an earlier sweep made of a file, without the number of a model and the
 /// extension; `None` if it made none of this kind.
-pub(super) fn stem(known: &DoneFile, sweep: &Sweep) -> Option<PathBuf> {
+pub(super) fn stem_of(known: &DoneFile, sweep: &Sweep) -> Option<PathBuf> {
     let ending = ending(&sweep.options);
-    known.outputs().filter(|(output, _)| done::is_inside(output)).find_map(|(output, _)| {
+    known.outputs().find_map(|output| {
         let name = output.to_str()?.strip_suffix(&ending)?;
         let plain = name.rsplit_once(".model").filter(|(_, number)| number.parse::<i64>().is_ok());
         let is_numbered = sweep.options.selection.models == Models::All && sweep.options.is_per_model();
@@ -87,40 +56,24 @@ pub(super) fn stem(known: &DoneFile, sweep: &Sweep) -> Option<PathBuf> {
     })
 }
 
-/// Removes the outputs that an earlier sweep made of a file.
-pub(super) fn remove_earlier(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<()> {
+/// The outputs of this kind that an earlier sweep made of a file.
+pub(super) fn earlier_outputs<'j>(job: &'j Job<'_>, sweep: &Sweep) -> impl Iterator<Item = &'j Path> {
     let ending = ending(&sweep.options);
-    let of_kind = |output: &&PathBuf| output.to_string_lossy().ends_with(&ending);
-    job.outputs.iter().filter(of_kind).try_for_each(|output| remove(&sweep.folder.join(output), taken))
+    let outputs = job.outputs.iter().map(PathBuf::as_path);
+    outputs.filter(move |output| output.to_string_lossy().ends_with(&ending))
 }
 
-/// Removes a file, unless it is one of those that are `taken`, or does not exist.
-fn remove(path: &Path, taken: &Inputs) -> Result<()> {
-    if taken.at(path).is_some() {
-        return Ok(());
-    }
-    match fs::remove_file(path) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-            Err(Error::io("removing the output of an earlier sweep", e).of_input(path.display().to_string()))
-        }
-        _ => Ok(()),
-    }
+/// Whether an output is complete, as far as its content tells.
+pub(super) fn is_whole(output: &Path) -> bool {
+    let is_mesh = output.extension().is_some_and(|extension| extension == "spm");
+    !is_mesh || File::open(output).is_ok_and(|mut file| ends_with_end(&mut file).unwrap_or(false))
 }
 
-/// Triangulates a file. A panic is an error of this file. If it fails, nothing is left under the usual name
-/// of its output.
+/// Triangulates a file.
 pub(super) fn run(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> End {
-    let started = Instant::now();
-    let input = Input::of(job.file).ok().flatten();
-    let (result, peak_memory) = peak_during(|| guarded(|| triangulate(job, sweep, taken)));
-    let result = result.unwrap_or_else(|panic| {
-        let message = format!("internal error: {panic}; please report it with the file");
-        Err(Error::new(ErrorKind::Io, message).of_input(job.file.display().to_string()))
-    });
-    let usual = sweep.folder.join(output_name(&job.stem, &sweep.options, None));
-    let removed = if result.is_err() { remove(&usual, taken) } else { Ok(()) };
-    let result = removed.and(result);
-    End { result, input, time: started.elapsed(), peak_memory }
+    ledger::attempt(job.file, &usual_output(job, sweep), taken, || {
+        peak_during(|| contained(job.file, || triangulate(job, sweep, taken)))
+    })
 }
 
 fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model>> {
@@ -134,7 +87,7 @@ fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model
         let model = model.filter(|_| sweep.options.selection.models == Models::All);
         let model = model.map(|name| if has_distinct_numbers { name.number } else { name.place as i64 });
         let output = output_name(&job.stem, &sweep.options, model);
-        let path = sweep.folder.join(&output);
+        let path = sweep.batch.folder.join(&output);
         create_folder_of(&path)?;
         check_free(&path, taken)?;
         outputs.push(output);
@@ -146,7 +99,7 @@ fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model
     for (i, report) in reports.into_iter().enumerate() {
         // All models share one table.
         let output = outputs[i.min(outputs.len() - 1)].clone();
-        let path = sweep.folder.join(&output);
+        let path = sweep.batch.folder.join(&output);
         let length = fs::metadata(&path).map(|metadata| metadata.len());
         let bytes =
             length.map_err(|e| Error::io("looking at the output", e).of_input(path.display().to_string()))?;
@@ -190,19 +143,6 @@ fn ending(options: &Options) -> String {
 
 fn create_folder_of(path: &Path) -> Result<()> {
     path.parent().map_or(Ok(()), create_folder)
-}
-
-/// Whether the outputs that an earlier run made of a file still exist and are complete, and the file has not
-/// changed.
-pub(super) fn is_still_there(file: &Path, done: &DoneFile, folder: &Path) -> bool {
-    let is_complete = |output: &Path, bytes: u64| -> std::io::Result<bool> {
-        let path = folder.join(output);
-        let mut file = File::open(&path)?;
-        let is_mesh = path.extension().is_some_and(|extension| extension == "spm");
-        Ok(file.metadata()?.len() == bytes && (!is_mesh || ends_with_end(&mut file)?))
-    };
-    done.outputs().all(|(output, bytes)| is_complete(&output, bytes).unwrap_or(false))
-        && done.input().is_some_and(|input| input.is_still(file))
 }
 
 /// Extensions of inputs that denote a format only.

@@ -2,66 +2,52 @@
 
 use std::path::Path;
 
+use crate::tables::{Column, ColumnKind, TableSink};
 use serde_json::{Map, Value};
 use spmesh_base::error::Result;
-use spmesh_formats::sink::{Column, ColumnKind, TableSink};
 
-/// The columns. Readers take them by name; new ones come last.
-pub(super) const COLUMNS: [&str; 18] = [
-    "file",
-    "model",
-    "atoms",
-    "unique_points",
-    "tetrahedra",
-    "hull_facets",
-    "seconds",
-    "peak_memory_bytes",
-    "output",
-    "output_bytes",
-    "options",
-    "error",
-    "warnings",
-    "version",
-    "input_bytes",
-    "input_modified",
-    "input_sha256",
-    "violations",
-];
-
-/// Columns that hold numbers: from `model` to `peak_memory_bytes`, and other counts.
-fn is_number(column: usize) -> bool {
-    (1..8).contains(&column) || matches!(COLUMNS[column], "output_bytes" | "input_bytes" | "violations")
-}
-
-/// The columns with their types.
-pub(super) fn columns() -> Vec<Column> {
-    let kind = |column: usize| match COLUMNS[column] {
-        "seconds" => ColumnKind::Number,
-        _ if is_number(column) => ColumnKind::Integer,
-        _ => ColumnKind::Text,
-    };
-    let named = |(place, name): (usize, &&str)| Column { name: name.to_string(), kind: kind(place) };
-    COLUMNS.iter().enumerate().map(named).collect()
-}
+/// The names and kinds of columns. Readers take them by name; new ones come last.
+pub type Columns = &'static [(&'static str, ColumnKind)];
 
 /// A row: a field for each column, empty if it does not apply.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Row([String; COLUMNS.len()]);
-
-impl Row {
-    pub(super) fn get(&self, column: &str) -> &str {
-        &self.0[place(column)]
-    }
-
-    pub(super) fn set(&mut self, column: &str, value: impl Into<String>) {
-        self.0[place(column)] = value.into();
-    }
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    columns: Columns,
+    fields: Vec<String>,
 }
 
 impl Row {
-    /// Writes it to a table of these columns.
+    /// A row of empty fields.
+    pub(super) fn new(columns: Columns) -> Row {
+        Row { columns, fields: vec![String::new(); columns.len()] }
+    }
+
+    /// The field of a column that there is.
+    pub(super) fn get(&self, column: &str) -> &str {
+        self.find(column).expect("a column of the summary")
+    }
+
+    /// The field of a column; `None` if there is no such column.
+    pub(super) fn find(&self, column: &str) -> Option<&str> {
+        self.place(column).map(|place| &self.fields[place][..])
+    }
+
+    /// Fills the field of a column.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    pub fn set(&mut self, column: &str, value: impl Into<String>) {
+        let place = self.place(column).expect("a column of the summary");
+        self.fields[place] = value.into();
+    }
+
+    fn place(&self, column: &str) -> Option<usize> {
+        self.columns.iter().position(|(name, _)| *name == column)
+    }
+
+    /// Writes it to a table of its columns.
     pub(super) fn write(&self, table: &mut TableSink) -> Result<()> {
-        for (Column { kind, .. }, field) in columns().iter().zip(&self.0) {
+        for ((_, kind), field) in self.columns.iter().zip(&self.fields) {
             match (kind, field.parse::<i64>(), field.parse::<f64>()) {
                 (ColumnKind::Text, ..) if !field.is_empty() => table.field(field),
                 (ColumnKind::Integer, Ok(value), _) => table.integer(value)?,
@@ -73,8 +59,9 @@ impl Row {
     }
 }
 
-fn place(column: &str) -> usize {
-    COLUMNS.iter().position(|&name| name == column).expect("a column of the summary")
+/// The columns as those of a table.
+pub(super) fn table_columns(columns: Columns) -> Vec<Column> {
+    columns.iter().map(|&(name, kind)| Column { name: name.to_string(), kind }).collect()
 }
 
 /// How a summary is written.
@@ -97,54 +84,53 @@ impl Format {
     }
 
     /// What comes before all rows.
-    pub(super) fn head(self) -> String {
+    pub(super) fn head(self, columns: Columns) -> String {
         match self {
-            Format::Tsv => COLUMNS.join("\t") + "\n",
+            Format::Tsv => columns.iter().map(|(name, _)| *name).collect::<Vec<_>>().join("\t") + "\n",
             Format::JsonLines => String::new(),
         }
     }
 
     pub(super) fn line(self, row: &Row) -> String {
         match self {
-            Format::Tsv => row.0.each_ref().map(|field| escaped(field)).join("\t") + "\n",
+            Format::Tsv => {
+                row.fields.iter().map(|field| escaped(field)).collect::<Vec<_>>().join("\t") + "\n"
+            }
             Format::JsonLines => {
-                let fields = COLUMNS.iter().zip(&row.0).enumerate();
+                let fields = row.columns.iter().zip(&row.fields);
                 let object: Map<String, Value> =
-                    fields.map(|(column, (&name, field))| (name.to_string(), value(column, field))).collect();
+                    fields.map(|(&(name, kind), field)| (name.to_string(), value(kind, field))).collect();
                 Value::Object(object).to_string() + "\n"
             }
         }
     }
 
-    /// The row of a line; `None` if it is none.
-    pub(super) fn row(self, line: &str) -> Option<Row> {
-        let mut row = Row::default();
-        match self {
-            Format::Tsv => {
-                let fields: Vec<String> = line.split('\t').map(unescaped).collect();
-                row.0 = fields.try_into().ok()?;
-            }
+    /// The row of a line; `None` if it is none of these columns.
+    pub(super) fn row(self, line: &str, columns: Columns) -> Option<Row> {
+        let fields = match self {
+            Format::Tsv => line.split('\t').map(unescaped).collect(),
             Format::JsonLines => {
                 let object: Map<String, Value> = serde_json::from_str(line).ok()?;
-                for (name, field) in COLUMNS.iter().zip(&mut row.0) {
-                    *field = match object.get(*name)? {
+                let field = |&(name, _): &(&str, ColumnKind)| {
+                    Some(match object.get(name)? {
                         Value::Null => String::new(),
                         Value::String(text) => text.clone(),
                         other => other.to_string(),
-                    };
-                }
+                    })
+                };
+                columns.iter().map(field).collect::<Option<Vec<String>>>()?
             }
-        }
-        Some(row)
+        };
+        (fields.len() == columns.len()).then_some(Row { columns, fields })
     }
 }
 
 /// A field as a value of JSON: null if it is empty.
-fn value(column: usize, field: &str) -> Value {
+fn value(kind: ColumnKind, field: &str) -> Value {
     if field.is_empty() {
         return Value::Null;
     }
-    let number = if is_number(column) { serde_json::from_str(field).ok() } else { None };
+    let number = if kind == ColumnKind::Text { None } else { serde_json::from_str(field).ok() };
     number.unwrap_or_else(|| Value::String(field.to_string()))
 }
 

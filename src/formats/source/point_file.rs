@@ -1,0 +1,66 @@
+//! Files whose points are written again.
+
+use std::path::{Path, PathBuf};
+
+use crate::detect::{Format, SPHEIGHT, read_head};
+use crate::las::LasFile;
+use crate::source::TextOptions;
+use crate::source::input::check_text_options;
+use crate::source::origin::{Admitted, Origin, name_of};
+use crate::text::copy::TextFile;
+use spmesh_base::error::{Error, Result};
+
+/// A file whose points are written again.
+#[derive(Debug)]
+pub enum PointFile {
+    /// LAS, LAZ or COPC.
+    Las(Box<LasFile>),
+    /// Lines of text.
+    Text(Box<TextFile>),
+}
+
+impl PointFile {
+    /// Opens the file at `path` ("-" is stdin) and reads its header, or the first lines of a text.
+    ///
+    /// Cost: the header. Stdin, and LAS files within gzip, are copied to an unlinked temporary file in
+    /// `temp_dir`, or in the system's folder for temporary files.
+    ///
+    /// # Errors
+    /// If the file cannot be opened, is of another format, or its header is damaged; the file is named.
+    pub fn open(path: &Path, temp_dir: Option<&Path>, text: &TextOptions) -> Result<PointFile> {
+        let name = name_of(path);
+        let temp_dir = temp_dir.map_or_else(std::env::temp_dir, PathBuf::from);
+        let mut notices = Vec::new();
+        let origin = Origin::new(path, Admitted::Formats(&SPHEIGHT), &temp_dir, &mut notices)?;
+        let detect = || -> Result<(Format, bool)> {
+            let mut plain = origin.plain()?;
+            let head = read_head(&mut plain).map_err(|e| Error::io("reading", e))?;
+            let format = SPHEIGHT.detect(&head)?;
+            check_text_options(text, format)?;
+            Ok((format, plain.is_compressed()))
+        };
+        let (format, is_compressed) = detect().map_err(|e| e.of_input(&name))?;
+        if format != Format::Las {
+            return Ok(PointFile::Text(Box::new(TextFile::new(name, origin, text, notices)?)));
+        }
+        let origin = if is_compressed { origin.unpacked(&name, &temp_dir, &mut notices) } else { Ok(origin) };
+        let origin = origin.map_err(|e| e.of_input(&name))?;
+        Ok(PointFile::Las(Box::new(LasFile::of(origin, name, notices)?)))
+    }
+
+    /// Its name in messages.
+    pub fn name(&self) -> &str {
+        match self {
+            PointFile::Las(file) => file.name(),
+            PointFile::Text(file) => file.name(),
+        }
+    }
+
+    /// Oddities that the user should know.
+    pub fn notices(&self) -> &[String] {
+        match self {
+            PointFile::Las(file) => file.notices(),
+            PointFile::Text(file) => file.notices(),
+        }
+    }
+}
