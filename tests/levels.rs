@@ -347,3 +347,79 @@ fn levels_that_make_no_sense_are_refused() {
 fn succeed(output: &Output) {
     assert_eq!(outcome(output).0, Some(0), "{}", outcome(output).1);
 }
+
+/// Ground at 50 on a grid with points on the border, and water at 10 that comes in over it.
+#[test]
+fn nothing_dry_is_pulled_down_where_water_is_cut() {
+    let folder = Folder::new();
+    let places = || (0..21).flat_map(|x| (0..21).map(move |y| [10 * x, 10 * y]));
+    let ground = folder
+        .write("ground.txt", places().map(|[x, y]| format!("{x}.00 {y}.00 50.00\n")).collect::<String>());
+    let arms = "[[150,40],[260,40],[260,160],[150,160],[150,140],[240,140],[240,60],[150,60],[150,40]]";
+    let corner = "[[155,260],[155,185],[100,185],[100,280],[280,280],[280,-50],[185,-50],[185,15],[240,15],[240,260],[155,260]]";
+    let island =
+        "[[-90,-90],[290,-90],[290,290],[-90,290],[-90,-90]],[[-3,-3],[203,-3],[203,203],[-3,203],[-3,-3]]";
+    let spike = "[[33,33],[44,44],[66,44],[66,66],[44,66],[44,44],[33,33]]";
+    for (rings, parts) in [(arms, 2), (corner, 2), (island, 0), (spike, 1)] {
+        let rings = format!("[{rings}]");
+        let lake = format!(
+            "{{\"type\":\"Feature\",\"properties\":{{\"level\":10}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":{rings}}}}}"
+        );
+        let [country, levels] = [folder.write("lake.geojson", lake), folder.path("cut.geojson")];
+        let scale = ["--scale", "0.01,0.01,0.01"];
+        let found = run(
+            "spfinalize",
+            &[&scale[..], &["--flatten", &country, "--shore-width", "8", "--levels", &levels, &ground]]
+                .concat(),
+            b"",
+        );
+        assert_eq!(outcome(&found).0, Some(0), "{}", outcome(&found).1);
+        let layer: Value = serde_json::from_slice(&fs::read(&levels).unwrap()).unwrap();
+        let geometry = &layer["features"][0]["geometry"];
+        let count = match geometry["type"].as_str() {
+            None => 0,
+            Some("Polygon") => 1,
+            _ => geometry["coordinates"].as_array().unwrap().len(),
+        };
+        assert_eq!(count, parts, "{rings}");
+        if parts == 0 {
+            continue;
+        }
+        let points = run("spfinalize", &[&scale[..], &["--flatten", &levels, &ground]].concat(), b"");
+        assert_eq!(outcome(&points).0, Some(0), "{}", outcome(&points).1);
+        let mesh = run("spdelaunay2d", &[], &points.stdout).stdout;
+        let output = run("spconstrain", &["--lines", &levels], &mesh);
+        assert_eq!(outcome(&output).0, Some(0), "{}", outcome(&output).1);
+        let wet: Vec<Vec<Place>> = layer_rings(geometry);
+        let is_wet = |place: Place| wet.iter().any(|ring| is_in(ring, place) || distance(ring, place) < 0.01);
+        let mut dry = 0;
+        for [x, y, z] in vertices(&output.stdout) {
+            let place = [x, y].map(|at| at as f64 / 100.0);
+            assert_eq!(z, if is_wet(place) { 1000 } else { 5000 }, "{place:?} of {rings}");
+            dry += usize::from(z == 5000);
+        }
+        assert!(dry > 300);
+    }
+    // A text states no box, so the points say it; and none are no points.
+    let all = [
+        "--flatten",
+        &folder.path("lake.geojson"),
+        "--shore-width",
+        "8",
+        "--levels",
+        &folder.path("cut.geojson"),
+        "--keep-z",
+        "90,99",
+        &ground,
+    ];
+    assert_outcome("spfinalize", &all, b"", 2, "no points");
+}
+
+fn layer_rings(geometry: &Value) -> Vec<Vec<Place>> {
+    let polygons = match geometry["type"].as_str() {
+        Some("Polygon") => vec![geometry["coordinates"].clone()],
+        _ => geometry["coordinates"].as_array().unwrap().clone(),
+    };
+    let place = |vertex: &Value| [0, 1].map(|axis| vertex[axis].as_f64().unwrap());
+    polygons.iter().map(|polygon| polygon[0].as_array().unwrap().iter().map(place).collect()).collect()
+}

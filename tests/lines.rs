@@ -325,4 +325,8 @@ fn properties_state_elevations_and_points_are_vertices() {
         "feature 0: the property elev is \"high\", expected a number",
     );
     assert_outcome("spfinalize", &["--z-field", "elev"], b"", 2, "give --lines, too");
+    let flat = folder.write("flat.geojson", r#"{"type":"LineString","coordinates":[[0,0],[9,0],[9,9]]}"#);
+    let message = "no vertex of --lines has an elevation";
+    assert_outcome("spfinalize", &["--no-points", "--lines", &flat], b"", 2, message);
+    assert_outcome("spfinalize", &["--no-points", "--lines", "-"], text.as_bytes(), 2, "and not stdin");
 }

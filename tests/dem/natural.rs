@@ -1,11 +1,12 @@
 //! Rasters by natural neighbours: the same for every order of triangles, and exact for planes.
 
-use spmesh_formats::raster::Grid;
+use spmesh_delaunay::delaunay2::triangulate;
+use spmesh_formats::raster::{Grid, RasterFormat};
 use spmesh_reference::sets::Random;
 use spmesh_stream::Coordinates;
 use spmesh_terrain::dem::{Options, Quantity};
 
-use super::{Mesh, is_same, options, raster};
+use super::{Mesh, file, is_same, options, raster};
 
 fn natural() -> Options {
     Options { natural: true, ..options(Quantity::Elevation) }
@@ -60,4 +61,35 @@ fn planes_stay_planes_and_points_have_their_elevation() {
         count += 1;
     }
     assert!(count > 1200, "{count}");
+}
+
+#[test]
+fn points_at_centres_keep_their_elevation_though_they_are_no_integers() {
+    let mut random = Random::new(23);
+    for step in [0.7, 30.87, 0.1] {
+        let places: Vec<[i64; 2]> = (0..40).flat_map(|x| (0..40).map(move |y| [x, y])).collect();
+        let at = |[x, y]: [i64; 2]| [(x as f64 + 0.5) * step, (y as f64 + 0.5) * step];
+        let placed: Vec<[f64; 2]> = places.iter().map(|&place| at(place)).collect();
+        let points = placed.iter().map(|&[x, y]| [x, y, random.integer(0, 999) as f64]).collect();
+        let mesh = Mesh { points, triangles: triangulate(&placed).unwrap().simplices().collect() };
+        let grid = Grid { left: 0.0, top: 40.0 * step, step, columns: 40, rows: 40 };
+        let values = raster(&mesh.stream(Coordinates::F64), &grid, &natural());
+        for (&[x, y], point) in places.iter().zip(&mesh.points) {
+            let value = f64::from(values[(39 - y) as usize * 40 + x as usize]);
+            assert!((value - point[2]).abs() < 1e-3, "{value} for {} at {x}, {y} times {step}", point[2]);
+        }
+    }
+}
+
+#[test]
+fn meshes_that_are_not_delaunay_are_refused() {
+    let points = [[0.0, 0.0, 0.0], [10.0, -1.0, 1.0], [20.0, 0.0, 2.0], [10.0, 1.0, 3.0]].to_vec();
+    let grid = Grid { left: 0.0, top: 2.0, step: 1.0, columns: 20, rows: 4 };
+    let of = |triangles: [[u32; 3]; 2]| {
+        let mesh = Mesh { points: points.clone(), triangles: triangles.to_vec() };
+        file(&mesh.stream(Coordinates::F64), RasterFormat::Ascii, &grid, &natural())
+    };
+    assert!(of([[0, 1, 3], [1, 2, 3]]).is_ok());
+    let message = of([[0, 1, 2], [0, 2, 3]]).unwrap_err().to_string();
+    assert!(message.contains("not Delaunay"), "{message}");
 }

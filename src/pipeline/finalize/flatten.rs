@@ -57,7 +57,8 @@ impl Flatten {
         observer: &mut dyn Observer,
     ) -> Result<Levels> {
         let needed = water.need_points();
-        let mut found = self.find(network, water, &needed, points, observer)?;
+        let extent = self.extent(&needed, points.points, observer)?;
+        let mut found = self.find(network, water, &needed, extent, points, observer)?;
         self.settle(network, water, &needed, &mut found, points, observer)
     }
 
@@ -86,10 +87,13 @@ impl Flatten {
         output: &mut dyn Write,
     ) -> Result<Vec<Shore>> {
         let needed = vec![true; water.polygons.len()];
-        let mut found = self.find(network, water, &needed, points, observer)?;
-        let Some((bounds, _)) = found.extent else {
+        // Headers state the box of all points, and not of those that filters keep.
+        let Some((bounds, count)) = extent(points.points, observer)? else {
             return Err(Error::usage("no points: the input has none, or the filters keep none"));
         };
+        let known = (bounds, count);
+        let width = self.stored_width(points.points.description()).unwrap_or_else(|| shore_width(known));
+        let mut found = self.find(network, water, &needed, (Some(known), width), points, observer)?;
         let levels = self.settle(network, water, &needed, &mut found, points, observer)?;
         levels.notices.iter().for_each(|message| observer.notice(message));
         let target = &Target::of_points(points.points.description());
@@ -105,22 +109,26 @@ impl Flatten {
         layer.write(output)
     }
 
-    /// Finds points for the polygons that `needed` says.
+    /// Finds points for the polygons that `needed` says, where the box and the number of the points, and the width
+    /// of shores, are these.
     fn find(
         &self,
         network: &Network,
         water: &Water,
         needed: &[bool],
+        extent: (Option<(Bounds, u64)>, f64),
         points: &Evidence,
         observer: &mut dyn Observer,
     ) -> Result<Found> {
-        let (extent, width) = self.extent(needed, points.points, observer)?;
+        let (extent, width) = extent;
         let mut near = vec![Near::default(); needed.len()];
         if needed.contains(&true) {
             let shores = Shores::new(water.edges(network), needed, width).collect(points.points, observer)?;
             near = shores.into_iter().map(|points| Near { points, ..Near::default() }).collect();
         }
-        if let (Some(input), Some(enough)) = (points.in_water, self.water_points) {
+        if let (Some(input), Some(enough), true) =
+            (points.in_water, self.water_points, needed.contains(&true))
+        {
             let edges = water.edges(network).into_iter().filter(|&(number, _)| needed[number as usize]);
             for (number, inside) in collect_inside(edges, input, observer)? {
                 near[number as usize].take_water(inside, enough);
@@ -162,15 +170,19 @@ impl Flatten {
         points: &dyn Passes,
         observer: &mut dyn Observer,
     ) -> Result<(Option<(Bounds, u64)>, f64)> {
-        let &Description { stated_bounds, stated_points, coordinates, .. } = points.description();
+        let &Description { stated_bounds, stated_points, .. } = points.description();
         let mut known = stated_bounds.zip(stated_points);
         let lacks_width = self.width.is_none() && needed.contains(&true);
         if lacks_width || known.is_none() && needed.contains(&false) && !self.is_part {
             known = extent(points, observer)?;
         }
-        let of_points = || known.map_or(1.0, shore_width);
-        let width = self.width.map_or_else(of_points, |width| stored(width, &coordinates));
-        Ok((known, width))
+        let width = self.stored_width(points.description());
+        Ok((known, width.unwrap_or_else(|| known.map_or(1.0, shore_width))))
+    }
+
+    /// The width of shores in stored units, if one is given.
+    fn stored_width(&self, points: &Description) -> Option<f64> {
+        self.width.map(|width| stored(width, &points.coordinates))
     }
 }
 

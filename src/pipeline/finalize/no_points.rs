@@ -3,23 +3,29 @@
 use std::path::PathBuf;
 
 use super::passes::Passes;
-use spmesh_base::error::Result;
+use spmesh_base::error::{Error, Result};
 use spmesh_formats::source::{Description, PointReader, Reading, SourceOptions, read_breaklines};
-use spmesh_stream::Coordinates;
 use spmesh_stream::model::attributes::Attributes;
 use spmesh_stream::model::bounds::Point;
+use spmesh_stream::{Coordinates, Crs};
 
 /// No points, on the grid and in the system that options ask for.
 pub(super) struct NoPoints(Description);
 
 impl NoPoints {
-    /// The system is that of the first file of lines, if options name none.
+    /// The system is that of the first file of lines that states one, if options name none.
+    ///
+    /// # Errors
+    /// Those of reading lines; usage, if they are to come from stdin, since they are read again.
     pub(super) fn beside(lines: &[PathBuf], options: &SourceOptions) -> Result<NoPoints> {
-        let first = || lines.first().map(|path| read_breaklines(path, &Reading::default())).transpose();
-        let crs = match &options.crs {
-            Some(crs) => crs.clone(),
-            None => first()?.unwrap_or_default().system.crs,
-        };
+        if lines.iter().any(|path| path.as_os_str() == "-") {
+            return Err(Error::usage("--no-points reads lines twice: give a file of --lines, and not stdin"));
+        }
+        let mut crs = options.crs.clone().unwrap_or(Crs::Unknown);
+        let mut files = lines.iter().filter(|_| options.crs.is_none());
+        while let (Crs::Unknown, Some(path)) = (&crs, files.next()) {
+            crs = read_breaklines(path, &Reading::default())?.system.crs;
+        }
         let grid = options.grid.map(|(scale, offset)| Coordinates::I32 { scale, offset });
         Ok(NoPoints(Description {
             coordinates: grid.unwrap_or(Coordinates::F64),

@@ -165,7 +165,8 @@ impl Recipe {
         let levels = if water.polygons.is_empty() {
             Levels::default()
         } else {
-            let in_water = self.open_water_points()?;
+            let is_needed = water.need_points().contains(&true);
+            let in_water = if is_needed { self.open_water_points()? } else { None };
             let in_water = in_water.as_ref().map(|input| Selected::new(input, &areas));
             let points = Evidence { points: &Selected::new(input, &areas), in_water: in_water.as_ref() };
             let levels = self.flatten.levels(&network, &mut water, &points, observer)?;
@@ -181,6 +182,11 @@ impl Recipe {
         stated.extend(&points);
         all.extend(points);
         let added = AddedPoints::new(all);
+        if self.inputs.is_empty() && added.is_empty() {
+            let message =
+                "no vertex of --lines has an elevation: if a property states it, name it with --z-field";
+            return Err(Error::usage(message));
+        }
         let budget = self.budget_beside(&areas, network.vertices.len() + added.len())?;
         drop(network);
         let selected = Selected::new(input, &areas);

@@ -58,7 +58,8 @@ impl Areas {
     /// Number of edges of all polygons, and the bytes that they take.
     pub(super) fn size(&self) -> (usize, u64) {
         let clip = self.clip.as_ref().map(|(clip, _)| clip);
-        let all = clip.into_iter().chain(&self.drop).chain(&self.water).map(Polygons::size);
+        let raise = self.raise.as_ref().map(Raise::size);
+        let all = clip.into_iter().chain(&self.drop).chain(&self.water).map(Polygons::size).chain(raise);
         all.fold((0, 0), |(edges, bytes), (more, more_bytes)| (edges + more, bytes + more_bytes))
     }
 

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::batch::{PointBatch, read_ahead};
 use super::passes::{Observer, Pass, Passes};
+use crate::lines::project;
 use crate::polygons::{Polygons, Side};
 use spmesh_base::error::Result;
 use spmesh_delaunay::cell_tree::{CellTree, Fineness, Item};
@@ -142,7 +143,7 @@ impl Shores {
         let Some((tree, cell)) = self.cells.leaf(place) else { return };
         for &number in tree.list(cell) {
             let (polygon, ends) = self.edges[number as usize];
-            if found.last() != Some(&polygon) && square(ends, place).0 <= self.width * self.width {
+            if found.last() != Some(&polygon) && project(ends, place).1 <= self.width * self.width {
                 found.push(polygon);
             }
         }
@@ -177,6 +178,9 @@ impl Shores {
     }
 }
 
+/// Bytes of an edge with its levels, its cells and as a part of polygons.
+const RAISE_BYTES: u64 = 400;
+
 /// Shores with their levels, to which points near them are raised.
 #[derive(Debug)]
 pub(super) struct Raise {
@@ -198,28 +202,24 @@ impl Raise {
         Raise { shores: Shores::new(edges, &vec![true; polygons], width), levels, coordinates }
     }
 
+    /// Number of edges, and the bytes that they take.
+    pub(super) fn size(&self) -> (usize, u64) {
+        (self.levels.len(), RAISE_BYTES * self.levels.len() as u64)
+    }
+
     /// The elevation of the water at the place of a shore that is nearest to a place, if it is near enough. Of
     /// equally near edges the first counts: so the elevation follows from the shores alone.
     pub(super) fn level(&self, place: Point2) -> Option<f64> {
         let (tree, cell) = self.shores.cells.leaf(place)?;
-        let from = |&edge: &u32| (edge, square(self.shores.edges[edge as usize].1, place));
+        let from = |&edge: &u32| (edge, project(self.shores.edges[edge as usize].1, place));
         let nearest = tree
             .list(cell)
             .iter()
             .map(from)
-            .min_by(|(a, to_a), (b, to_b)| to_a.0.total_cmp(&to_b.0).then(a.cmp(b)));
-        let (edge, (_, along)) =
-            nearest.filter(|(_, (square, _))| *square <= self.shores.width * self.shores.width)?;
+            .min_by(|(a, to_a), (b, to_b)| to_a.1.total_cmp(&to_b.1).then(a.cmp(b)));
+        let (edge, (along, _)) =
+            nearest.filter(|(_, (_, square))| *square <= self.shores.width * self.shores.width)?;
         let [from, to] = self.levels[edge as usize];
         Some(self.coordinates.rounded(from + (to - from) * along))
     }
-}
-
-/// The square of the distance of a place from an edge, and the nearest place on it from 0 to 1, in f64.
-fn square([a, b]: [Point2; 2], [x, y]: Point2) -> (f64, f64) {
-    let [u, v] = [b[0] - a[0], b[1] - a[1]];
-    let square = u * u + v * v;
-    let along = if square > 0.0 { (((x - a[0]) * u + (y - a[1]) * v) / square).clamp(0.0, 1.0) } else { 0.0 };
-    let [p, q] = [x - (a[0] + along * u), y - (a[1] + along * v)];
-    (p * p + q * q, along)
 }

@@ -37,6 +37,9 @@ use spmesh_shell::{
 
 const TOOL: &str = "spfinalize";
 
+/// Most notices about files or lakes that are printed.
+const NOTICES_MAX: usize = 20;
+
 const EXAMPLES: &str = "\
 Examples:
   Triangulate a tile in bounded memory:
@@ -360,6 +363,15 @@ impl Flags {
             anyhow::bail!(Error::usage(message));
         }
         Ok(paths)
+    }
+
+    /// Prints the first of many notices, and how many more there are.
+    fn notice_some(&self, notices: &[String]) {
+        notices.iter().take(NOTICES_MAX).for_each(|message| notice(TOOL, &self.common, message));
+        if notices.len() > NOTICES_MAX {
+            let more = counted((notices.len() - NOTICES_MAX) as u64, "more notice", "more notices");
+            notice(TOOL, &self.common, &format!("{more} like these"));
+        }
     }
 
     /// Files beside those of points.

@@ -45,6 +45,8 @@ pub struct Shore {
     pub source: &'static str,
     /// Number of points that say the level.
     pub points: usize,
+    /// Whether these are points of water, and not those near the shore.
+    pub are_in_water: bool,
     /// The percentile of their elevations by which a level is found.
     pub measured: Option<f64>,
     /// The difference between the elevations with 10 % and with 90 % of all at or below them.
@@ -62,27 +64,28 @@ impl Layer<'_> {
     pub(crate) fn write(&self, output: &mut dyn Write) -> Result<Vec<Shore>> {
         let mut shores = Vec::new();
         for (number, polygon) in self.water.polygons.iter().enumerate() {
-            let rings: Vec<Vec<Point>> = polygon.rings.iter().map(|ring| self.ring(ring)).collect();
-            let inside = rings.iter().map(|ring| cut(ring, &self.bounds, &self.target.coordinates));
-            let inside: Vec<Vec<Point>> = inside.filter(|ring| !ring.is_empty()).collect();
-            if !inside.is_empty() {
-                shores.push((self.shore(number, &rings), inside));
+            let level = self.levels.of_lakes.get(&number).copied();
+            let rings: Vec<Vec<Point>> = polygon.rings.iter().map(|ring| self.ring(ring, level)).collect();
+            let parts = cut(&rings, &self.bounds, &self.target.coordinates);
+            if !parts.is_empty() {
+                shores.push((self.shore(number, level, &rings), parts));
             }
         }
         self.features(&shores, output).map_err(|e| Error::io("writing the levels", e))?;
         Ok(shores.into_iter().map(|(shore, _)| shore).collect())
     }
 
-    /// The vertices of a ring at the level of the water, in stored coordinates.
-    fn ring(&self, ring: &[u32]) -> Vec<Point> {
-        let vertex = |&vertex: &u32| {
-            let [x, y] = self.network.vertices[vertex as usize].place;
-            [x, y, self.levels.elevations.get(&vertex).copied().unwrap_or_default()]
+    /// The vertices of a ring at the level of the water, in stored coordinates. Those of parts that bound no water, as
+    /// a ring has them twice, may have none.
+    fn ring(&self, ring: &[u32], level: Option<f64>) -> Vec<Point> {
+        let vertex = |vertex: &u32| {
+            let [x, y] = self.network.vertices[*vertex as usize].place;
+            [x, y, level.or(self.levels.elevations.get(vertex).copied()).unwrap_or_default()]
         };
         ring.iter().map(vertex).collect()
     }
 
-    fn shore(&self, number: usize, rings: &[Vec<Point>]) -> Shore {
+    fn shore(&self, number: usize, level: Option<f64>, rings: &[Vec<Point>]) -> Shore {
         let (polygon, near) = (&self.water.polygons[number], &self.near[number]);
         let (points, percentile) = near.counting(self.percentile);
         let world = |z: f64| self.target.coordinates.to_decimal([0.0, 0.0, z])[2];
@@ -91,23 +94,38 @@ impl Layer<'_> {
         Shore {
             feature: polygon.position.to_string(),
             river: polygon.river_name(self.water).map(str::to_string),
-            level: polygon.is_lake().then(|| world(rings[0][0][2])),
+            level: level.map(world),
             source: source(polygon, self.water, near).name(),
             points: points.len(),
+            are_in_water: !near.in_water.is_empty(),
             measured: at(percentile).map(world),
             spread: low.zip(high).map(|(low, high)| world(high) - world(low)),
-            below: below(rings, &near.points),
+            below: match level {
+                Some(level) => near.points.iter().filter(|point| point[2] < level).count(),
+                None => below(rings, &near.points),
+            },
         }
     }
 
-    fn features(&self, shores: &[(Shore, Vec<Vec<Point>>)], output: &mut dyn Write) -> io::Result<()> {
+    fn features(&self, shores: &[(Shore, Vec<Vec<Vec<Point>>>)], output: &mut dyn Write) -> io::Result<()> {
         output.write_all(collection_head(epsg_code(&self.target.crs)).as_bytes())?;
-        for (number, (shore, rings)) in shores.iter().enumerate() {
+        for (number, (shore, parts)) in shores.iter().enumerate() {
             output.write_all(if number > 0 { b",\n" } else { b"\n" })?;
             let properties = shore.properties();
-            write!(output, r#"{{"type":"Feature","properties":{properties},"geometry":{{"type":"Polygon","#)?;
-            let rings: Vec<String> = rings.iter().map(|ring| self.coordinates(ring)).collect();
-            write!(output, r#""coordinates":[{}]}}}}"#, rings.join(","))?;
+            let of_part = |rings: &Vec<Vec<Point>>| {
+                let rings: Vec<String> = rings.iter().map(|ring| self.coordinates(ring)).collect();
+                format!("[{}]", rings.join(","))
+            };
+            let (kind, coordinates) = match &parts[..] {
+                [part] => ("Polygon", of_part(part)),
+                parts => {
+                    ("MultiPolygon", format!("[{}]", parts.iter().map(of_part).collect::<Vec<_>>().join(",")))
+                }
+            };
+            write!(
+                output,
+                r#"{{"type":"Feature","properties":{properties},"geometry":{{"type":"{kind}","coordinates":{coordinates}}}}}"#
+            )?;
         }
         output.write_all(b"\n]}\n")?;
         output.flush()

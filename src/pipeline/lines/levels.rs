@@ -16,6 +16,8 @@ pub struct Levels {
     /// Stored elevations of vertices of the network that are on shores or on centre lines inside of their
     /// river.
     pub elevations: BTreeMap<u32, f64>,
+    /// Stored levels of lakes, by the numbers of their polygons.
+    pub(crate) of_lakes: BTreeMap<usize, f64>,
     /// Vertices of the network that only water has that was left out.
     pub(crate) left_out: BTreeSet<u32>,
     /// Levels that were found from points.
@@ -66,6 +68,8 @@ pub(crate) struct Given<'a> {
     pub(crate) near: &'a [Near],
     pub(crate) percentile: f64,
     pub(crate) target: &'a Target,
+    /// The numbers of the polygons of each river.
+    pub(crate) of_rivers: Vec<Vec<usize>>,
 }
 
 impl Levels {
@@ -86,7 +90,7 @@ impl Levels {
         percentile: f64,
         target: &Target,
     ) -> Result<Levels> {
-        let given = Given { network, water, near, percentile, target };
+        let given = Given { network, water, near, percentile, target, of_rivers: water.of_rivers() };
         let mut levels = Levels::default();
         for number in 0..water.rivers.len() {
             levels.river(&given, number)?;
@@ -107,6 +111,7 @@ impl Levels {
             }
             let level = self.lake(given, number)?;
             levels[number] = Some(level);
+            self.of_lakes.insert(number, level);
             for vertex in vertices(network, polygon) {
                 let (known, _) = *of_lakes.entry(vertex).or_insert((level, number));
                 if known != level {

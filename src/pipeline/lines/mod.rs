@@ -44,6 +44,7 @@ use numbered::numbered;
 pub use report::write_report;
 use spmesh_stream::model::bounds::Point;
 pub use stated::{ABOUT_FAR, is_far};
+pub(crate) use stations::project;
 pub use water::{Water, WaterPolygon};
 
 /// The stream that lines are for.

@@ -42,7 +42,7 @@ impl Levels {
                 self.banks(given, (banks, ends), sections, &stations)
             }
             (Course::Centre(centre), _) => {
-                let own = given.water.polygons.iter().filter(|polygon| polygon.river == Some(number));
+                let own = given.of_rivers[number].iter().map(|&polygon| &given.water.polygons[polygon]);
                 own.for_each(|polygon| self.polygon(given, polygon, (centre, &stations)));
                 lowered
             }
@@ -180,12 +180,8 @@ impl River {
 /// The percentile of the points near the shores of a river, or of those in its water, at the stations that are
 /// nearest to them.
 fn near(given: &Given, number: usize, stations: &Stations) -> Vec<Known> {
-    let of_river = || {
-        let all = given.water.polygons.iter().zip(given.near);
-        all.filter(|(polygon, _)| polygon.river == Some(number)).map(|(_, near)| near)
-    };
     let mut at = vec![[Vec::new(), Vec::new()]; stations.places().len()];
-    for near in of_river() {
+    for near in given.of_rivers[number].iter().map(|&polygon| &given.near[polygon]) {
         for (kind, points) in [&near.points, &near.in_water].into_iter().enumerate() {
             points.iter().for_each(|&[x, y, z]| at[stations.nearest([x, y]).vertex()][kind].push(z));
         }

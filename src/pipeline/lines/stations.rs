@@ -183,7 +183,7 @@ fn join([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> [Point2; 2] {
 }
 
 /// The place on a part nearest to another one, from 0 to 1, and the square of their distance.
-fn project([a, b]: [Point2; 2], [x, y]: Point2) -> (f64, f64) {
+pub(crate) fn project([a, b]: [Point2; 2], [x, y]: Point2) -> (f64, f64) {
     let [u, v] = [b[0] - a[0], b[1] - a[1]];
     let square = u * u + v * v;
     let along = if square > 0.0 { ((x - a[0]) * u + (y - a[1]) * v) / square } else { 0.0 };

@@ -191,16 +191,22 @@ impl Water {
         ))
     }
 
+    /// The numbers of the polygons of each river.
+    pub(crate) fn of_rivers(&self) -> Vec<Vec<usize>> {
+        let mut found = vec![Vec::new(); self.rivers.len()];
+        for (number, polygon) in self.polygons.iter().enumerate() {
+            if let Some(river) = polygon.river {
+                found[river].push(number);
+            }
+        }
+        found
+    }
+
     /// Leaves out the polygons that `far` says, and the rivers that lose all of theirs. Returns the vertices
     /// of the network that only these have.
     pub(crate) fn leave_out(&mut self, far: &[bool], network: &Network) -> BTreeSet<u32> {
-        let is_far = |number: &usize| far[*number];
-        let of = |river: usize| {
-            let polygons = self.polygons.iter().enumerate();
-            polygons.filter(move |(_, polygon)| polygon.river == Some(river)).map(|(number, _)| number)
-        };
         let is_lost: Vec<bool> =
-            (0..self.rivers.len()).map(|river| of(river).all(|it| is_far(&it))).collect();
+            self.of_rivers().into_iter().map(|polygons| polygons.into_iter().all(|it| far[it])).collect();
         let [mut left, mut kept] = [BTreeSet::new(), BTreeSet::new()];
         for (polygon, &is_far) in self.polygons.iter().zip(far) {
             if is_far { &mut left } else { &mut kept }.extend(vertices(network, polygon));
@@ -213,7 +219,11 @@ impl Water {
         kept.extend(others.flat_map(|segment| segment.ends));
         let mut far = far.iter();
         self.polygons.retain(|_| far.next() == Some(&false));
-        let number = |river: usize| is_lost[..river].iter().filter(|&&is_lost| !is_lost).count();
+        let lost_before: Vec<usize> = is_lost
+            .iter()
+            .scan(0, |lost, &is_lost| Some(std::mem::replace(lost, *lost + usize::from(is_lost))))
+            .collect();
+        let number = |river: usize| river - lost_before[river];
         self.polygons.iter_mut().for_each(|polygon| polygon.river = polygon.river.map(number));
         let mut lost = is_lost.iter();
         self.rivers.retain(|_| lost.next() == Some(&false));
@@ -254,8 +264,9 @@ pub(crate) fn water(features: &[Feature], bent: &Bent, grid: &Grid) -> Result<Wa
         water.enter(name, lines, bent, grid)?;
     }
     let rings: Vec<&Feature> = features.iter().filter(|feature| feature.polygon().is_some()).collect();
+    let numbers: BTreeMap<&str, usize> = rivers.keys().copied().zip(0..).collect();
     for same in rings.chunk_by(|a, b| a.polygon() == b.polygon()) {
-        let number = |river: &str| rivers.keys().position(|name| *name == river);
+        let number = |river: &str| numbers.get(river).copied();
         let river = same[0].river();
         let own = river.filter(|river| own.contains(river)).map(str::to_string);
         water.polygons.push(WaterPolygon { own, ..polygon(same, river.and_then(number), bent)? });

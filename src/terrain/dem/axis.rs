@@ -138,11 +138,6 @@ impl Centers {
         }
     }
 
-    /// Cells in a unit of area of stored coordinates.
-    pub(super) fn per_area(&self) -> f64 {
-        (self.columns.slope() * self.rows.slope()).abs()
-    }
-
     /// Converts a gradient from stored to world coordinates, all in one unit.
     pub(super) fn gradient_to_world(&self, gradient: Point2) -> Point2 {
         [0, 1].map(|axis| gradient[axis] / self.scale[axis])

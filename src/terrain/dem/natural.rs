@@ -24,16 +24,16 @@ use super::tile_cache::TileCache;
 use crate::accumulators::Accumulators;
 use crate::files::{TilePlace, places};
 use spmesh_base::error::{Error, Result};
-use spmesh_delaunay::predicates::Point2;
+use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2};
 use spmesh_formats::raster::{Grid, TILE};
 use spmesh_stream::model::bounds::Point;
 use std::path::Path;
 
-/// A pair of triangles waits for the hull of the mesh, if the boxes of their circles have more cells than this, and so many
-/// times the cells of their own boxes. In the corners of a raster outside of the hull, the circles of
+/// A pair of triangles waits for the hull of the mesh, if its circles reach so many cells of the raster, and the radius
+/// of one is so many times the longest edge of its triangle. In the corners of a raster outside of the hull, circles of
 /// flat triangles would cover millions of cells without a value.
 const WAITING_CELLS: f64 = 4096.0;
-const WAITING_TIMES: f64 = 64.0;
+const WAITING_TIMES: f64 = 4.0;
 
 /// A sum, and the rest that it does not show.
 type Sum = [f64; 2];
@@ -54,12 +54,14 @@ const BLANK: Weights = Weights { sum: [0.0; 2], elevations: [0.0; 2] };
 #[derive(Debug, Clone, Copy)]
 struct Side {
     ends: [Point; 2],
+    /// The third corner of the triangle.
+    apex: Point2,
     circle: Circle,
 }
 
 /// The weights of the natural neighbours of all cells.
 ///
-/// Memory: the budget for cells, 32 bytes for each; 120 bytes for each edge whose other triangle has not arrived, and 200
+/// Memory: the budget for cells, 32 bytes for each; 240 bytes for each edge whose other triangle has not arrived, and 400
 /// for each edge of triangles so flat that they wait for the end.
 #[derive(Debug)]
 pub(super) struct Natural {
@@ -72,6 +74,7 @@ pub(super) struct Natural {
     wide: [f64; 2],
     /// Elevations are counted from this one.
     base: Option<f64>,
+    predicates: FiniteFloatPredicates,
 }
 
 impl Natural {
@@ -90,6 +93,7 @@ impl Natural {
             waiting: Vec::new(),
             wide: [WAITING_CELLS, WAITING_TIMES],
             base: None,
+            predicates: FiniteFloatPredicates::default(),
         })
     }
 
@@ -101,13 +105,14 @@ impl Natural {
     /// Adds a counterclockwise triangle of vertices with ids, in stored coordinates and with elevations of the world.
     ///
     /// # Errors
-    /// Malformed, if two triangles are on one side of an edge; those of temporary files.
+    /// Malformed, if two triangles are on one side of an edge, or the mesh is not Delaunay there; those of temporary
+    /// files.
     pub(super) fn add(&mut self, vertices: [&(u64, Point); 3]) -> Result<()> {
         self.base.get_or_insert(vertices[0].1[2]);
-        let circle = Circle::around(vertices.map(|(_, corner)| place(*corner)));
+        let circle = Circle::around(vertices.map(|(_, corner)| *corner));
         for turn in 0..3 {
-            let [from, to] = [vertices[turn], vertices[(turn + 1) % 3]];
-            let side = Side { ends: [from.1, to.1], circle };
+            let [from, to, apex] = [0, 1, 2].map(|more| vertices[(turn + more) % 3]);
+            let side = Side { ends: [from.1, to.1], apex: place(apex.1), circle };
             let opposite = match self.open.entry([from.0.min(to.0), from.0.max(to.0)]) {
                 Entry::Vacant(free) => {
                     free.insert(side);
@@ -118,26 +123,35 @@ impl Natural {
             if opposite.ends[0] == side.ends[0] {
                 return Err(Error::malformed("two triangles are on one side of an edge"));
             }
+            if circle.has(opposite.apex, &mut self.predicates) {
+                let [x, y] = opposite.apex;
+                return Err(Error::malformed(format!(
+                    "the mesh is not Delaunay at {x}, {y} (stored coordinates), and natural neighbours are those of Delaunay \
+                     meshes: interpolate linearly, or triangulate its points again"
+                )));
+            }
             // So that numbers do not depend on which triangle came first.
             let pair =
                 if place(side.ends[0]) < place(side.ends[1]) { [side, opposite] } else { [opposite, side] };
-            if self.is_wide(&pair) {
+            let reached = self.cells_of(&pair);
+            if reached > self.wide[0]
+                && pair.iter().any(|side| side.circle.radius > self.wide[1] * side.circle.longest)
+            {
                 self.waiting.push(pair);
-            } else {
+            } else if reached > 0.0 {
                 self.pair(&pair[0], Some(&pair[1].circle), None)?;
             }
         }
         Ok(())
     }
 
-    /// Whether the circles of a pair have many more cells than their triangles.
-    fn is_wide(&self, pair: &[Side; 2]) -> bool {
-        let cells = self.centers.per_area();
-        let of_circles: f64 = pair.iter().map(|side| side.circle.radius.powi(2)).sum::<f64>() * 4.0 * cells;
-        let [a, b] = pair[0].ends;
-        let edge = (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2);
-        let [most, times] = self.wide;
-        of_circles > most && of_circles > times * edge * cells
+    /// How many cells of the raster the box around the circles of a pair has.
+    fn cells_of(&self, pair: &[Side; 2]) -> f64 {
+        let circles = pair.each_ref().map(|side| Some(&side.circle));
+        let [left, right] = extent(&circles, |circle| circle.centre[0], |circle| circle.radius);
+        let [low, high] = extent(&circles, |circle| circle.centre[1], |circle| circle.radius);
+        let (columns, rows) = (self.centers.columns.cells(left, right), self.centers.rows.cells(low, high));
+        columns.len() as f64 * rows.len() as f64
     }
 
     /// Adds what the edges that wait, and those of the hull, give to cells inside of the hull.
@@ -196,12 +210,14 @@ impl Natural {
     #[inline]
     fn cell(
         &mut self,
-        Side { ends, circle }: &Side,
+        Side { ends, circle, .. }: &Side,
         other: Option<&Circle>,
         [column, row]: [u32; 2],
         target: Point2,
     ) -> Result<()> {
-        let is_in = [circle.has(target), other.is_some_and(|other| other.has(target))];
+        let predicates = &mut self.predicates;
+        let is_in =
+            [circle.has(target, predicates), other.is_some_and(|other| other.has(target, predicates))];
         if is_in == [false; 2] {
             return Ok(());
         }
@@ -338,7 +354,7 @@ mod tests {
     fn is_inside(points: &[Point2], triangles: &[[u32; 3]], target: Point2) -> bool {
         let edges = || triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         let hull = edges().filter(|&[a, b]| !edges().any(|other| other == [b, a]));
-        let mut predicates = spmesh_delaunay::predicates::FiniteFloatPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         hull.map(|edge| edge.map(|end| points[end as usize]))
             .all(|[a, b]| predicates.orient2d(a, b, target) == Sign::Positive)
     }
@@ -355,7 +371,7 @@ mod tests {
         let mut natural = Natural::new(centers, &grid, 1 << 24, None).unwrap();
         // All pairs wait for the hull, or only those that would without a test.
         if random.below(2) == 0 {
-            natural.wide = [0.0; 2];
+            natural.wide = [0.0, 0.0];
         }
         for triangle in &triangles {
             let vertices = triangle.map(|vertex| (u64::from(vertex), points[vertex as usize]));

@@ -315,7 +315,7 @@ fn draw_tile(
 
 /// The same triangle, starting at the corner that is least in x, then y, so that values do not depend on the
 /// order of corners in the stream.
-fn least_first([a, b, c]: [Point; 3]) -> [Point; 3] {
+pub(super) fn least_first([a, b, c]: [Point; 3]) -> [Point; 3] {
     let is_less = |p: Point, q: Point| place(p) < place(q);
     if is_less(a, b) && is_less(a, c) {
         [a, b, c]

@@ -124,8 +124,15 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let target = Target::of(reader.header());
     let sources = Sources { lines: &flags.lines.files, hull: &flags.hull, holes: &flags.holes, water: &[] };
     system::give_back_large_blocks();
-    let Lines { network, areas, changes, .. } =
-        lines::read(&sources, &target, &flags.lines.options().within(flags.memory.unwrap_or(u64::MAX)))?;
+    let options = lines::Options { takes_points: true, ..flags.lines.options() };
+    let Lines { network, points, areas, changes, .. } =
+        lines::read(&sources, &target, &options.within(flags.memory.unwrap_or(u64::MAX)))?;
+    if !points.is_empty() {
+        let points = counted(points.len() as u64, "point", "points");
+        flags.notice(&format!(
+            "{points} among the lines left out: with spfinalize --lines, they are vertices of the mesh"
+        ));
+    }
     changes.notices.iter().chain(summary(&changes).as_ref()).for_each(|text| flags.notice(text));
     let kill = length("--kill", flags.kill)?;
     // Half of it is for --kill.

@@ -83,7 +83,7 @@ A cell has the value of the mesh at its centre; outside the mesh there is no dat
 drawn as they arrive. A tile of 256 by 256 cells is written as soon as it is full, so only incomplete tiles \
 take memory. Tiles beyond --memory wait in a temporary file. ESRI grids are written after the last triangle, \
 from the top, with 256 rows in memory. Of a mesh in parts, only the parts in the window of --bounds, --like \
-or --mask are read, but all with --concave and --interpolation natural.
+or --mask are read, but all with --concave or --interpolation natural.
 
 The outline is the convex hull. With --concave L, triangles are outside if a chain of triangles leads to them \
 from the hull in which every crossed edge, first one of the hull, is longer than L; all others stay, also with \

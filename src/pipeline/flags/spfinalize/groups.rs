@@ -59,8 +59,8 @@ pub(super) struct WaterFlags {
     #[arg(long, value_name = "W", value_parser = parse_width, requires = "flatten")]
     shore_width: Option<f64>,
 
-    /// Raise points at most --shore-width away from a shore that are below the water at its nearest place to
-    /// that elevation, so that no water hangs over its shore
+    /// Raise points of the input that are at most --shore-width away from a shore and below the water: to the water
+    /// at the nearest place of the shore
     #[arg(long, requires = "shore_width")]
     raise_shore: bool,
 
@@ -71,7 +71,7 @@ pub(super) struct WaterFlags {
 
     /// With --levels: say which stated levels of lakes differ by more than this from those that points near the
     /// shore have, in the unit of elevations
-    #[arg(long, value_name = "T", default_value_t = 1.0, value_parser = parse_width, requires = "levels")]
+    #[arg(long, value_name = "T", default_value_t = 1.0, value_parser = parse_tolerance, requires = "levels")]
     level_tolerance: f64,
 
     /// With --levels: fail if there are such levels
@@ -89,6 +89,14 @@ fn parse_width(text: &str) -> std::result::Result<f64, String> {
     let [width] = parse_numbers(text)?;
     let is_sound = width > 0.0 && width.is_finite();
     is_sound.then_some(width).ok_or_else(|| format!("{text} is no width: expected a positive number"))
+}
+
+fn parse_tolerance(text: &str) -> std::result::Result<f64, String> {
+    let [tolerance] = parse_numbers(text)?;
+    let is_sound = tolerance >= 0.0 && tolerance.is_finite();
+    is_sound
+        .then_some(tolerance)
+        .ok_or_else(|| format!("{text} is no tolerance: expected a number from 0 on"))
 }
 
 impl WaterFlags {
@@ -122,10 +130,8 @@ impl WaterFlags {
         let of = |shore: &Shore| {
             let [level, measured] = [shore.level, shore.measured].map(Option::unwrap_or_default);
             let points = counted(shore.points as u64, "point", "points");
-            format!(
-                "{}: the level {level} is stated, but {points} near the shore say {measured}",
-                shore.feature
-            )
+            let place = if shore.are_in_water { "in the water" } else { "near the shore" };
+            format!("{}: the level {level} is stated, but {points} {place} say {measured}", shore.feature)
         };
         let notices: Vec<String> = shores.iter().filter(differs).map(of).collect();
         match notices.first() {

@@ -2,13 +2,9 @@
 
 use std::path::Path;
 
-use super::{Flags, TOOL, Watch};
-use spmesh_base::error::counted;
+use super::{Flags, Watch};
 use spmesh_base::output::Output;
-use spmesh_shell::{endings, notice, say};
-
-/// Most notices about lakes that are printed.
-const NOTICES_MAX: usize = 20;
+use spmesh_shell::{endings, say};
 
 /// Writes the layer.
 pub(super) fn write(flags: &Flags, path: &Path) -> anyhow::Result<()> {
@@ -20,19 +16,15 @@ pub(super) fn write(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     let shores = recipe.write_levels(&mut watch, &mut output)?;
     drop(watch);
     let notices = flags.water.check_levels(&shores)?;
-    notices.iter().take(NOTICES_MAX).for_each(|message| notice(TOOL, &flags.common, message));
-    if notices.len() > NOTICES_MAX {
-        let more = counted((notices.len() - NOTICES_MAX) as u64, "more lake", "more lakes");
-        notice(TOOL, &flags.common, &format!("{more} like these"));
-    }
+    flags.notice_some(&notices);
     output.commit()?;
     if !flags.common.quiet && path != Path::new("-") {
         let rivers = shores.iter().filter(|shore| shore.river.is_some()).count();
         let below: usize = shores.iter().map(|shore| shore.below).sum();
         let stated = shores.iter().filter(|shore| shore.is_stated()).count();
         say(&format!(
-            "lakes                {}\nparts of rivers      {rivers}\nlevels stated        {stated}\nlevels from points   \
-             {}\npoints near shores below the water  {below}\n",
+            "lakes                   {}\nparts of rivers         {rivers}\nlevels stated           {stated}\n\
+             levels from points      {}\nshore points below      {below}\n",
             shores.len() - rivers,
             shores.len() - stated
         ));

@@ -39,9 +39,6 @@ const WITH_VALUE: [&str; 11] = [
     "--progress",
 ];
 
-/// Most notices about files that are printed.
-const NOTICES_MAX: usize = 20;
-
 /// Flags of plans.
 #[derive(Debug, Args)]
 pub(super) struct PlanFlags {
@@ -82,7 +79,7 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     endings::check(path, &[endings::JSON])?;
     check_flags(flags)?;
     let mut paths = flags.paths()?;
-    if let Some(stdin) = paths.iter().find(|path| path.as_os_str() == "-") {
+    if let Some(stdin) = paths.iter().chain(flags.beside()).find(|path| path.as_os_str() == "-") {
         let message = "plans need files, which jobs read later: give their names";
         return Err(Error::usage(message).of_input(stdin.display().to_string()).into());
     }
@@ -99,17 +96,7 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     let mut progress = Progress::counting("files", &flags.common, "headers", Some(paths.len() as u64));
     let survey = Survey::of(&paths, &flags.source_options()?, list.is_some(), |done| progress.set(done))?;
     drop(progress);
-    for message in survey.notices.iter().take(NOTICES_MAX) {
-        notice(TOOL, &flags.common, message);
-    }
-    if survey.notices.len() > NOTICES_MAX {
-        let more = survey.notices.len() - NOTICES_MAX;
-        notice(
-            TOOL,
-            &flags.common,
-            &format!("{} like these", counted(more as u64, "more notice", "more notices")),
-        );
-    }
+    flags.notice_some(&survey.notices);
     leave_out(&mut paths, &survey, &mut bad)?;
     let skipped = bad.skipped(&given);
     let leaf_points = flags.plan.leaf_points.unwrap_or(LEAF_POINTS);
