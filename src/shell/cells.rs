@@ -84,12 +84,13 @@ pub struct RasterFlags {
     #[arg(long)]
     cog: bool,
 
-    #[command(flatten)]
-    geotiff: GeoTiffFlags,
-
     /// Folder for temporary files [default: the system's]
     #[arg(long, value_name = "FOLDER")]
     temp_dir: Option<PathBuf>,
+
+    // Flags behind those of another struct would be in no group.
+    #[command(flatten)]
+    geotiff: GeoTiffFlags,
 }
 
 impl RasterFlags {

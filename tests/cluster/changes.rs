@@ -87,9 +87,10 @@ fn plans_move_with_their_roots() {
     let moved = format!("survey={there}");
     assert_eq!(succeed(&missing(&moved)), "");
     assert_eq!(missing("other=/").status.code(), Some(2));
-    let twice = ["--plan", &plan, "--root", &moved, "--root", "survey=/", &tile];
+    let moved_tile = folder.path("there/a.txt");
+    let twice = ["--plan", &plan, "--root", &moved, "--root", "survey=/", &moved_tile];
     assert_outcome("spfinalize", &twice, &[], 2, "the root \"survey\" is given twice");
-    assert_outcome("spfinalize", &["--plan", &plan, "--root", &root, &tile], &[], 1, "is no folder");
+    assert_outcome("spfinalize", &["--plan", &plan, "--root", &root, &moved_tile], &[], 1, "is no folder");
     folder.write("there/a.txt", text.replacen('1', "2", 1));
     assert_eq!(missing(&moved).status.code(), Some(2));
 }

@@ -74,7 +74,9 @@ fn points_at_centres_keep_their_elevation_though_they_are_no_integers() {
         let mesh = Mesh { points, triangles: triangulate(&placed).unwrap().simplices().collect() };
         let grid = Grid { left: 0.0, top: 40.0 * step, step, columns: 40, rows: 40 };
         let values = raster(&mesh.stream(Coordinates::F64), &grid, &natural());
-        for (&[x, y], point) in places.iter().zip(&mesh.points) {
+        // Rounding puts some centres at the border outside.
+        let is_inner = |[x, y]: [i64; 2]| (1..39).contains(&x) && (1..39).contains(&y);
+        for (&[x, y], point) in places.iter().zip(&mesh.points).filter(|(place, _)| is_inner(**place)) {
             let value = f64::from(values[(39 - y) as usize * 40 + x as usize]);
             assert!((value - point[2]).abs() < 1e-3, "{value} for {} at {x}, {y} times {step}", point[2]);
         }

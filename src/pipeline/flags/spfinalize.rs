@@ -227,6 +227,7 @@ const SPOOLING: Names<Spooling> =
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     system::give_back_large_blocks();
+    flags.lines.check(!flags.water.files().is_empty())?;
     if let Some(plan) = &flags.plan.plan {
         return planning::make(&flags, plan);
     }
@@ -234,7 +235,6 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         return levels::write(&flags, levels);
     }
     let mut recipe = flags.recipe()?;
-    flags.lines.check(!flags.water.files().is_empty())?;
     // Fail before the work if the output cannot be created.
     let mut output = Output::create(&flags.output, true)?;
     recipe.inputs = flags.paths()?;
