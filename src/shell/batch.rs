@@ -10,7 +10,8 @@ use spmesh_base::error::{Error, ErrorKind, Result, counted};
 use spmesh_formats::ledger::{News, Outcome};
 use spmesh_formats::sink::TableFormat;
 
-/// Endings of summaries. Lines of JSON are no JSON, and tabs no commas, so `.json` and `.csv` are none of them.
+/// Endings of summaries. Lines of JSON are no JSON, and tabs no commas, so `.json` and `.csv` are none of
+/// them.
 pub const SUMMARY_ENDINGS: &[&str] = &["tsv", "txt", "xyz", "jsonl", "ndjson", "parquet"];
 
 /// Flags of programs that turn many files into outputs in a folder.
@@ -20,18 +21,18 @@ pub struct BatchFlags {
     #[arg(long, value_name = "FOLDER")]
     pub out_dir: Option<PathBuf>,
 
-    /// File with names of input files, one per line; - is stdin. Empty lines and lines that start with # do not
-    /// count
+    /// File with names of input files, one per line; - is stdin. Empty lines and lines that start with # do
+    /// not count
     #[arg(long, value_name = "FILE")]
     pub lof: Option<PathBuf>,
 
-    /// Where the summary goes, a line per output: a table, JSON Lines if the name ends in .jsonl, or Parquet if
-    /// it ends in .parquet; - is stdout
+    /// Where the summary goes, a line per output: a table, JSON Lines if the name ends in .jsonl, or Parquet
+    /// if it ends in .parquet; - is stdout
     #[arg(long, value_name = "FILE", requires = "out_dir")]
     pub summary: Option<PathBuf>,
 
-    /// Skip the files that an earlier run to the same folder has done with the same flags, and that are the same
-    /// still by size, and by time or content
+    /// Skip the files that an earlier run to the same folder has done with the same flags, and that are the
+    /// same still by size, and by time or content
     #[arg(long, requires = "out_dir", visible_alias = "skip-existing")]
     pub resume: bool,
 

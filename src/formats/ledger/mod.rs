@@ -1,8 +1,8 @@
-//! The ledger of a batch: which files are done, by which inputs and options, in a summary that grows with each
-//! file. A later run reads it, and does what is new, changed or failed alone.
+//! The ledger of a batch: which files are done, by which inputs and options, in a summary that grows with
+//! each file. A later run reads it, and does what is new, changed or failed alone.
 //!
-//! [`Ledger::open`] locks the folder and the summary and reads what was done; [`Ledger::left_to_do`] says which
-//! files are left; [`Ledger::start`] begins the new summary, and [`Running::run`] does the work.
+//! [`Ledger::open`] locks the folder and the summary and reads what was done; [`Ledger::left_to_do`] says
+//! which files are left; [`Ledger::start`] begins the new summary, and [`Running::run`] does the work.
 
 mod done;
 mod lock;
@@ -133,8 +133,8 @@ impl<'b> Ledger<'b> {
         Ok(Ledger { batch, done, earlier, shared, taken, skipped: 0, folder_lock, summary_lock })
     }
 
-    /// The files that are not done yet; `skip` is called for the others. `is_whole` looks into an output of the
-    /// right length. If files are left, the state of the shared file is noted, before anything reads it.
+    /// The files that are not done yet; `skip` is called for the others. `is_whole` looks into an output of
+    /// the right length. If files are left, the state of the shared file is noted, before anything reads it.
     ///
     /// # Errors
     /// If the shared file cannot be read.
@@ -200,8 +200,8 @@ impl<'b> Ledger<'b> {
         check_free(output, &self.taken)
     }
 
-    /// Begins the new summary with what stays done. Removes outputs of an earlier run that will be made again, so
-    /// that none is stale, whenever the batch ends.
+    /// Begins the new summary with what stays done. Removes outputs of an earlier run that will be made
+    /// again, so that none is stale, whenever the batch ends.
     ///
     /// # Errors
     /// If the folder or the summary cannot be written, or an output cannot be removed.

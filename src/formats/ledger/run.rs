@@ -49,8 +49,8 @@ pub struct Attempt<T, N> {
     pub time: Duration,
 }
 
-/// Works on a file. If that fails, nothing is left under the name `output`, unless it is one of the files that
-/// are `taken`.
+/// Works on a file. If that fails, nothing is left under the name `output`, unless it is one of the files
+/// that are `taken`.
 pub fn attempt<T, N>(
     file: &Path,
     output: &Path,
@@ -88,8 +88,8 @@ pub struct Running<'b> {
 }
 
 impl Running<'_> {
-    /// Works on files, `threads` at the same time. `work` gets the files that no output may replace; `rows` makes
-    /// the rows of a file, on the calling thread. Each file is reported to `listener`.
+    /// Works on files, `threads` at the same time. `work` gets the files that no output may replace; `rows`
+    /// makes the rows of a file, on the calling thread. Each file is reported to `listener`.
     ///
     /// # Errors
     /// If the summary cannot be written, or its reader closes it. In a strict batch, the error of the first file

@@ -78,8 +78,8 @@ pub struct Properties {
 pub struct Reading {
     /// Memory has room for so many vertices.
     pub vertices_max: usize,
-    /// Name of a property that states the elevation of all vertices of a feature that has it, in place of third
-    /// coordinates.
+    /// Name of a property that states the elevation of all vertices of a feature that has it, in place of
+    /// third coordinates.
     pub elevation: Option<Arc<str>>,
 }
 

@@ -9,8 +9,9 @@ use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::decimal::Decimal;
 use spmesh_stream::{Crs, Event, Header, Kind};
 
-/// The start of a collection of features, up to the first of them. With an EPSG code, the collection has the member `crs` of the 2008 specification. RFC 7946 removed it and, without prior
-/// arrangement, allows only longitude and latitude in WGS 84; programs that know the member still read it.
+/// The start of a collection of features, up to the first of them. With an EPSG code, the collection has the
+/// member `crs` of the 2008 specification. RFC 7946 removed it and, without prior arrangement, allows only
+/// longitude and latitude in WGS 84; programs that know the member still read it.
 pub fn collection_head(code: Option<u32>) -> String {
     let member = code.map_or_else(String::new, |code| {
         format!(r#""crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::{code}"}}}},"#)

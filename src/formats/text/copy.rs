@@ -96,8 +96,8 @@ enum LineKind {
 }
 
 impl TextLines<'_> {
-    /// Replaces the content of `batch` with the next lines: `most` points, and as many bytes of text, at most;
-    /// leaves it empty at the end.
+    /// Replaces the content of `batch` with the next lines: `most` points, and as many bytes of text, at
+    /// most; leaves it empty at the end.
     ///
     /// # Errors
     /// If reading fails, or a line is no point with finite coordinates; file and line are named.
@@ -167,8 +167,8 @@ impl TextLines<'_> {
         batch.lines.push(CopiedLine { end: batch.text.len(), column, separator, kind });
     }
 
-    /// A comment before the first point that names the columns gets one name more: otherwise they would have no
-    /// names for a reader that counts.
+    /// A comment before the first point that names the columns gets one name more: otherwise they would have
+    /// no names for a reader that counts.
     fn name_comment(&self, batch: &mut TextBatch) {
         let columns = &self.file.columns;
         let Some(at) = self.comment.filter(|_| columns.names_line.is_none()) else { return };
@@ -195,8 +195,8 @@ impl TextBatch {
         self.lines.is_empty()
     }
 
-    /// Writes its lines. Those of points get one of the `values`, NaN where it is unknown; a line of names gets
-    /// `name`.
+    /// Writes its lines. Those of points get one of the `values`, NaN where it is unknown; a line of names
+    /// gets `name`.
     ///
     /// # Errors
     /// If writing fails.

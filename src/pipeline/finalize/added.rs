@@ -32,8 +32,8 @@ pub(super) struct AddedPoints {
 }
 
 impl AddedPoints {
-    /// Adds points, in stored coordinates of the input, to an input of the plane. Of several at one place, the
-    /// first one counts.
+    /// Adds points, in stored coordinates of the input, to an input of the plane. Of several at one place,
+    /// the first one counts.
     pub(super) fn new(mut points: Vec<Point>) -> AddedPoints {
         points.sort_by(by_place);
         points.dedup_by(|a, b| by_place(a, b).is_eq());

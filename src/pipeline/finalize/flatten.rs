@@ -109,8 +109,8 @@ impl Flatten {
         layer.write(output)
     }
 
-    /// Finds points for the polygons that `needed` says, where the box and the number of the points, and the width
-    /// of shores, are these.
+    /// Finds points for the polygons that `needed` says, where the box and the number of the points, and the
+    /// width of shores, are these.
     fn find(
         &self,
         network: &Network,
@@ -194,8 +194,8 @@ fn stored(width: f64, coordinates: &Coordinates) -> f64 {
     }
 }
 
-/// Which polygons are far from all points: those without points near them whose box is beyond that of the points,
-/// or that have no points inside, though their level would be found from some.
+/// Which polygons are far from all points: those without points near them whose box is beyond that of the
+/// points, or that have no points inside, though their level would be found from some.
 fn far(
     network: &Network,
     water: &Water,

@@ -132,8 +132,8 @@ impl Recipe {
         Input::open(&self.inputs, &source).map(Some)
     }
 
-    /// Writes the lakes and rivers with their levels as GeoJSON, and no points. Returns what is said of each, and
-    /// messages for the user.
+    /// Writes the lakes and rivers with their levels as GeoJSON, and no points. Returns what is said of each,
+    /// and messages for the user.
     ///
     /// # Errors
     /// Those of reading and writing; malformed, if a polygon has neither a level nor points, or

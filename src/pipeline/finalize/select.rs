@@ -49,8 +49,8 @@ impl Areas {
         Ok((Areas::new((!clip.is_empty()).then_some(&kept[..]), &dropped), notices))
     }
 
-    /// Drops points in water, too, and those on its shores: the edges of its polygons with their numbers. Points
-    /// near shores are raised to the water, if that is asked for.
+    /// Drops points in water, too, and those on its shores: the edges of its polygons with their numbers.
+    /// Points near shores are raised to the water, if that is asked for.
     pub(super) fn with_water(self, edges: Vec<(u32, [Point2; 2])>, raise: Option<Raise>) -> Areas {
         Areas { water: Some(Polygons::of_edges(edges.into_iter())), raise, ..self }
     }

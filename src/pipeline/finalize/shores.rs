@@ -207,8 +207,8 @@ impl Raise {
         (self.levels.len(), RAISE_BYTES * self.levels.len() as u64)
     }
 
-    /// The elevation of the water at the place of a shore that is nearest to a place, if it is near enough. Of
-    /// equally near edges the first counts: so the elevation follows from the shores alone.
+    /// The elevation of the water at the place of a shore that is nearest to a place, if it is near enough.
+    /// Of equally near edges the first counts: so the elevation follows from the shores alone.
     pub(super) fn level(&self, place: Point2) -> Option<f64> {
         let (tree, cell) = self.shores.cells.leaf(place)?;
         let from = |&edge: &u32| (edge, project(self.shores.edges[edge as usize].1, place));

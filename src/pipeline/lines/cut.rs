@@ -1,9 +1,9 @@
 //! Polygons of water, cut at the box of the points.
 //!
-//! Each side of the box cuts each ring in turn (Sutherland and Hodgman 1974). What is left of a ring may run along
-//! a side and back, through dry ground. So edges are divided where vertices are on them, those that all rings together
-//! have an even number of times are left out, as they bound nothing by the even-odd rule, and the rest
-//! are made rings again.
+//! Each side of the box cuts each ring in turn (Sutherland and Hodgman 1974). What is left of a ring may run
+//! along a side and back, through dry ground. So edges are divided where vertices are on them, those that all
+//! rings together have an even number of times are left out, as they bound nothing by the even-odd rule, and
+//! the rest are made rings again.
 
 use std::collections::BTreeMap;
 
@@ -15,8 +15,8 @@ use spmesh_stream::model::points::Point2;
 /// A closed chain of vertices: the first one is also the last.
 type Ring = Vec<Point>;
 
-/// The parts of a polygon inside of a box: each of them is its outer ring and its holes. Elevations are interpolated
-/// along what is cut.
+/// The parts of a polygon inside of a box: each of them is its outer ring and its holes. Elevations are
+/// interpolated along what is cut.
 pub(super) fn cut(rings: &[Ring], bounds: &Bounds, coordinates: &Coordinates) -> Vec<Vec<Ring>> {
     let clipped: Vec<Ring> = rings.iter().map(|ring| clip(ring, bounds, coordinates)).collect();
     nested(chains(&edges(&clipped, bounds)))
@@ -31,8 +31,8 @@ fn key(point: &Point) -> [u64; 2] {
     })
 }
 
-/// The edges that all rings together have an odd number of times. Those along a side of the box are divided at all
-/// vertices there.
+/// The edges that all rings together have an odd number of times. Those along a side of the box are divided
+/// at all vertices there.
 fn edges(rings: &[Ring], bounds: &Bounds) -> Vec<[Point; 2]> {
     let sides = [(0, bounds.min[0]), (0, bounds.max[0]), (1, bounds.min[1]), (1, bounds.max[1])];
     let along = sides.map(|(axis, at)| {
@@ -97,8 +97,8 @@ fn chains(edges: &[[Point; 2]]) -> Vec<Ring> {
     found
 }
 
-/// Rings as polygons: those in an even number of others are outer ones, and the others holes of the one of these that
-/// is next around them.
+/// Rings as polygons: those in an even number of others are outer ones, and the others holes of the one of
+/// these that is next around them.
 fn nested(rings: Vec<Ring>) -> Vec<Vec<Ring>> {
     if rings.len() < 2 {
         return rings.into_iter().map(|ring| vec![ring]).collect();

@@ -75,8 +75,8 @@ impl Layer<'_> {
         Ok(shores.into_iter().map(|(shore, _)| shore).collect())
     }
 
-    /// The vertices of a ring at the level of the water, in stored coordinates. Those of parts that bound no water, as
-    /// a ring has them twice, may have none.
+    /// The vertices of a ring at the level of the water, in stored coordinates. Those of parts that bound no
+    /// water, as a ring has them twice, may have none.
     fn ring(&self, ring: &[u32], level: Option<f64>) -> Vec<Point> {
         let vertex = |vertex: &u32| {
             let [x, y] = self.network.vertices[*vertex as usize].place;

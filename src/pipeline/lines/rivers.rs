@@ -177,8 +177,8 @@ impl River {
     }
 }
 
-/// The percentile of the points near the shores of a river, or of those in its water, at the stations that are
-/// nearest to them.
+/// The percentile of the points near the shores of a river, or of those in its water, at the stations that
+/// are nearest to them.
 fn near(given: &Given, number: usize, stations: &Stations) -> Vec<Known> {
     let mut at = vec![[Vec::new(), Vec::new()]; stations.places().len()];
     for near in given.of_rivers[number].iter().map(|&polygon| &given.near[polygon]) {

@@ -46,8 +46,8 @@ impl Circle {
         ((self.radius - away) * (self.radius + away)).max(0.0).sqrt() + 1e-12 * self.radius
     }
 
-    /// Whether a place is inside, exactly: where weights are as small as errors, as at points, a wrong answer would
-    /// be a value of errors alone.
+    /// Whether a place is inside, exactly: where weights are as small as errors, as at points, a wrong answer
+    /// would be a value of errors alone.
     #[inline]
     pub(super) fn has(&self, place: Point2, predicates: &mut FiniteFloatPredicates) -> bool {
         let [x, y] = [place[0] - self.corners[0][0], place[1] - self.corners[0][1]];

@@ -1,14 +1,14 @@
 //! `spdem`: triangles in, a raster out.
 //!
 //! A cell has the value of the triangle that contains its centre. Triangles are drawn as they arrive, in any
-//! order, by the `rasterizer`. `axis` places the centres. `span` finds exactly the centres in a
-//! triangle, with the help of `search` where rounding leaves doubts. `facet` is the plane of a triangle. A
-//! `tile` holds cells; `tile_cache` holds all tiles, some of them in a temporary file. After the last
-//! triangle, `flush` passes on the remaining tiles, whose holes `fill` fills; `derived` has the slopes there.
-//! `cell_mask` finds the cells in polygons. For `--sample`, `covering` passes triangles to a thread, where
-//! `cut` cuts them at the sides of cells and `coverage` holds what each cell has got. `natural` interpolates by
-//! natural neighbours, in the `circle` of each triangle. Complete tiles go
-//! through `stages`: `neighbours` derives slopes from the cells of elevations.
+//! order, by the `rasterizer`. `axis` places the centres. `span` finds exactly the centres in a triangle,
+//! with the help of `search` where rounding leaves doubts. `facet` is the plane of a triangle. A `tile` holds
+//! cells; `tile_cache` holds all tiles, some of them in a temporary file. After the last triangle, `flush`
+//! passes on the remaining tiles, whose holes `fill` fills; `derived` has the slopes there. `cell_mask` finds
+//! the cells in polygons. For `--sample`, `covering` passes triangles to a thread, where `cut` cuts them at
+//! the sides of cells and `coverage` holds what each cell has got. `natural` interpolates by natural
+//! neighbours, in the `circle` of each triangle. Complete tiles go through `stages`: `neighbours` derives
+//! slopes from the cells of elevations.
 
 mod axis;
 mod cell_mask;

@@ -1,16 +1,16 @@
 //! Natural neighbour interpolation while triangles arrive.
 //!
-//! If the centre of a cell was a vertex, its Voronoi cell would take a part of the area of those of its neighbours;
-//! the part of a neighbour is its weight (Sibson 1981). Half of the boundary of what a neighbour loses is its own
-//! Voronoi cell: between the circumcentres of triangles whose circles have the centre inside, and up to where the
-//! bisectors of the centre cut it. The other half is on the bisector of the two. Seen from the point halfway
-//! between both, which is on that bisector, the area of the second half is zero. So each edge of the mesh adds
-//! its own part to the weights of its ends, from its two triangles alone, in any order: no cavity is ever
-//! built, and no triangle waits but for the neighbour at each of its edges.
+//! If the centre of a cell was a vertex, its Voronoi cell would take a part of the area of those of its
+//! neighbours; the part of a neighbour is its weight (Sibson 1981). Half of the boundary of what a neighbour
+//! loses is its own Voronoi cell: between the circumcentres of triangles whose circles have the centre
+//! inside, and up to where the bisectors of the centre cut it. The other half is on the bisector of the two.
+//! Seen from the point halfway between both, which is on that bisector, the area of the second half is zero.
+//! So each edge of the mesh adds its own part to the weights of its ends, from its two triangles alone, in
+//! any order: no cavity is ever built, and no triangle waits but for the neighbour at each of its edges.
 //!
 //! Where an edge bounds the triangles whose circles have the centre, its bisectors meet between the two
-//! circumcentres, so no part is much greater than the weights. Sums are kept in two numbers each, so that what
-//! the order of edges changes is far below the digits of a raster.
+//! circumcentres, so no part is much greater than the weights. Sums are kept in two numbers each, so that
+//! what the order of edges changes is far below the digits of a raster.
 
 use std::collections::hash_map::Entry;
 
@@ -29,9 +29,9 @@ use spmesh_formats::raster::{Grid, TILE};
 use spmesh_stream::model::bounds::Point;
 use std::path::Path;
 
-/// A pair of triangles waits for the hull of the mesh, if its circles reach so many cells of the raster, and the radius
-/// of one is so many times the longest edge of its triangle. In the corners of a raster outside of the hull, circles of
-/// flat triangles would cover millions of cells without a value.
+/// A pair of triangles waits for the hull of the mesh, if its circles reach so many cells of the raster, and
+/// the radius of one is so many times the longest edge of its triangle. In the corners of a raster outside of
+/// the hull, circles of flat triangles would cover millions of cells without a value.
 const WAITING_CELLS: f64 = 4096.0;
 const WAITING_TIMES: f64 = 4.0;
 
@@ -61,8 +61,8 @@ struct Side {
 
 /// The weights of the natural neighbours of all cells.
 ///
-/// Memory: the budget for cells, 32 bytes for each; 240 bytes for each edge whose other triangle has not arrived, and 400
-/// for each edge of triangles so flat that they wait for the end.
+/// Memory: the budget for cells, 32 bytes for each; 240 bytes for each edge whose other triangle has not
+/// arrived, and 400 for each edge of triangles so flat that they wait for the end.
 #[derive(Debug)]
 pub(super) struct Natural {
     centers: Centers,
@@ -102,7 +102,8 @@ impl Natural {
         [self.cells.spilled, self.cells.spill_len()]
     }
 
-    /// Adds a counterclockwise triangle of vertices with ids, in stored coordinates and with elevations of the world.
+    /// Adds a counterclockwise triangle of vertices with ids, in stored coordinates and with elevations of
+    /// the world.
     ///
     /// # Errors
     /// Malformed, if two triangles are on one side of an edge, or the mesh is not Delaunay there; those of temporary
@@ -189,8 +190,8 @@ impl Natural {
         Ok(())
     }
 
-    /// Adds what an edge gives to the cells in the circle of the triangle on its left, or of the other one. On the
-    /// hull there is none.
+    /// Adds what an edge gives to the cells in the circle of the triangle on its left, or of the other one.
+    /// On the hull there is none.
     fn pair(&mut self, side: &Side, other: Option<&Circle>, within: Option<&Rows>) -> Result<()> {
         let circles = [Some(&side.circle), other];
         let [low, high] = extent(&circles, |circle| circle.centre[1], |circle| circle.radius);
@@ -239,8 +240,8 @@ impl Natural {
     }
 }
 
-/// The area on the left of a way between two places, seen from halfway to the end of an edge: half of its part of
-/// the weight. All places are as seen from the target.
+/// The area on the left of a way between two places, seen from halfway to the end of an edge: half of its
+/// part of the weight. All places are as seen from the target.
 #[inline]
 fn part(end: Point2, from: Point2, to: Point2) -> f64 {
     let [from, to] = [from, to].map(|place| [place[0] - 0.5 * end[0], place[1] - 0.5 * end[1]]);
@@ -333,8 +334,8 @@ mod tests {
             .sum()
     }
 
-    /// The value at a place inside of the hull by definition: what its Voronoi cell takes of those of the points.
-    /// `None` if this cell is so large that numbers of the definition are not good.
+    /// The value at a place inside of the hull by definition: what its Voronoi cell takes of those of the
+    /// points. `None` if this cell is so large that numbers of the definition are not good.
     fn expected(points: &[Point], target: Point2, far: f64) -> Option<f64> {
         let everything = [[-far, -far], [far, -far], [far, far], [-far, far]].to_vec();
         let cell = points.iter().fold(everything, |cell, point| nearer(&cell, target, place(*point)));

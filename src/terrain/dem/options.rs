@@ -140,8 +140,8 @@ impl Options {
     /// are filled, from cells around it. `header` is that of the mesh.
     pub fn window(&self, grid: &Grid, header: &Header) -> Option<Bounds> {
         let grid = self.surroundings(grid, header).drawn;
-        // The way of a concave outline begins at the border of the mesh, however far away that is. So large may
-        // circles of triangles be.
+        // The way of a concave outline begins at the border of the mesh, however far away that is. So large
+        // may circles of triangles be.
         if self.concave.is_some() || self.natural {
             return None;
         }

@@ -2,9 +2,9 @@
 //!
 //! `ground` puts the triangles of the mesh into blocks of neighbours, in a temporary file (`block_writer`).
 //! For a batch of points, `heights` reads the blocks around them one by one (`blocks`), and each triangle
-//! meets the points near it (`point_grid`). `surface` has the elevation at a place of a triangle; `nearest` finds the
-//! place nearest to a point outside of the mesh. `files` reads and writes LAS and LAZ files, `text` text; `points` holds
-//! heights for `spcanopy`.
+//! meets the points near it (`point_grid`). `surface` has the elevation at a place of a triangle; `nearest`
+//! finds the place nearest to a point outside of the mesh. `files` reads and writes LAS and LAZ files, `text`
+//! text; `points` holds heights for `spcanopy`.
 
 mod block_writer;
 mod blocks;

@@ -17,8 +17,8 @@ const LINE_LEN: u64 = 64;
 /// Writes the lines of `file` again, each point with its height above `ground` in one more column; calls
 /// `progress` with the number of points written. The points are in the system `crs`.
 ///
-/// Heights have the decimals of the elevation of the first point, but from 3 to 9. A point without a height has
-/// NaN.
+/// Heights have the decimals of the elevation of the first point, but from 3 to 9. A point without a height
+/// has NaN.
 ///
 /// Memory: `options.memory`, and that of [`Ground`].
 ///

@@ -59,8 +59,8 @@ pub(super) struct WaterFlags {
     #[arg(long, value_name = "W", value_parser = parse_width, requires = "flatten")]
     shore_width: Option<f64>,
 
-    /// Raise points of the input that are at most --shore-width away from a shore and below the water: to the water
-    /// at the nearest place of the shore
+    /// Raise points of the input that are at most --shore-width away from a shore and below the water: to the
+    /// water at the nearest place of the shore
     #[arg(long, requires = "shore_width")]
     raise_shore: bool,
 
@@ -69,8 +69,8 @@ pub(super) struct WaterFlags {
     #[arg(long, value_name = "FILE", requires = "flatten", conflicts_with_all = ["output", "plan", "files", "report", "salvage", "preserve", "radii", "weights", "thin", "raise_shore"])]
     pub(super) levels: Option<PathBuf>,
 
-    /// With --levels: say which stated levels of lakes differ by more than this from those that points near the
-    /// shore have, in the unit of elevations
+    /// With --levels: say which stated levels of lakes differ by more than this from those that points near
+    /// the shore have, in the unit of elevations
     #[arg(long, value_name = "T", default_value_t = 1.0, value_parser = parse_tolerance, requires = "levels")]
     level_tolerance: f64,
 

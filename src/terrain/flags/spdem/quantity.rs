@@ -42,9 +42,9 @@ pub(super) struct QuantityFlags {
     #[arg(long, value_name = "NAME", conflicts_with = "contours")]
     pub(super) attribute: Option<String>,
 
-    /// How values vary between points: linearly in each triangle; of elevations, by natural neighbours (Sibson), which
-    /// is smooth but at the points; of an attribute, the value of the nearest corner of the triangle, as classes need
-    /// it [default: linear]
+    /// How values vary between points: linearly in each triangle; of elevations, by natural neighbours
+    /// (Sibson), which is smooth but at the points; of an attribute, the value of the nearest corner of the
+    /// triangle, as classes need it [default: linear]
     #[arg(long, value_name = "HOW", conflicts_with = "contours", value_parser = named(INTERPOLATIONS))]
     interpolation: Option<Between>,
 

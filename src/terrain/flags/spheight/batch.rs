@@ -127,7 +127,8 @@ fn jobs<'b>(left: Vec<Left<'b>>, batch: &Batch, outputs: &[PathBuf]) -> Vec<Job<
     left.into_iter().filter_map(job).collect()
 }
 
-/// What the headers state. Unless a file that fails is to end the run, it is an error, before the work begins.
+/// What the headers state. Unless a file that fails is to end the run, it is an error, before the work
+/// begins.
 fn survey(flags: &Flags, jobs: &mut [Job<'_>]) -> Result<Vec<Stated>> {
     let mut stated = Vec::new();
     for job in jobs {
