@@ -88,7 +88,7 @@ pub struct RasterFlags {
     #[arg(long, value_name = "FOLDER")]
     temp_dir: Option<PathBuf>,
 
-    // Flags behind those of another struct would be in no group.
+    // A struct with another one in it has no group: its flags are named one by one where they conflict.
     #[command(flatten)]
     geotiff: GeoTiffFlags,
 }

@@ -28,7 +28,7 @@ pub(super) struct ContourFlags {
         long,
         value_name = "D",
         allow_negative_numbers = true,
-        conflicts_with_all = ["CellFlags", "SheetFlags", "RasterFlags", "GeoTiffFlags", "kind", "method", "z_factor", "light", "multidirectional", "range", "fill"]
+        conflicts_with_all = ["CellFlags", "SheetFlags", "no_data", "cog", "temp_dir", "GeoTiffFlags", "kind", "method", "z_factor", "light", "multidirectional", "range", "fill"]
     )]
     contours: Option<f64>,
 
