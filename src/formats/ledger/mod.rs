@@ -103,8 +103,8 @@ impl<'b> Ledger<'b> {
     /// Makes the folder, locks it and the summary, and reads what was done before.
     ///
     /// # Errors
-    /// Usage, if a file is given twice, the summary would replace an input, or another run writes to the folder
-    /// or the summary; if the folder cannot be written, or the summary to resume is malformed.
+    /// Usage, if a file is given twice, the summary would replace an input, or another run writes to the
+    /// folder or the summary; if the folder cannot be written, or the summary to resume is malformed.
     pub fn open(batch: &'b Batch) -> Result<Ledger<'b>> {
         check_distinct(&batch.files)?;
         let inputs = || {

@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::crs::{self, GeoKeys, System, geotiff_keys};
+use crate::lines::write_geojson::epsg_code;
 use crate::raster::RasterFormat;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
@@ -66,7 +67,7 @@ impl Reference {
 
     /// The EPSG code of the system of x and y, if it has one.
     pub fn epsg_code(&self) -> Option<u32> {
-        System::of(&self.crs).horizontal?.code
+        epsg_code(&self.crs)
     }
 
     /// The definition of the system as well-known text, if it has one.

@@ -70,8 +70,8 @@ impl Integers {
     /// 0 is common.
     ///
     /// # Errors
-    /// Usage, if the type is none of integers, the scale is not above zero, a number is not finite, or `no_data` is not one
-    /// of the integers.
+    /// Usage, if the type is none of integers, the scale is not above zero, a number is not finite, or
+    /// `no_data` is not one of the integers.
     pub fn new(cell_type: CellType, [scale, offset]: [f64; 2], no_data: Option<f64>) -> Result<Integers> {
         let [least, greatest] = cell_type.range();
         if cell_type == CellType::Float32 || !(scale > 0.0 && scale.is_finite() && offset.is_finite()) {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::passes::{Observer, Passes};
 use super::select::Selected;
 use super::shores::{Raise, Shores, collect_inside, extent, shore_width, with_points};
-use crate::lines::{Layer, Levels, Near, Shore, Target, Water, WaterPolygon};
+use crate::lines::{Layer, Levels, Near, Shore, Target, Water};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::network::Network;
 use spmesh_formats::source::Description;
@@ -39,10 +39,9 @@ pub(super) struct Evidence<'a> {
     pub(super) in_water: Option<&'a Selected<'a>>,
 }
 
-/// What is found near the shores of all polygons.
-struct Found {
-    near: Vec<Near>,
-    extent: Option<(Bounds, u64)>,
+/// The box of points and their number, as far as they are known, and the width of shores in stored units.
+struct Extent {
+    points: Option<(Bounds, u64)>,
     width: f64,
 }
 
@@ -58,8 +57,8 @@ impl Flatten {
     ) -> Result<Levels> {
         let needed = water.need_points();
         let extent = self.extent(&needed, points.points, observer)?;
-        let mut found = self.find(network, water, &needed, extent, points, observer)?;
-        self.settle(network, water, &needed, &mut found, points, observer)
+        let mut near = self.find(network, water, &needed, extent.width, points, observer)?;
+        self.settle(network, water, &needed, (&mut near, &extent), points, observer)
     }
 
     /// What raises points near shores to the water, if that is asked for.
@@ -71,9 +70,9 @@ impl Flatten {
         coordinates: Coordinates,
     ) -> Option<Raise> {
         let width = self.width.filter(|_| self.raise)?;
-        let ends = water.polygons.iter().flat_map(WaterPolygon::segments);
+        let segments = water.polygons.iter().flat_map(|polygon| &polygon.segments);
         let level = |vertex: u32| levels.elevations.get(&vertex).copied().unwrap_or(f64::NEG_INFINITY);
-        let levels = ends.map(|segment| network.segments[segment as usize].ends.map(level)).collect();
+        let levels = segments.map(|&segment| network.segments[segment as usize].ends.map(level)).collect();
         Some(Raise::new(water.edges(network), levels, stored(width, &coordinates), coordinates))
     }
 
@@ -88,53 +87,41 @@ impl Flatten {
     ) -> Result<Vec<Shore>> {
         let needed = vec![true; water.polygons.len()];
         // Headers state the box of all points, and not of those that filters keep.
-        let Some((bounds, count)) = extent(points.points, observer)? else {
+        let Some(known) = extent(points.points, observer)? else {
             return Err(Error::usage("no points: the input has none, or the filters keep none"));
         };
-        let known = (bounds, count);
-        let width = self.stored_width(points.points.description()).unwrap_or_else(|| shore_width(known));
-        let mut found = self.find(network, water, &needed, (Some(known), width), points, observer)?;
-        let levels = self.settle(network, water, &needed, &mut found, points, observer)?;
+        let extent = self.extent_of(Some(known), points.points);
+        let mut near = self.find(network, water, &needed, extent.width, points, observer)?;
+        let levels = self.settle(network, water, &needed, (&mut near, &extent), points, observer)?;
         levels.notices.iter().for_each(|message| observer.notice(message));
         let target = &Target::of_points(points.points.description());
-        let layer = Layer {
-            network,
-            water,
-            levels: &levels,
-            near: &found.near,
-            bounds,
-            percentile: self.percentile,
-            target,
-        };
-        layer.write(output)
+        let (bounds, percentile) = (known.0, self.percentile);
+        Layer { network, water, levels: &levels, near: &near, bounds, percentile, target }.write(output)
     }
 
-    /// Finds points for the polygons that `needed` says, where the box and the number of the points, and the
-    /// width of shores, are these.
+    /// Finds points for the polygons that `needed` says, near shores up to a width.
     fn find(
         &self,
         network: &Network,
         water: &Water,
         needed: &[bool],
-        extent: (Option<(Bounds, u64)>, f64),
+        width: f64,
         points: &Evidence,
         observer: &mut dyn Observer,
-    ) -> Result<Found> {
-        let (extent, width) = extent;
-        let mut near = vec![Near::default(); needed.len()];
-        if needed.contains(&true) {
-            let shores = Shores::new(water.edges(network), needed, width).collect(points.points, observer)?;
-            near = shores.into_iter().map(|points| Near { points, ..Near::default() }).collect();
+    ) -> Result<Vec<Near>> {
+        if !needed.contains(&true) {
+            return Ok(vec![Near::default(); needed.len()]);
         }
-        if let (Some(input), Some(enough), true) =
-            (points.in_water, self.water_points, needed.contains(&true))
-        {
+        let shores = Shores::new(water.edges(network), needed, width).collect(points.points, observer)?;
+        let mut near: Vec<Near> =
+            shores.into_iter().map(|points| Near { points, ..Near::default() }).collect();
+        if let (Some(input), Some(enough)) = (points.in_water, self.water_points) {
             let edges = water.edges(network).into_iter().filter(|&(number, _)| needed[number as usize]);
             for (number, inside) in collect_inside(edges, input, observer)? {
                 near[number as usize].take_water(inside, enough);
             }
         }
-        Ok(Found { near, extent, width })
+        Ok(near)
     }
 
     /// Leaves out water that is far from all points, and settles the levels of the rest.
@@ -143,46 +130,40 @@ impl Flatten {
         network: &Network,
         water: &mut Water,
         needed: &[bool],
-        found: &mut Found,
+        (near, extent): (&mut Vec<Near>, &Extent),
         points: &Evidence,
         observer: &mut dyn Observer,
     ) -> Result<Levels> {
         let far = if self.is_part {
             vec![false; needed.len()]
         } else {
-            far(network, water, needed, found, points.points, observer)?
+            far(network, water, needed, (near, extent), points.points, observer)?
         };
         if let Some(text) = water.about_far(&far) {
             observer.notice(&text);
         }
         let left_out = water.leave_out(&far, network);
         let mut far = far.into_iter();
-        found.near.retain(|_| far.next() == Some(false));
+        near.retain(|_| far.next() == Some(false));
         let target = Target::of_points(points.points.description());
-        Ok(Levels { left_out, ..Levels::find(network, water, &found.near, self.percentile, &target)? })
+        Ok(Levels { left_out, ..Levels::find(network, water, near, self.percentile, &target)? })
     }
 
-    /// The box and the number of the points, as far as they are known, and the width of shores in stored
-    /// units. Headers say enough of the points where levels are stated.
-    fn extent(
-        &self,
-        needed: &[bool],
-        points: &dyn Passes,
-        observer: &mut dyn Observer,
-    ) -> Result<(Option<(Bounds, u64)>, f64)> {
+    /// What is known of the points. Headers say enough of them where levels are stated.
+    fn extent(&self, needed: &[bool], points: &dyn Passes, observer: &mut dyn Observer) -> Result<Extent> {
         let &Description { stated_bounds, stated_points, .. } = points.description();
         let mut known = stated_bounds.zip(stated_points);
         let lacks_width = self.width.is_none() && needed.contains(&true);
         if lacks_width || known.is_none() && needed.contains(&false) && !self.is_part {
             known = extent(points, observer)?;
         }
-        let width = self.stored_width(points.description());
-        Ok((known, width.unwrap_or_else(|| known.map_or(1.0, shore_width))))
+        Ok(self.extent_of(known, points))
     }
 
-    /// The width of shores in stored units, if one is given.
-    fn stored_width(&self, points: &Description) -> Option<f64> {
-        self.width.map(|width| stored(width, &points.coordinates))
+    /// What is known of points, with the width of shores that is given, or else follows from them.
+    fn extent_of(&self, points: Option<(Bounds, u64)>, input: &dyn Passes) -> Extent {
+        let given = self.width.map(|width| stored(width, &input.description().coordinates));
+        Extent { points, width: given.unwrap_or_else(|| points.map_or(1.0, shore_width)) }
     }
 }
 
@@ -200,12 +181,13 @@ fn far(
     network: &Network,
     water: &Water,
     needed: &[bool],
-    Found { near, extent, width }: &Found,
+    (near, extent): (&[Near], &Extent),
     points: &dyn Passes,
     observer: &mut dyn Observer,
 ) -> Result<Vec<bool>> {
     let is_beyond = |number: usize| {
-        extent.is_some_and(|(bounds, _)| !water.polygons[number].is_within(*width, &bounds, network))
+        let is_off = |bounds| !water.polygons[number].is_within(extent.width, &bounds, network);
+        extent.points.is_some_and(|(bounds, _)| is_off(bounds))
     };
     let is_empty = |number: usize| !needed[number] || near[number] == Near::default();
     let mut far: Vec<bool> = (0..needed.len()).map(|it| is_empty(it) && is_beyond(it)).collect();

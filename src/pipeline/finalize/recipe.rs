@@ -132,19 +132,16 @@ impl Recipe {
         Input::open(&self.inputs, &source).map(Some)
     }
 
-    /// Writes the lakes and rivers with their levels as GeoJSON, and no points. Returns what is said of each,
-    /// and messages for the user.
+    /// Writes the lakes and rivers with their levels as GeoJSON, and no points. Returns what is said of each.
     ///
     /// # Errors
-    /// Those of reading and writing; malformed, if a polygon has neither a level nor points, or
-    /// lakes of different levels meet; usage, if there are no points.
+    /// Those of reading and writing; malformed, if a polygon has neither a level nor points, or lakes of
+    /// different levels meet; usage, if there are no points.
     pub fn write_levels(&self, observer: &mut dyn Observer, output: &mut dyn Write) -> Result<Vec<Shore>> {
         let input = self.open()?;
         input.notices().iter().for_each(|message| observer.notice(message));
         let target = Target::of_points(input.description());
-        let (areas, notices) = Areas::read(&self.clip, &self.drop_inside, &target)?;
-        let Lines { network, mut water, changes, .. } = self.read_lines(&target)?;
-        notices.iter().chain(&changes.notices).for_each(|message| observer.notice(message));
+        let (areas, Lines { network, mut water, .. }) = self.read_beside(&target, observer)?;
         let in_water = self.open_water_points()?;
         let in_water = in_water.as_ref().map(|input| Selected::new(input, &areas));
         let points = Evidence { points: &Selected::new(&input, &areas), in_water: in_water.as_ref() };
@@ -159,9 +156,8 @@ impl Recipe {
         output: &mut dyn Write,
     ) -> Result<Outcome> {
         let target = Target::of_points(input.description());
-        let (mut areas, notices) = Areas::read(&self.clip, &self.drop_inside, &target)?;
-        let Lines { network, points, mut water, changes, .. } = self.read_lines(&target)?;
-        notices.iter().chain(&changes.notices).for_each(|message| observer.notice(message));
+        let (mut areas, lines) = self.read_beside(&target, observer)?;
+        let Lines { network, points, mut water, changes, .. } = lines;
         let levels = if water.polygons.is_empty() {
             Levels::default()
         } else {
@@ -225,6 +221,14 @@ impl Recipe {
         budget.beside(LINE_VERTEX_BYTES * vertices as u64, &what, "give fewer lines at once")
     }
 
+    /// Polygons, lines and water; what is to be said about them is said.
+    fn read_beside(&self, target: &Target, observer: &mut dyn Observer) -> Result<(Areas, Lines)> {
+        let (areas, notices) = Areas::read(&self.clip, &self.drop_inside, target)?;
+        let lines = self.read_lines(target)?;
+        notices.iter().chain(&lines.changes.notices).for_each(|message| observer.notice(message));
+        Ok((areas, lines))
+    }
+
     /// Lines and water, and what was changed about them.
     fn read_lines(&self, target: &Target) -> Result<Lines> {
         let of_plane = [("--lines", &self.lines), ("--flatten", &self.flatten.files)];
@@ -245,8 +249,8 @@ impl Recipe {
     /// `target` that many runs take in parts.
     ///
     /// # Errors
-    /// Those of reading; usage, if the level of some water is not stated, since no part has all points that say
-    /// it.
+    /// Those of reading; usage, if the level of some water is not stated, since no part has all points that
+    /// say it.
     pub fn stated_water(&self, target: &Target, is_covered: impl Fn(Point2) -> bool) -> Result<[u64; 2]> {
         let Lines { network, water, .. } = self.read_lines(target)?;
         if let Some(polygon) = water.polygons.iter().find(|polygon| polygon.needs_points(&water)) {

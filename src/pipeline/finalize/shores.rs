@@ -104,25 +104,18 @@ fn for_each_inside(
     })
 }
 
-/// Shores, and the points that count for them: those at most a width away, and neither in water nor on a
-/// shore.
+/// Edges of shores, which are looked for near places.
 #[derive(Debug)]
-pub(super) struct Shores {
+struct Edges {
     edges: Vec<(u32, [Point2; 2])>,
-    water: Polygons,
     width: f64,
     /// The edges near each cell.
     cells: CellTree,
-    polygons: usize,
 }
 
-impl Shores {
-    /// The shores of polygons whose edges are given with their numbers; points are collected for those that
-    /// `needed` says. `width` is in stored units.
-    pub(super) fn new(edges: Vec<(u32, [Point2; 2])>, needed: &[bool], width: f64) -> Shores {
-        let water = Polygons::of_edges(edges.iter().copied());
-        let is_needed = |(number, _): &(u32, _)| needed[*number as usize];
-        let edges: Vec<(u32, [Point2; 2])> = edges.into_iter().filter(is_needed).collect();
+impl Edges {
+    /// Edges with the numbers of their polygons, up to `width` away, in stored units.
+    fn new(edges: Vec<(u32, [Point2; 2])>, width: f64) -> Edges {
         // A margin for rounding.
         let fineness = Fineness {
             items_per_cell: 1.0 / CELLS_PER_EDGE,
@@ -134,16 +127,47 @@ impl Shores {
         };
         let cells =
             CellTree::new(edges.len() as u32, |edge| Item::Segment(edges[edge as usize].1), &fineness);
-        Shores { edges, water, width, cells, polygons: needed.len() }
+        Edges { edges, width, cells }
+    }
+
+    /// The numbers of edges of which some are near a place.
+    fn listed(&self, place: Point2) -> &[u32] {
+        self.cells.leaf(place).map_or(&[], |(tree, cell)| tree.list(cell))
+    }
+
+    /// The place on an edge that is nearest to a place, from 0 to 1, and the square of its distance; `None` if
+    /// it is not near.
+    fn nearest(&self, edge: u32, place: Point2) -> Option<(f64, f64)> {
+        let found = project(self.edges[edge as usize].1, place);
+        (found.1 <= self.width * self.width).then_some(found)
+    }
+}
+
+/// Shores, and the points that count for them: those at most a width away, and neither in water nor on a
+/// shore.
+#[derive(Debug)]
+pub(super) struct Shores {
+    edges: Edges,
+    water: Polygons,
+    polygons: usize,
+}
+
+impl Shores {
+    /// The shores of polygons whose edges are given with their numbers; points are collected for those that
+    /// `needed` says. `width` is in stored units.
+    pub(super) fn new(edges: Vec<(u32, [Point2; 2])>, needed: &[bool], width: f64) -> Shores {
+        let water = Polygons::of_edges(edges.iter().copied());
+        let is_needed = |(number, _): &(u32, _)| needed[*number as usize];
+        let edges = Edges::new(edges.into_iter().filter(is_needed).collect(), width);
+        Shores { edges, water, polygons: needed.len() }
     }
 
     /// The numbers of the polygons near whose shores a place is, each once.
     fn near(&self, place: Point2, found: &mut Vec<u32>) {
         found.clear();
-        let Some((tree, cell)) = self.cells.leaf(place) else { return };
-        for &number in tree.list(cell) {
-            let (polygon, ends) = self.edges[number as usize];
-            if found.last() != Some(&polygon) && project(ends, place).1 <= self.width * self.width {
+        for &edge in self.edges.listed(place) {
+            let (polygon, _) = self.edges.edges[edge as usize];
+            if found.last() != Some(&polygon) && self.edges.nearest(edge, place).is_some() {
                 found.push(polygon);
             }
         }
@@ -178,13 +202,13 @@ impl Shores {
     }
 }
 
-/// Bytes of an edge with its levels, its cells and as a part of polygons.
+/// Bytes of an edge with its levels and its cells.
 const RAISE_BYTES: u64 = 400;
 
 /// Shores with their levels, to which points near them are raised.
 #[derive(Debug)]
 pub(super) struct Raise {
-    shores: Shores,
+    edges: Edges,
     /// The elevations at the ends of each edge.
     levels: Vec<[f64; 2]>,
     coordinates: Coordinates,
@@ -198,8 +222,7 @@ impl Raise {
         width: f64,
         coordinates: Coordinates,
     ) -> Raise {
-        let polygons = edges.iter().map(|(number, _)| *number as usize + 1).max().unwrap_or(0);
-        Raise { shores: Shores::new(edges, &vec![true; polygons], width), levels, coordinates }
+        Raise { edges: Edges::new(edges, width), levels, coordinates }
     }
 
     /// Number of edges, and the bytes that they take.
@@ -210,15 +233,10 @@ impl Raise {
     /// The elevation of the water at the place of a shore that is nearest to a place, if it is near enough.
     /// Of equally near edges the first counts: so the elevation follows from the shores alone.
     pub(super) fn level(&self, place: Point2) -> Option<f64> {
-        let (tree, cell) = self.shores.cells.leaf(place)?;
-        let from = |&edge: &u32| (edge, project(self.shores.edges[edge as usize].1, place));
-        let nearest = tree
-            .list(cell)
-            .iter()
-            .map(from)
-            .min_by(|(a, to_a), (b, to_b)| to_a.1.total_cmp(&to_b.1).then(a.cmp(b)));
+        let near = |&edge: &u32| Some((edge, self.edges.nearest(edge, place)?));
+        let near = self.edges.listed(place).iter().filter_map(near);
         let (edge, (along, _)) =
-            nearest.filter(|(_, (_, square))| *square <= self.shores.width * self.shores.width)?;
+            near.min_by(|(a, (_, to_a)), (b, (_, to_b))| to_a.total_cmp(to_b).then(a.cmp(b)))?;
         let [from, to] = self.levels[edge as usize];
         Some(self.coordinates.rounded(from + (to - from) * along))
     }

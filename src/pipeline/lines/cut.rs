@@ -74,24 +74,19 @@ fn chains(edges: &[[Point; 2]]) -> Vec<Ring> {
     }
     let mut is_used = vec![false; edges.len()];
     let mut found = Vec::new();
-    for first in 0..edges.len() {
-        let mut ring: Ring = Vec::new();
-        let mut next = (!is_used[first]).then_some((first, edges[first][0]));
-        while let Some((edge, from)) = next {
+    for (first, &[start, _]) in edges.iter().enumerate() {
+        let (mut ring, mut end) = (vec![start], start);
+        let mut next = Some(first).filter(|&edge| !is_used[edge]);
+        while let Some(edge) = next {
             is_used[edge] = true;
-            ring.push(from);
             let [a, b] = edges[edge];
-            let to = if key(&a) == key(&from) { b } else { a };
-            let free = at.get_mut(&key(&to)).and_then(|edges| {
-                edges.retain(|&edge| !is_used[edge]);
-                edges.first().copied()
-            });
-            let is_closed = key(&to) == key(&ring[0]);
-            next = free.filter(|_| !is_closed).map(|edge| (edge, to));
-            if next.is_none() {
-                ring.push(ring[0]);
-                found.push(std::mem::take(&mut ring));
-            }
+            end = if key(&a) == key(&end) { b } else { a };
+            ring.push(end);
+            let free = at[&key(&end)].iter().copied().find(|&edge| !is_used[edge]);
+            next = free.filter(|_| key(&end) != key(&start));
+        }
+        if ring.len() > 1 {
+            found.push(ring);
         }
     }
     found

@@ -43,6 +43,8 @@ pub struct Shore {
     pub level: Option<f64>,
     /// Where the level is from: `property`, `coordinates`, `points` near the shore, or those of `water`.
     pub source: &'static str,
+    /// Whether the file states the level.
+    pub is_stated: bool,
     /// Number of points that say the level.
     pub points: usize,
     /// Whether these are points of water, and not those near the shore.
@@ -88,6 +90,7 @@ impl Layer<'_> {
     fn shore(&self, number: usize, level: Option<f64>, rings: &[Vec<Point>]) -> Shore {
         let (polygon, near) = (&self.water.polygons[number], &self.near[number]);
         let (points, percentile) = near.counting(self.percentile);
+        let found = source(polygon, self.water, near);
         let world = |z: f64| self.target.coordinates.to_decimal([0.0, 0.0, z])[2];
         let at = |percent: f64| percentile_of(points.iter().map(|point| point[2]).collect(), percent);
         let [low, high] = SPREAD.map(at);
@@ -95,7 +98,8 @@ impl Layer<'_> {
             feature: polygon.position.to_string(),
             river: polygon.river_name(self.water).map(str::to_string),
             level: level.map(world),
-            source: source(polygon, self.water, near).name(),
+            source: found.name(),
+            is_stated: matches!(found, Found::Property | Found::Coordinates),
             points: points.len(),
             are_in_water: !near.in_water.is_empty(),
             measured: at(percentile).map(world),
@@ -141,11 +145,6 @@ impl Layer<'_> {
 }
 
 impl Shore {
-    /// Whether the file states the level.
-    pub fn is_stated(&self) -> bool {
-        [Found::Property, Found::Coordinates].map(Found::name).contains(&self.source)
-    }
-
     fn properties(&self) -> Value {
         let mut properties = serde_json::Map::new();
         let mut enter = |name: &str, value: Value| _ = properties.insert(name.to_string(), value);

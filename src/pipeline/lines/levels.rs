@@ -103,14 +103,12 @@ impl Levels {
     /// The vertices of lakes, and those of rivers in them.
     fn lakes(&mut self, given: &Given) -> Result<()> {
         let &Given { network, water, .. } = given;
-        let mut levels = vec![None; water.polygons.len()];
         let mut of_lakes: BTreeMap<u32, (f64, usize)> = BTreeMap::new();
         for (number, polygon) in water.polygons.iter().enumerate() {
             if !polygon.is_lake() {
                 continue;
             }
             let level = self.lake(given, number)?;
-            levels[number] = Some(level);
             self.of_lakes.insert(number, level);
             for vertex in vertices(network, polygon) {
                 let (known, _) = *of_lakes.entry(vertex).or_insert((level, number));
@@ -119,13 +117,13 @@ impl Levels {
                 }
             }
         }
-        let is_lake = |number: u32| levels[number as usize].is_some();
-        let edges = water.edges(network).into_iter().filter(|&(number, _)| is_lake(number));
+        let edges = water.edges(network).into_iter();
+        let edges = edges.filter(|(number, _)| water.polygons[*number as usize].is_lake());
         let lakes = Polygons::of_edges(edges);
         for (&vertex, &(level, number)) in &of_lakes {
             let mut is_same = true;
             lakes.for_each_around(network.vertices[vertex as usize].place, |around| {
-                is_same &= levels[around as usize] == Some(level);
+                is_same &= self.of_lakes.get(&(around as usize)) == Some(&level);
             });
             if !is_same {
                 return Err(in_conflict(&water.polygons[number]));
@@ -133,7 +131,7 @@ impl Levels {
         }
         for (&vertex, z) in &mut self.elevations {
             lakes.for_each_around(network.vertices[vertex as usize].place, |around| {
-                *z = levels[around as usize].unwrap_or(*z);
+                *z = self.of_lakes.get(&(around as usize)).copied().unwrap_or(*z);
             });
         }
         self.elevations.extend(of_lakes.into_iter().map(|(vertex, (level, _))| (vertex, level)));

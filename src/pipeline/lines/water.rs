@@ -137,11 +137,6 @@ impl WaterPolygon {
         })
     }
 
-    /// The numbers of its segments.
-    pub(crate) fn segments(&self) -> impl Iterator<Item = u32> + '_ {
-        self.segments.iter().copied()
-    }
-
     /// Its segments, as places of their ends.
     pub(crate) fn edges<'n>(&'n self, network: &'n Network) -> impl Iterator<Item = [Point2; 2]> + 'n {
         self.segments.iter().map(|&segment| network.places(&network.segments[segment as usize]))
@@ -376,8 +371,7 @@ struct Border {
     ring: Vec<u32>,
 }
 
-/// The course along two banks, and the border of the river. `closing` are the lines
-/// between their ends.
+/// The course along two banks, and the border of the river. `closing` are the lines between their ends.
 fn of_banks(
     features: [&Feature; 2],
     closing: &[&Feature],

@@ -102,7 +102,7 @@ impl SkipList {
 
     /// Forgets files that are good again, and notes how the others are now.
     pub fn settle(&mut self, good: &[PathBuf]) {
-        for path in good.iter().filter_map(|path| std::path::absolute(path).ok()) {
+        for path in absolute(good) {
             self.files.remove(&path);
         }
         for (path, bad) in &mut self.files {
@@ -114,15 +114,13 @@ impl SkipList {
 
     /// The files of the list that are not `given`: their names may be misspelt.
     pub fn unknown(&self, given: &[PathBuf]) -> Vec<&Path> {
-        let given: HashSet<PathBuf> =
-            given.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
+        let given = absolute(given);
         self.files.keys().map(PathBuf::as_path).filter(|path| !given.contains(*path)).collect()
     }
 
     /// What manifests say of those of the files that were `given`.
     pub fn skipped(&self, given: &[PathBuf]) -> Vec<SkippedFile> {
-        let given: HashSet<PathBuf> =
-            given.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
+        let given = absolute(given);
         let file = |path: &PathBuf| path.display().to_string();
         let files = self.files.iter().filter(|(path, _)| given.contains(*path));
         files.map(|(path, bad)| SkippedFile { file: file(path), reason: bad.reason.clone() }).collect()
@@ -146,6 +144,11 @@ impl SkipList {
         }
         output.commit()
     }
+}
+
+/// The absolute paths of files.
+fn absolute(files: &[PathBuf]) -> HashSet<PathBuf> {
+    files.iter().filter_map(|path| std::path::absolute(path).ok()).collect()
 }
 
 fn parse(line: &str) -> Result<(PathBuf, Bad)> {

@@ -183,7 +183,9 @@ impl Run<'_> {
         let coordinates = reader.header().coordinates;
         let mut rasterizer = Rasterizer::new(grid, &coordinates, options, self.unit_of_z, for_cells)?;
         if options.natural {
-            let natural = Natural::new(rasterizer.centers(), &grid, for_drawing - for_cells, temp_dir)?;
+            let base = reader.header().bounds.map_or(0.0, |bounds| coordinates.to_world(bounds.min)[2]);
+            let memory = for_drawing - for_cells;
+            let natural = Natural::new(rasterizer.centers(), &grid, base, memory, temp_dir)?;
             rasterizer.natural = Some(natural);
         }
         if options.sample.is_whole() {

@@ -72,16 +72,18 @@ pub(super) struct Natural {
     waiting: Vec<[Side; 2]>,
     /// What [`WAITING_CELLS`] and [`WAITING_TIMES`] are here.
     wide: [f64; 2],
-    /// Elevations are counted from this one.
-    base: Option<f64>,
+    /// Elevations are counted from this one, which the order of triangles must not decide.
+    base: f64,
     predicates: FiniteFloatPredicates,
 }
 
 impl Natural {
-    /// No triangle so far. `memory` is for cells. Units: bytes.
+    /// No triangle so far. Elevations are counted from `base`, which is best near them. `memory` is for cells.
+    /// Units: bytes.
     pub(super) fn new(
         centers: Centers,
         grid: &Grid,
+        base: f64,
         memory: u64,
         temp_dir: Option<&Path>,
     ) -> Result<Natural> {
@@ -92,7 +94,7 @@ impl Natural {
             open: HashMap::new(),
             waiting: Vec::new(),
             wide: [WAITING_CELLS, WAITING_TIMES],
-            base: None,
+            base,
             predicates: FiniteFloatPredicates::default(),
         })
     }
@@ -106,10 +108,9 @@ impl Natural {
     /// the world.
     ///
     /// # Errors
-    /// Malformed, if two triangles are on one side of an edge, or the mesh is not Delaunay there; those of temporary
-    /// files.
+    /// Malformed, if two triangles are on one side of an edge, or the mesh is not Delaunay there; those of
+    /// temporary files.
     pub(super) fn add(&mut self, vertices: [&(u64, Point); 3]) -> Result<()> {
-        self.base.get_or_insert(vertices[0].1[2]);
         let circle = Circle::around(vertices.map(|(_, corner)| *corner));
         for turn in 0..3 {
             let [from, to, apex] = [0, 1, 2].map(|more| vertices[(turn + more) % 3]);
@@ -134,12 +135,11 @@ impl Natural {
             // So that numbers do not depend on which triangle came first.
             let pair =
                 if place(side.ends[0]) < place(side.ends[1]) { [side, opposite] } else { [opposite, side] };
-            let reached = self.cells_of(&pair);
-            if reached > self.wide[0]
-                && pair.iter().any(|side| side.circle.radius > self.wide[1] * side.circle.longest)
-            {
+            let [most, times] = self.wide;
+            let is_flat = |side: &Side| side.circle.radius > times * side.circle.longest;
+            if pair.iter().any(is_flat) && self.cells_of(&pair) > most {
                 self.waiting.push(pair);
-            } else if reached > 0.0 {
+            } else {
                 self.pair(&pair[0], Some(&pair[1].circle), None)?;
             }
         }
@@ -174,14 +174,13 @@ impl Natural {
     /// Those of temporary files.
     pub(super) fn put(&mut self, cache: &mut TileCache) -> Result<()> {
         self.finish()?;
-        let base = self.base.unwrap_or_default();
         for at in places(cache.tiles()) {
             let Some(cells) = self.cells.read(at)? else { continue };
             let Some(tile) = cache.tile(at)? else { continue };
             for (value, weights) in tile.values.iter_mut().zip(cells).filter(|(value, _)| !value.is_nan()) {
                 let [sum, elevations] = [weights.sum, weights.elevations].map(|[sum, rest]| sum + rest);
                 // None at a vertex, and none that is finite on the hull: the limit is the linear value.
-                let mean = base + elevations / sum;
+                let mean = self.base + elevations / sum;
                 if sum > 0.0 && mean.is_finite() {
                     *value = mean as f32;
                 }
@@ -227,14 +226,13 @@ impl Natural {
         let meet = || centre(a, b);
         let from = if is_in[1] { other.map_or_else(meet, |other| other.from(target)) } else { meet() };
         let to = if is_in[0] { circle.from(target) } else { meet() };
-        let base = self.base.unwrap_or_default();
         let parts = [part(a, from, to), part(b, to, from)];
         let tile: TilePlace = [column as usize / TILE, row as usize / TILE];
         let index = row as usize % TILE * TILE + column as usize % TILE;
         let weights = self.cells.cell(tile, index)?;
         for (part, end) in parts.into_iter().zip(ends) {
             add(&mut weights.sum, part);
-            add(&mut weights.elevations, part * (end[2] - base));
+            add(&mut weights.elevations, part * (end[2] - self.base));
         }
         Ok(())
     }
@@ -369,7 +367,7 @@ mod tests {
             triangles.swap(index, random.below(index as u64 + 1) as usize);
         }
         let centers = Centers::new(grid, &Coordinates::F64, 1.0);
-        let mut natural = Natural::new(centers, &grid, 1 << 24, None).unwrap();
+        let mut natural = Natural::new(centers, &grid, 500.0, 1 << 24, None).unwrap();
         // All pairs wait for the hull, or only those that would without a test.
         if random.below(2) == 0 {
             natural.wide = [0.0, 0.0];
@@ -400,10 +398,9 @@ mod tests {
     impl Natural {
         /// The value of a cell; `None` without weights.
         fn value(&mut self, [column, row]: [u32; 2]) -> Result<Option<f64>> {
-            let base = self.base.unwrap_or_default();
             let cell = self.cells.cell([0, 0], row as usize * TILE + column as usize)?;
             let [sum, elevations] = [cell.sum, cell.elevations].map(|[sum, rest]| sum + rest);
-            Ok((sum > 0.0).then_some(base + elevations / sum))
+            Ok((sum > 0.0).then_some(self.base + elevations / sum))
         }
     }
 

@@ -8,7 +8,7 @@ use std::ops::Range;
 use quick_xml::escape::escape;
 
 use super::{IndexKind, Mosaic};
-use crate::raster::{RasterFormat, Samples, TILE};
+use crate::raster::{Grid, RasterFormat, Samples, TILE};
 
 /// What bands mean.
 const COLOURS: [&str; 4] = ["Red", "Green", "Blue", "Alpha"];
@@ -21,12 +21,12 @@ pub(super) fn write_vrt(mosaic: &Mosaic, output: &mut dyn Write) -> io::Result<(
     if let Some(system) = mosaic.system() {
         writeln!(output, "  <SRS>{}</SRS>", escape(&system))?;
     }
-    let [left, step, _, top, ..] = transform(mosaic, &cells);
+    let Grid { left, top, step, .. } = mosaic.file.grid.part(&cells);
     writeln!(output, "  <GeoTransform>{left}, {step}, 0, {top}, 0, -{step}</GeoTransform>")?;
     let name = mosaic.file.cell_type().name();
     for band in 1..=mosaic.file.samples.bands() {
         writeln!(output, "  <VRTRasterBand dataType=\"{name}\" band=\"{band}\">")?;
-        write_band(mosaic, band, "    ", output)?;
+        write_band(mosaic, band, output)?;
         for sheet in mosaic.sheets() {
             write_source(mosaic, band, &sheet.file_name, [&cells, &sheet.cells], output)?;
         }
@@ -82,36 +82,30 @@ pub(super) fn write_gti(mosaic: &Mosaic, output: &mut dyn Write) -> io::Result<(
     if let Some(system) = mosaic.system() {
         writeln!(output, "  <SRS>{}</SRS>", escape(&system))?;
     }
-    let [left, step, _, top, ..] = transform(mosaic, &cells);
+    let Grid { left, top, step, .. } = mosaic.file.grid.part(&cells);
     writeln!(output, "  <GeoTransform>{left},{step},0,{top},0,-{step}</GeoTransform>")?;
     writeln!(output, "  <XSize>{columns}</XSize>\n  <YSize>{rows}</YSize>")?;
     let cell_type = mosaic.file.cell_type().name();
     for band in 1..=mosaic.file.samples.bands() {
         writeln!(output, "  <Band band=\"{band}\" dataType=\"{cell_type}\">")?;
-        write_band(mosaic, band, "    ", output)?;
+        write_band(mosaic, band, output)?;
         writeln!(output, "  </Band>")?;
     }
     writeln!(output, "</GDALTileIndexDataset>")
 }
 
 /// Writes what both say of a band.
-fn write_band(mosaic: &Mosaic, band: usize, indent: &str, output: &mut dyn Write) -> io::Result<()> {
+fn write_band(mosaic: &Mosaic, band: usize, output: &mut dyn Write) -> io::Result<()> {
     let is_coloured = mosaic.file.samples == Samples::Colours;
     if let Some([scale, offset]) = mosaic.file.transform() {
-        writeln!(output, "{indent}<Offset>{offset}</Offset>\n{indent}<Scale>{scale}</Scale>")?;
+        writeln!(output, "    <Offset>{offset}</Offset>\n    <Scale>{scale}</Scale>")?;
     }
     if !is_coloured {
-        writeln!(output, "{indent}<NoDataValue>{}</NoDataValue>", mosaic.file.no_data_text())?;
+        writeln!(output, "    <NoDataValue>{}</NoDataValue>", mosaic.file.no_data_text())?;
     }
     if let Some(unit) = &mosaic.file.reference.unit {
-        writeln!(output, "{indent}<UnitType>{}</UnitType>", escape(unit))?;
+        writeln!(output, "    <UnitType>{}</UnitType>", escape(unit))?;
     }
     let meaning = if is_coloured { COLOURS[band - 1] } else { "Gray" };
-    writeln!(output, "{indent}<ColorInterp>{meaning}</ColorInterp>")
-}
-
-/// Left side, step, 0, upper side, 0, negative step.
-fn transform(mosaic: &Mosaic, cells: &[Range<i64>; 2]) -> [f64; 6] {
-    let grid = mosaic.file.grid.part(cells);
-    [grid.left, grid.step, 0.0, grid.top, 0.0, -grid.step]
+    writeln!(output, "    <ColorInterp>{meaning}</ColorInterp>")
 }

@@ -123,7 +123,7 @@ impl WaterFlags {
     /// Malformed, if there are some and `--strict` is given.
     pub(super) fn check_levels(&self, shores: &[Shore]) -> Result<Vec<String>> {
         let differs = |shore: &&Shore| {
-            let stated = shore.level.filter(|_| shore.is_stated());
+            let stated = shore.level.filter(|_| shore.is_stated);
             let pair = stated.zip(shore.measured);
             pair.is_some_and(|(level, measured)| (level - measured).abs() > self.level_tolerance)
         };

@@ -21,7 +21,7 @@ pub(super) fn write(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     if !flags.common.quiet && path != Path::new("-") {
         let rivers = shores.iter().filter(|shore| shore.river.is_some()).count();
         let below: usize = shores.iter().map(|shore| shore.below).sum();
-        let stated = shores.iter().filter(|shore| shore.is_stated()).count();
+        let stated = shores.iter().filter(|shore| shore.is_stated).count();
         say(&format!(
             "lakes                   {}\nparts of rivers         {rivers}\nlevels stated           {stated}\n\
              levels from points      {}\nshore points below      {below}\n",

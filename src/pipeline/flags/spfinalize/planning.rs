@@ -86,8 +86,9 @@ pub(super) fn make(flags: &Flags, path: &Path) -> anyhow::Result<()> {
     let list = flags.plan.skip_bad.as_deref();
     let mut bad = list.map_or(Ok(SkipList::default()), SkipList::read)?;
     let given = paths.clone();
-    if let Some(first) = bad.unknown(&given).first() {
-        let all = counted(bad.unknown(&given).len() as u64, "file", "files");
+    let unknown = bad.unknown(&given);
+    if let Some(first) = unknown.first() {
+        let all = counted(unknown.len() as u64, "file", "files");
         let message = format!("--skip-bad lists {all} not among the inputs, such as {}", first.display());
         notice(TOOL, &flags.common, &message);
     }
