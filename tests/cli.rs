@@ -5,13 +5,14 @@ use std::path::Path;
 
 use crate::programs::{Folder, outcome, run, sample};
 
-const TOOLS: [&str; 15] = [
+const TOOLS: [&str; 16] = [
     "spfinalize",
     "spdelaunay2d",
     "spdelaunay3d",
     "spdem",
     "spconstrain",
     "spheight",
+    "spreport",
     "spnode",
     "spcanopy",
     "spview",
@@ -149,7 +150,7 @@ fn each_failure_has_its_exit_code() {
 #[test]
 fn names_of_other_formats_are_refused() {
     let folder = Folder::new();
-    let tools: [(&str, &[&str]); 15] = [
+    let tools: [(&str, &[&str]); 16] = [
         ("spfinalize", &["-"]),
         ("spdelaunay2d", &[]),
         ("spdelaunay3d", &[]),
@@ -157,6 +158,7 @@ fn names_of_other_formats_are_refused() {
         ("spdem", &["--contours", "1"]),
         ("spconstrain", &["--kill", "1"]),
         ("spheight", &["--ground", "none", "none.las"]),
+        ("spreport", &["none.las"]),
         ("spnode", &["collect", "none.json", "-d", "."]),
         ("spcanopy", &["--ground", "none", "none.las"]),
         ("spview", &[]),

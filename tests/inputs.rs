@@ -6,7 +6,8 @@ use std::path::Path;
 use crate::programs::{Folder, cloud, outcome, run, sample};
 
 /// Flags that name outputs, as programs may have them.
-const OUTPUTS: [&str; 6] = ["--output", "--report", "--plan", "--residuals", "--rejected", "--summary"];
+const OUTPUTS: [&str; 7] =
+    ["--output", "--report", "--plan", "--residuals", "--rejected", "--summary", "--json"];
 
 /// Flags that take any text, and name no file.
 const TEXTS: [&str; 5] = ["--comment", "--attributes", "--altloc", "--assembly", "--chain"];
@@ -37,7 +38,7 @@ fn flags(command: &[&str]) -> Vec<String> {
 }
 
 /// A command of every program, and arguments with which it runs in a folder that has the files.
-const COMMANDS: [(&[&str], &[&str]); 19] = [
+const COMMANDS: [(&[&str], &[&str]); 20] = [
     (&["spfinalize"], &["points.txt"]),
     (&["spdelaunay2d"], &["points.spm"]),
     (&["spdelaunay3d"], &["points3.spm"]),
@@ -46,6 +47,7 @@ const COMMANDS: [(&[&str], &[&str]); 19] = [
     (&["spconstrain"], &["--kill", "90000", "mesh.spm"]),
     (&["spheight"], &["--ground", "mesh.spm", "tile.las"]),
     (&["spcanopy"], &["--ground", "mesh.spm", "--step", "50", "tile.las"]),
+    (&["spreport"], &["tile.las"]),
     (&["spview"], &["mesh.spm"]),
     (&["spinfo"], &["mesh.spm"]),
     (&["spconvert"], &["--to", "text", "mesh.spm"]),

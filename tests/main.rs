@@ -25,6 +25,7 @@ mod point_rasters;
 mod programs;
 mod raster;
 mod raster_storage;
+mod report;
 mod soak;
 mod sources;
 mod stream;

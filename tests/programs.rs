@@ -19,6 +19,7 @@ pub fn tool(name: &str) -> Command {
         "spdem" => env!("CARGO_BIN_EXE_spdem"),
         "spcanopy" => env!("CARGO_BIN_EXE_spcanopy"),
         "spheight" => env!("CARGO_BIN_EXE_spheight"),
+        "spreport" => env!("CARGO_BIN_EXE_spreport"),
         "spnode" => env!("CARGO_BIN_EXE_spnode"),
         "spview" => env!("CARGO_BIN_EXE_spview"),
         "spinfo" => env!("CARGO_BIN_EXE_spinfo"),

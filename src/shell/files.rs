@@ -10,7 +10,7 @@ use spmesh_base::error::Result;
 use spmesh_base::places::check_apart;
 
 /// Flags that name outputs, in all programs. Every other path is an input, or a folder.
-const OUTPUTS: [&str; 6] = ["output", "report", "plan", "residuals", "rejected", "summary"];
+const OUTPUTS: [&str; 7] = ["output", "report", "plan", "residuals", "rejected", "summary", "json"];
 
 /// Whether an argument has its default value, and one is given that does not go with it.
 fn is_idle(argument: &Arg, command: &Command, matches: &ArgMatches) -> bool {

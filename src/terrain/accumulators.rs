@@ -110,6 +110,11 @@ impl<C: Pod> Accumulators<C> {
         Ok(Some(&self.held[index].cells))
     }
 
+    /// Whether something was added to a tile.
+    pub(crate) fn has(&self, at: TilePlace) -> bool {
+        self.places.contains_key(&at)
+    }
+
     /// Bytes of the temporary file.
     pub(crate) fn spill_len(&self) -> u64 {
         self.spill.file_len()

@@ -7,6 +7,7 @@
 //! | [`height`] | `spheight` |
 //! | [`canopy`], with [`height`] and [`dem`] | `spcanopy` |
 //! | [`constrain`] | `spconstrain` |
+//! | [`report`], with [`height`] | `spreport` |
 //!
 //! `flags`, with the feature of this name, has their command lines.
 
@@ -20,4 +21,5 @@ pub mod files;
 pub mod flags;
 pub mod height;
 pub mod points;
+pub mod report;
 mod surface;

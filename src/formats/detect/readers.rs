@@ -60,13 +60,16 @@ pub const SPCANOPY: Reader = reader("spcanopy", || vec![Format::Las]);
 /// `spheight`, for the files whose points get heights.
 pub const SPHEIGHT: Reader = reader("spheight", || vec![Format::Las, Format::Text, Format::OtherText]);
 
+/// `spreport`.
+pub const SPREPORT: Reader = reader("spreport", points);
+
 /// `dd4`.
 pub const DD4: Reader =
     Reader { has_raw: true, axes: 4, ..reader("dd4", || formats_with(|row| row.sites.is_some())) };
 
 /// All of them.
-pub const READERS: [&Reader; 9] =
-    [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &SPCANOPY, &SPHEIGHT, &TESS3, &DD4];
+pub const READERS: [&Reader; 10] =
+    [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &SPCANOPY, &SPHEIGHT, &SPREPORT, &TESS3, &DD4];
 
 /// The reader of a caller that does not name its tool.
 static ANY: Reader = Reader { has_raw: true, ..reader("this program", points) };

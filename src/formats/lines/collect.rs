@@ -42,7 +42,8 @@ impl Collector {
 
     /// Starts a feature.
     pub(crate) fn feature(&mut self, properties: Properties) {
-        let properties = Properties { elevation_name: self.reading.elevation.clone(), ..properties };
+        let Properties { elevation_name, label_name, .. } = self.reading.properties();
+        let properties = Properties { elevation_name, label_name, ..properties };
         // Most features have the properties of the one before.
         if *self.properties != properties {
             self.properties = Arc::new(properties);

@@ -71,6 +71,10 @@ pub struct Properties {
     pub elevation: Option<String>,
     /// This name.
     pub elevation_name: Option<Arc<str>>,
+    /// What the property that [`Reading::label`] names says.
+    pub label: Option<String>,
+    /// This name.
+    pub label_name: Option<Arc<str>>,
 }
 
 /// How lines are read.
@@ -81,28 +85,31 @@ pub struct Reading {
     /// Name of a property that states the elevation of all vertices of a feature that has it, in place of
     /// third coordinates.
     pub elevation: Option<Arc<str>>,
+    /// Name of a property that says what a feature is.
+    pub label: Option<Arc<str>>,
 }
 
 impl Default for Reading {
     fn default() -> Self {
-        Reading { vertices_max: usize::MAX, elevation: None }
+        Reading { vertices_max: usize::MAX, elevation: None, label: None }
     }
 }
 
 impl Reading {
     /// The properties of a feature that states none.
     fn properties(&self) -> Properties {
-        Properties { elevation_name: self.elevation.clone(), ..Properties::default() }
+        let (elevation_name, label_name) = (self.elevation.clone(), self.label.clone());
+        Properties { elevation_name, label_name, ..Properties::default() }
     }
 }
 
 impl Properties {
     /// The property of this name, in any case; `None` if it has no meaning here.
     fn of_name(&mut self, name: &str) -> Option<&mut Option<String>> {
+        let is = |own: &Option<Arc<str>>| own.as_deref().is_some_and(|own| name.eq_ignore_ascii_case(own));
         match name {
-            _ if self.elevation_name.as_deref().is_some_and(|own| name.eq_ignore_ascii_case(own)) => {
-                Some(&mut self.elevation)
-            }
+            _ if is(&self.label_name) => Some(&mut self.label),
+            _ if is(&self.elevation_name) => Some(&mut self.elevation),
             _ if name.eq_ignore_ascii_case("level") => Some(&mut self.level),
             _ if name.eq_ignore_ascii_case("river") => Some(&mut self.river),
             _ if name.eq_ignore_ascii_case("bank") => Some(&mut self.bank),
@@ -214,6 +221,11 @@ fn read(path: &Path, read_text: ReadText, reading: &Reading) -> Result<Breakline
         true => geojson::read(whole, reading),
         false => read_text(&head, &mut whole, reading),
     }
+}
+
+/// Whether a file that starts with `head` is GeoJSON, a Shapefile or a GeoPackage.
+pub(crate) fn is_of_features(head: &[u8]) -> bool {
+    head.starts_with(SQLITE_MAGIC) || head.starts_with(SHAPEFILE_MAGIC) || geojson::is_json(head)
 }
 
 /// Bytes without the byte order mark before them, if there is one.

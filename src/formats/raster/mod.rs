@@ -2,8 +2,8 @@
 //!
 //! `grid` places cells, and `like` takes a grid from a file; `geotiff` and `ascii` write files, with
 //! `no_data` for cells without data, `storage` for the numbers of a GeoTIFF, `date` for its time and
-//! `reference` for the coordinate reference system; `mosaic` describes a raster in many files; `relief`
-//! derives slope, aspect and shading from gradients.
+//! `reference` for the coordinate reference system; `mosaic` describes a raster in many files; `png` has
+//! pictures; `relief` derives slope, aspect and shading from gradients.
 
 mod ascii;
 pub mod colour_map;
@@ -13,6 +13,7 @@ mod grid;
 mod like;
 mod mosaic;
 mod no_data;
+mod png;
 mod reference;
 mod relief;
 mod storage;
@@ -26,6 +27,7 @@ pub use geotiff::{Reduction, TILE, Tiles, write_tiles};
 pub use grid::{Cells, Grid, Window};
 pub use mosaic::{IndexKind, Mosaic, Sheet};
 pub use no_data::NoData;
+pub use png::png;
 pub use reference::{Reference, write_prj};
 pub use relief::{Differences, Gradient, Light, Shading, aspect, rounded_aspect, slope};
 pub use storage::{CellType, Compression, Integers, Predictor, Storage};

@@ -67,6 +67,8 @@ pub enum AttributeChoice {
     All,
     /// Those of these names, in this order.
     Named(Vec<String>),
+    /// Those of these names that all files have, with the same type.
+    Offered(Vec<String>),
 }
 
 impl AttributeChoice {
@@ -91,6 +93,13 @@ pub(crate) fn choose(
         AttributeChoice::None => Vec::new(),
         AttributeChoice::Named(names) => names.clone(),
         AttributeChoice::All => common_names(files, notices),
+        AttributeChoice::Offered(names) => {
+            let is_offered = |name: &&String| {
+                files.iter().all(|(_, offers)| find(offers, name).is_some())
+                    && check_same(name, files).is_ok()
+            };
+            names.iter().filter(is_offered).cloned().collect()
+        }
     };
     let mut attributes: Vec<Attribute> = Vec::with_capacity(names.len());
     let mut plans = vec![RowPlan::default(); files.len()];
@@ -180,5 +189,11 @@ mod tests {
         let other = [offer("a", NumberType::I16, 0)];
         let error = choose(&named(&["a"]), &[("x", &a), ("z", &other)], &mut notices).expect_err("types");
         assert!(error.to_string().contains("another type"), "{error}");
+        let offered = AttributeChoice::Offered(["flags", "a", "b"].map(str::to_string).to_vec());
+        let of =
+            |files: &[(&str, &[Offer])]| choose(&offered, files, &mut Vec::new()).expect("a plan").0.names();
+        assert_eq!(of(&[("x", &a)]), "flags, a");
+        assert_eq!(of(&[("x", &a), ("y", &b)]), "a");
+        assert_eq!(of(&[("x", &a), ("z", &other)]), "");
     }
 }

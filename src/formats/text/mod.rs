@@ -3,6 +3,7 @@
 pub(crate) mod columns;
 pub(crate) mod copy;
 pub(crate) mod decimal_grid;
+pub(crate) mod labelled;
 pub(crate) mod lines;
 pub(crate) mod numbers;
 pub(crate) mod options;

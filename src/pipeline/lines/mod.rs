@@ -144,7 +144,7 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     let (mut files, mut left) = (Vec::new(), options.vertices_max);
     for (role, path) in sources.files() {
         let elevation = options.elevation.clone().filter(|_| role == Role::Lines);
-        let mut file = read_breaklines(path, &Reading { vertices_max: left, elevation })?;
+        let mut file = read_breaklines(path, &Reading { vertices_max: left, elevation, label: None })?;
         left -= file.lines.iter().map(|line| line.vertices.len()).sum::<usize>().min(left);
         let name = name_of(path);
         changes.notices.extend(file.system.check(&name, &target.crs)?);

@@ -1,7 +1,8 @@
-//! Command lines of `spdem`, `spheight`, `spcanopy` and `spconstrain`.
+//! Command lines of `spdem`, `spheight`, `spcanopy`, `spconstrain` and `spreport`.
 
 mod sheets;
 pub mod spcanopy;
 pub mod spconstrain;
 pub mod spdem;
 pub mod spheight;
+pub mod spreport;

@@ -7,7 +7,7 @@ use super::boxes::Box2;
 use super::ground::Ground;
 use super::nearest::Nearest;
 use super::point_grid::{MANY, PointGrid, Share, height_of, set_height};
-use super::surface::{PLAIN_MAX, beyond_numbers, height, plain_shares, rounded, shares};
+use super::surface::{PLAIN_MAX, beyond_numbers, height, plain_shares, rounded, shares, slope};
 use spmesh_base::error::Result;
 use spmesh_delaunay::parallel;
 use spmesh_stream::model::bounds::Point;
@@ -23,6 +23,8 @@ pub enum Unit {
     Steps(f64),
     /// The unit of the ground's stored z, not rounded to integers.
     Stored,
+    /// No heights: the tangent of the slope of the triangle at the point, in the ground's stored units.
+    Slope,
 }
 
 impl Unit {
@@ -30,7 +32,7 @@ impl Unit {
     fn rounded(self, height: f64) -> f64 {
         match self {
             Unit::Steps(steps) => (height / steps).round(),
-            Unit::Stored => height,
+            Unit::Stored | Unit::Slope => height,
         }
     }
 }
@@ -156,6 +158,7 @@ fn meet_point(triangle: &Triangle, bounds: &Box2, point: &mut Point, unit: Unit)
     let height = match unit {
         Unit::Steps(steps) => rounded(triangle, point, above, steps),
         Unit::Stored => above,
+        Unit::Slope => slope(triangle),
     };
     set_height(point, height);
     Ok(())

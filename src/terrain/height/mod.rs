@@ -20,7 +20,9 @@ mod text;
 
 pub use files::{Counts, FileOptions, HeightPlace, write_heights};
 pub use ground::Ground;
+pub(crate) use heights::Heights;
 pub use heights::{Outside, Unit};
+pub(crate) use points::unit_of;
 pub use points::{HeightPoints, LayerReader};
 pub use text::write_text_heights;
 

@@ -146,7 +146,7 @@ impl HeightPoints {
 }
 
 /// What one unit of stored z is in the world.
-pub(super) fn unit_of(coordinates: &Coordinates) -> f64 {
+pub(crate) fn unit_of(coordinates: &Coordinates) -> f64 {
     match coordinates {
         Coordinates::F64 => 1.0,
         Coordinates::I32 { scale, .. } => scale[2],

@@ -71,6 +71,14 @@ pub(super) fn height(corners: &[Point; 3], shares: [f64; 3], point: &Point) -> R
     Err(beyond_numbers())
 }
 
+/// The tangent of the slope of a triangle that is not flat in x and y.
+pub(super) fn slope([a, b, c]: &[Point; 3]) -> f64 {
+    let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
+    let size = u[0] * v[1] - v[0] * u[1];
+    let rise = [u[2] * v[1] - v[2] * u[1], u[0] * v[2] - v[0] * u[2]];
+    rise[0].hypot(rise[1]) / size.abs()
+}
+
 /// The error of coordinates that numbers of 64 bits cannot interpolate between.
 pub(super) fn beyond_numbers() -> Error {
     Error::usage("coordinates are too great or too small to interpolate between: shift and scale them")

@@ -4,7 +4,7 @@
 //! from it; it counts and sums in integers, so the order of the points does not matter. The cells are in
 //! [`Accumulators`].
 
-mod place;
+pub(crate) mod place;
 mod statistic;
 
 use std::io::{Read, Seek, Write};

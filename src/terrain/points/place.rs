@@ -10,7 +10,7 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Finds cells of a grid. A point nearer to a border than coordinates can tell is on it, and belongs to the cell to the
 /// right of it, or above it.
 #[derive(Debug)]
-pub(super) struct Placement {
+pub(crate) struct Placement {
     coordinates: Coordinates,
     grid: Grid,
     /// How far a place may be off, in cells.
@@ -18,7 +18,7 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    pub(super) fn new(grid: &Grid, coordinates: &Coordinates) -> Placement {
+    pub(crate) fn new(grid: &Grid, coordinates: &Coordinates) -> Placement {
         let [right, bottom] = [grid.left + f64::from(grid.columns) * grid.step, grid.bottom()];
         let greatest = [grid.left, right, grid.top, bottom].into_iter().map(f64::abs).fold(0.0, f64::max);
         Placement { coordinates: *coordinates, grid: *grid, tolerance: ROUNDING * greatest / grid.step }
@@ -26,7 +26,7 @@ impl Placement {
 
     /// Column and row of the cell of a stored point; `None` if it is outside of the grid.
     #[inline]
-    pub(super) fn cell_of(&self, stored: &Point) -> Option<[usize; 2]> {
+    pub(crate) fn cell_of(&self, stored: &Point) -> Option<[usize; 2]> {
         let [x, y, _] = self.coordinates.to_world(*stored);
         let column = self.count((x - self.grid.left) / self.grid.step);
         // Rows count downwards, so the lower border belongs to the row below.
