@@ -49,8 +49,8 @@ fn wrong_requests_are_refused_with_a_remedy() {
     let (mesh, points) = (mesh(&folder, MESH), folder.write("points.txt", MESH));
     let (out, json) = (folder.path("out.html"), folder.path("out.json"));
     for (arguments, code, part) in [
-        (vec![&points[..]], 2, "nothing to write"),
-        (vec!["-o", &out], 2, "no input"),
+        (vec!["-o", &out[..]], 2, "no input"),
+        (vec![&points, "-o", "-", "--json", "-"], 2, "stdout"),
         (vec![&points, "-o", &folder.path("out.png")], 2, "this program writes .html"),
         (vec![&points, "--json", &folder.path("out.csv")], 2, "this program writes .json"),
         (vec![&points, "-o", &points], 2, "would replace the input"),

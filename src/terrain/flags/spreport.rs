@@ -79,7 +79,7 @@ pub struct Flags {
     #[arg(long, value_name = "LIST", conflicts_with = "inputs")]
     lof: Option<PathBuf>,
 
-    /// File for the page; - is stdout
+    /// File for the page; - is stdout [default: stdout, unless --json is given]
     #[arg(short, long, value_name = "HTML")]
     output: Option<PathBuf>,
 
@@ -230,14 +230,12 @@ impl Flags {
     }
 
     fn outputs(&self) -> Result<Outputs> {
-        if self.output.is_none() && self.json.is_none() {
-            return Err(Error::usage("nothing to write: give -o FILE.html for a page, --json FILE, or both"));
-        }
-        self.output.iter().try_for_each(|path| endings::check(path, &[PAGE]))?;
+        let stdout = PathBuf::from("-");
+        let page = self.output.as_ref().or_else(|| self.json.is_none().then_some(&stdout));
+        page.iter().try_for_each(|path| endings::check(path, &[PAGE]))?;
         self.json.iter().try_for_each(|path| endings::check(path, &[endings::JSON]))?;
-        let create =
-            |path: &Option<PathBuf>| path.as_ref().map(|path| Output::create(path, false)).transpose();
-        Ok(Outputs { page: create(&self.output)?, json: create(&self.json)? })
+        let create = |path: Option<&PathBuf>| path.map(|path| Output::create(path, false)).transpose();
+        Ok(Outputs { page: create(page)?, json: create(self.json.as_ref())? })
     }
 
     fn source_options(&self) -> SourceOptions {

@@ -8,7 +8,7 @@ use super::figures::percentile;
 use super::json::share;
 use super::sample::Differences;
 use super::tables::{escaped, fixed, percent, table, whole};
-use super::{Figures, Overlap, Picture, Report, Units, lines};
+use super::{Cover, Density, Figures, Overlap, Picture, Report, Units, lines};
 use spmesh_base::error::Result;
 use spmesh_formats::crs;
 use spmesh_formats::raster::colour_map::{Colour, VIRIDIS, hex, mix};
@@ -22,8 +22,8 @@ const NO_VOID: Colour = [200, 200, 200];
 const VOIDS: [Colour; 2] = [[253, 208, 120], [190, 10, 30]];
 /// Bars of the distribution of differences.
 const BARS: usize = 31;
-/// Pairs of flight lines in the table, at most; JSON has all.
-const PAIRS_MAX: usize = 200;
+/// Flight lines in a table, or pairs of them, at most; JSON has all.
+const ROWS_MAX: usize = 200;
 
 impl Report {
     /// The report as a page.
@@ -92,74 +92,31 @@ impl Report {
     }
 
     /// Tables about the points.
-    fn points(&self, Units { horizontal, .. }: &Units) -> String {
+    fn points(&self, units: &Units) -> String {
         let tally = &self.tally;
-        let mut rows = vec![vec!["points".to_string(), whole(tally.points)]];
-        let mut row = |name: &str, value: String| rows.push(vec![name.to_string(), value]);
-        row("withheld, left out", whole(tally.withheld));
-        row("with a coordinate that is not finite, left out", whole(tally.invalid));
-        for (name, count) in ["first returns", "last returns", "single returns"]
-            .iter()
-            .zip(tally.returns.into_iter().flatten())
-        {
-            row(name, whole(count));
-        }
-        if let Some(density) = &tally.density {
-            let per = format!("per {horizontal}²");
-            row(&format!("cells of {} {horizontal} with points", density.cell), whole(density.cells));
-            row("their area", format!("{} {horizontal}²", fixed(density.area, 0)));
-            row("points", format!("{} {per}", fixed(density.points, 2)));
-            row("first returns (pulse density)", format!("{} {per}", fixed(density.pulses, 2)));
-            row("pulse spacing", format!("{} {horizontal}", fixed(density.spacing, 3)));
-            let [least, low, median, high, greatest] = density.quantiles.map(|density| fixed(density, 2));
-            row("pulse density of cells: least", format!("{least} {per}"));
-            row("5th percentile", format!("{low} {per}"));
-            row("median", format!("{median} {per}"));
-            row("95th percentile", format!("{high} {per}"));
-            row("greatest", format!("{greatest} {per}"));
-        }
-        let mut html = format!(
-            "<h2>Points</h2>\n<div class=\"tables\">\n{}",
-            table("Counts and density", &["", "value"], &rows)
-        );
-        if let Some(cover) = &self.cover {
-            let area =
-                |cells: u64| format!("{} {horizontal}²", fixed(cells as f64 * cover.cell * cover.cell, 0));
-            let rows = [
-                ("side of cells (four pulse spacings)", format!("{} {horizontal}", cover.cell)),
-                ("cells of the extent", whole(cover.cells)),
-                ("area of the extent", area(cover.cells)),
-                ("voids: cells without a first return", whole(cover.voids)),
-                ("their area", area(cover.voids)),
-                ("their share", percent(share(cover.voids, cover.cells))),
-                ("quarters of cells with a first return", percent(share(cover.quarters, 4 * cover.cells))),
-                ("points far from all others, left out", whole(cover.outside)),
-            ];
-            let rows: Vec<Vec<String>> = rows.map(|(name, value)| vec![name.to_string(), value]).into();
-            html += &table("Voids", &["", "value"], &rows);
-        }
+        let mut rows = vec![
+            row("points", whole(tally.points)),
+            row("withheld, left out", whole(tally.withheld)),
+            row("with a coordinate that is not finite, left out", whole(tally.invalid)),
+        ];
+        let returns = ["first returns", "last returns", "single returns"]
+            .into_iter()
+            .zip(tally.returns.into_iter().flatten());
+        rows.extend(returns.map(|(name, count)| row(name, whole(count))));
+        let mut html = table("Counts", &["", "number"], &rows);
+        html += &tally.density.as_ref().map_or(String::new(), |density| density_table(density, units));
+        html += &self.cover.as_ref().map_or(String::new(), |cover| void_table(cover, units));
+        let line = |name: String, count: u64| vec![name, whole(count), percent(share(count, tally.points))];
         if let Some(classes) = &tally.classes {
-            let row = |&(class, count): &(u8, u64)| {
-                vec![
-                    format!("{class} {}", class_name(class)),
-                    whole(count),
-                    percent(share(count, tally.points)),
-                ]
-            };
-            html += &table(
-                "Classes",
-                &["class", "points", "share"],
-                &classes.iter().map(row).collect::<Vec<_>>(),
-            );
+            let rows =
+                classes.iter().map(|&(class, count)| line(format!("{class} {}", class_name(class)), count));
+            html += &table("Classes", &["class", "points", "share"], &rows.collect::<Vec<_>>());
         }
         if let Some(sources) = &tally.sources {
-            let row = |(source, count): (&u16, &u64)| {
-                vec![source.to_string(), whole(*count), percent(share(*count, tally.points))]
-            };
-            let rows: Vec<_> = sources.iter().map(row).take(PAIRS_MAX).collect();
-            html += &table("Flight lines", &["line", "points", "share"], &rows);
+            let rows = sources.iter().take(ROWS_MAX).map(|(source, &count)| line(source.to_string(), count));
+            html += &table("Flight lines", &["line", "points", "share"], &rows.collect::<Vec<_>>());
         }
-        html + "</div>\n"
+        format!("<h2>Points</h2>\n<div class=\"tables\">\n{html}</div>\n")
     }
 
     fn maps(&self, Units { horizontal, vertical }: &Units) -> Result<String> {
@@ -185,6 +142,47 @@ impl Report {
     }
 }
 
+/// A row of a name and what it is.
+fn row(name: &str, value: String) -> Vec<String> {
+    vec![name.to_string(), value]
+}
+
+fn density_table(density: &Density, Units { horizontal, .. }: &Units) -> String {
+    let per = |density: f64| format!("{} per {horizontal}²", fixed(density, 2));
+    let [least, low, median, high, greatest] = density.quantiles.map(per);
+    let rows = [
+        row("points", per(density.points)),
+        row("first returns (pulse density)", per(density.pulses)),
+        row("pulse spacing", format!("{} {horizontal}", fixed(density.spacing, 3))),
+        row(&format!("cells of {} {horizontal} with points", density.cell), whole(density.cells)),
+        row("their area", format!("{} {horizontal}²", whole(density.area.round() as u64))),
+        row("pulse density of cells: least", least),
+        row("5th percentile", low),
+        row("median", median),
+        row("95th percentile", high),
+        row("greatest", greatest),
+    ];
+    table("Density", &["", "value"], &rows)
+}
+
+fn void_table(cover: &Cover, Units { horizontal, .. }: &Units) -> String {
+    let area = |cells: u64| {
+        let area = cells as f64 * cover.cell * cover.cell;
+        format!("{} {horizontal}²", whole(area.round() as u64))
+    };
+    let rows = [
+        row("side of cells (four pulse spacings)", format!("{} {horizontal}", cover.cell)),
+        row("cells of the extent", whole(cover.cells)),
+        row("area of the extent", area(cover.cells)),
+        row("voids: cells without a first return", whole(cover.voids)),
+        row("their area", area(cover.voids)),
+        row("their share", percent(share(cover.voids, cover.cells))),
+        row("quarters of cells with a first return", percent(share(cover.quarters, 4 * cover.cells))),
+        row("points far from all others, left out", whole(cover.outside)),
+    ];
+    table("Voids", &["", "value"], &rows)
+}
+
 fn overlap_tables(overlap: &Overlap, Units { horizontal, vertical }: &Units) -> String {
     let row = |name: String, found: &Differences| {
         let Differences { cells, mean, rmsd, percentile95, greatest } = found;
@@ -193,9 +191,8 @@ fn overlap_tables(overlap: &Overlap, Units { horizontal, vertical }: &Units) -> 
     };
     let all = overlap.all.iter().map(|all| row("all".to_string(), all));
     let pairs = overlap.pairs.iter().map(|([one, other], found)| row(format!("{one} - {other}"), found));
-    let rows: Vec<_> = all.chain(pairs.take(PAIRS_MAX)).collect();
-    let mean = format!("mean ({vertical})");
-    let head = ["lines", "cells", &mean, "RMSDz", "95th percentile", "greatest"];
+    let rows: Vec<_> = all.chain(pairs.take(ROWS_MAX)).collect();
+    let head = ["lines", "cells", "mean", "RMSDz", "95th percentile", "greatest"];
     let mut notes = format!(
         "In cells of {} {horizontal} with at least {} single returns of each line, without vegetation, water and noise, on \
          slopes below {}°: the elevation of the first line minus that of the second. {} pairs were steeper, or too narrow.",
@@ -207,7 +204,7 @@ fn overlap_tables(overlap: &Overlap, Units { horizontal, vertical }: &Units) -> 
     if overlap.one_in > 1 {
         notes += &format!(" Percentiles are those of one cell in {}.", whole(overlap.one_in));
     }
-    let table = table("Differences of flight lines", &head, &rows);
+    let table = table(&format!("Differences of flight lines ({vertical})"), &head, &rows);
     format!("<h2>Flight lines</h2>\n{table}<p>{}</p>\n", escaped(&notes))
 }
 
