@@ -3,8 +3,8 @@
 use serde_json::Value;
 
 use super::{assert_near, mesh, number, report};
-use crate::programs::Folder;
-use crate::sources::las_file::{LasFile, Record};
+use crate::programs::{Folder, outcome, run};
+use crate::sources::las_file::{LasFile, Record, geo_keys};
 
 /// A plane that rises by a tenth to the east, and one as steep as 25 degrees to the south of it.
 const MESH: &str = "0 0 10\n100 0 20\n0 100 10\n100 100 20\n0 -100 -36.6307658\n100 -100 -26.6307658\n";
@@ -99,6 +99,28 @@ fn check_points_of_all_formats_are_the_same() {
     assert_eq!(las["classes"][1]["name"], "5 High vegetation");
 }
 
+/// GeoJSON without a system is in degrees.
+#[test]
+fn check_points_in_another_system_are_refused() {
+    let folder = Folder::new();
+    let file =
+        LasFile { projection: vec![geo_keys(2154)], ..LasFile::of(&[[0, 0, 1], [900, 0, 2], [0, 900, 3]]) };
+    let points = folder.write("points.las", file.bytes());
+    let stream = run("spfinalize", &["-q", &points], &[]).stdout;
+    let mesh = folder.write("mesh.spm", run("spdelaunay2d", &["-q"], &stream).stdout);
+    let check = |crs: &str| {
+        let text = format!(r#"{{"type":"MultiPoint",{crs}"coordinates":[[1,1,2],[2,2,3]]}}"#);
+        let path = folder.write("check.geojson", text);
+        outcome(&run("spreport", &["-q", &points, "--json", "-", "--mesh", &mesh, "--check", &path], &[]))
+    };
+    let (code, message) = check("");
+    assert!(code == Some(2) && message.contains("coordinate reference system"), "{message}");
+    assert_eq!(
+        check(r#""crs":{"type":"name","properties":{"name":"EPSG:2154"}},"#),
+        (Some(0), String::new())
+    );
+}
+
 /// Vertices of the mesh are on it, those of its border, too.
 #[test]
 fn points_of_the_mesh_have_no_difference() {
@@ -107,8 +129,8 @@ fn points_of_the_mesh_have_no_difference() {
         (0..400).map(|at| [at * 7919 % 1009, at * 104_729 % 997, at % 50]).collect();
     let file = LasFile { offset: [412_345.67, 5_399_999.99, 0.1], ..LasFile::of(&positions) };
     let path = folder.write("points.las", file.bytes());
-    let stream = crate::programs::run("spfinalize", &["-q", &path], &[]).stdout;
-    let mesh = folder.write("mesh.spm", crate::programs::run("spdelaunay2d", &["-q"], &stream).stdout);
+    let stream = run("spfinalize", &["-q", &path], &[]).stdout;
+    let mesh = folder.write("mesh.spm", run("spdelaunay2d", &["-q"], &stream).stdout);
     let found = report(&[&path, "--mesh", &mesh, "--check", &path], &[]);
     assert_eq!((number(&found, "check_points.count"), number(&found, "check_points.outside")), (400.0, 0.0));
     assert!(number(&found, "check_points.all.max") < 1e-6 && number(&found, "check_points.all.min") > -1e-6);
@@ -124,11 +146,8 @@ fn few_check_points_have_few_figures() {
         let all = &found["check_points"]["all"];
         assert_eq!(all["count"], count, "{text}");
         assert!(all["std"].is_null() && all["skewness"].is_null() && all["rmse_v"].is_null(), "{all}");
-        let page = crate::programs::run(
-            "spreport",
-            &["-q", "-", "-o", "-", "--mesh", &mesh, "--check", &check],
-            MESH.as_bytes(),
-        );
+        let page =
+            run("spreport", &["-q", "-", "-o", "-", "--mesh", &mesh, "--check", &check], MESH.as_bytes());
         assert!(page.status.success() && !String::from_utf8(page.stdout).unwrap().contains("NaN"), "{text}");
     }
 }

@@ -19,6 +19,7 @@ fn wrong_check_points_are_named_with_their_place() {
     };
     let (good, flat) = (point("[1,1,2]", "{}"), point("[1,1]", "{}"));
     let line = good.replace("Point", "LineString").replace("[1,1,2]", "[[1,1,2],[2,2,3]]");
+    let numbered: String = (0..1001).map(|number| format!("1 2 3 {number}\n")).collect();
     for (text, flags, code, parts) in [
         ("1 2 3\n4 x 6\n".to_string(), &[][..], 3, ["line 2", "expected a number"]),
         ("x,y,z\n1,2,3\n4,5\n".to_string(), &[], 3, ["line 3", "column"]),
@@ -27,6 +28,7 @@ fn wrong_check_points_are_named_with_their_place() {
         ("x,y,z,a\n1,2,3,b\n".to_string(), &["--class-field", "c"], 2, ["no column \"c\"", "there is a"]),
         ("1 2 3\n".to_string(), &["--class-field", "4"], 2, ["no column 4", "none"]),
         ("a,b,c\n1,2,3\n".to_string(), &["--columns", "a,b,d"], 2, ["no column \"d\"", "a, b, c"]),
+        (numbered, &["--class-field", "4"], 2, ["line 1001", "no classes"]),
         (String::new(), &[], 3, ["empty", "check"]),
         (collection(&[good.clone(), flat]), &[], 3, ["feature 1", "elevation"]),
         (collection(&[good.clone(), line]), &[], 3, ["feature 1", "expected points"]),

@@ -160,6 +160,19 @@ fn a_stray_point_changes_nothing_else() {
     assert_eq!(number(&found, "density.cells"), number(&plain, "density.cells") + 2.0);
 }
 
+/// Places that no grid of cells reaches, also if there are few others.
+#[test]
+fn any_places_are_reported() {
+    for text in
+        ["0 0 1\n1e300 -1e300 1\n", "0 0 1\n1e9 0 1\n0 1e12 1\n", "1e15 1e15 1\n", "0 0 1e308\n0 0 -1e308\n"]
+    {
+        let found = report(&["-"], text.as_bytes());
+        assert_eq!(number(&found, "points.count"), text.lines().count() as f64, "{text}");
+        let page = run("spreport", &["-q", "-", "-o", "-"], text.as_bytes());
+        assert!(page.status.success(), "{text}");
+    }
+}
+
 #[test]
 fn files_of_las_and_their_order_make_no_difference() {
     let folder = Folder::new();

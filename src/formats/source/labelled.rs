@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use crate::crs::requested;
 use crate::detect::{Format, detect, read_head};
 use crate::lines::{Reading, is_of_features, read_breaklines};
 use crate::source::gzip::Plain;
@@ -20,6 +21,9 @@ use spmesh_stream::model::bounds::Point;
 
 /// The attribute of points of LAS files that is their word, unless the user names another.
 const CLASS: &str = "classification";
+
+/// Most different words.
+const LABELS_MAX: usize = 1000;
 
 /// Points with a word about each.
 #[derive(Debug, Default)]
@@ -45,9 +49,14 @@ pub(crate) struct Labels(HashMap<String, u32>);
 
 impl Labels {
     /// The number of a word.
-    pub(crate) fn number(&mut self, label: Option<String>) -> u32 {
+    pub(crate) fn number(&mut self, label: Option<String>) -> Result<u32> {
         let next = self.0.len() as u32;
-        *self.0.entry(label.unwrap_or_default()).or_insert(next)
+        let number = *self.0.entry(label.unwrap_or_default()).or_insert(next);
+        if number as usize == LABELS_MAX {
+            let message = "these are no classes of points: --class-field takes what many have in common";
+            return Err(Error::usage(format!("more than {LABELS_MAX} different words, {message}")));
+        }
+        Ok(number)
     }
 
     /// The words by number.
@@ -118,6 +127,7 @@ fn read_features(path: &Path, label: Option<&Column>, found: &mut LabelledPoints
     };
     let has_name = name.is_some();
     let file = read_breaklines(path, &Reading { label: name, ..Reading::default() })?;
+    found.notices.extend(file.layers.clone());
     let mut labels = Labels::default();
     for line in &file.lines {
         let mut put = || {
@@ -127,14 +137,16 @@ fn read_features(path: &Path, label: Option<&Column>, found: &mut LabelledPoints
             let z = z
                 .filter(|_| line.is_point)
                 .ok_or_else(|| Error::malformed("expected points with an elevation as third coordinate"))?;
-            found.put([x, y, z], labels.number(line.properties.label.clone()))
+            found.put([x, y, z], labels.number(line.properties.label.clone())?)
         };
         put().map_err(|e: Error| e.at(&line.position[..]))?;
     }
     if has_name && file.lines.iter().all(|line| line.properties.label.is_none()) {
         return Err(Error::usage("no feature has the property that --class-field names"));
     }
-    (found.labels, found.crs) = (labels.finish(), file.system.crs);
+    // GeoJSON that does not say so is in degrees, by RFC 7946.
+    found.crs = if file.system.may_be_degrees { requested("EPSG:4326")? } else { file.system.crs };
+    found.labels = labels.finish();
     Ok(())
 }
 
@@ -169,7 +181,8 @@ fn read_input(
         }
         for (number, &point) in batch.iter().enumerate() {
             let value = column.as_ref().map(|column| column.of(reader.rows(), number));
-            let label = labels.number(value.filter(|value| !value.is_nan()).map(|value| value.to_string()));
+            let label =
+                labels.number(value.filter(|value| !value.is_nan()).map(|value| value.to_string()))?;
             found.put(description.coordinates.to_world(point), label)?;
         }
     }

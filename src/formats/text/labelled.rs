@@ -39,7 +39,7 @@ pub(crate) fn read(
         };
         let said = label.and_then(|column| fields(line, columns.delimiter).nth(column));
         let said = said.map(|said| String::from_utf8_lossy(said).into_owned());
-        found.put(point, labels.number(said)).map_err(at_line)?;
+        labels.number(said).and_then(|number| found.put(point, number)).map_err(at_line)?;
     }
     found.labels = labels.finish();
     Ok(())
