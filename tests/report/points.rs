@@ -214,6 +214,11 @@ fn no_points_are_a_report_without_figures() {
     assert_eq!((number(&one, "voids.cells"), number(&one, "voids.voids")), (1.0, 0.0));
     let page = run("spreport", &["-q", "-", "-o", "-"], b"# nothing\n");
     assert!(page.status.success() && page.stdout.starts_with(b"<!DOCTYPE html>"));
+    let second = "x,y,z,return_number,number_of_returns\n1,1,1,2,2\n9,9,1,2,2\n";
+    let found = report(&["-"], second.as_bytes());
+    assert!(found["voids"].is_null() && found["density"]["spacing"].is_null());
+    let page = run("spreport", &["-q", "-", "-o", "-"], second.as_bytes());
+    assert!(page.status.success() && !String::from_utf8(page.stdout).unwrap().contains("inf "));
     // Points that are not finite are counted.
     let found = report(&["-"], b"1 2 3\nnan 2 3\n4 5 inf\n7 8 9\n");
     assert_eq!((number(&found, "points.count"), number(&found, "points.not_finite")), (2.0, 2.0));

@@ -2,7 +2,7 @@
 //! compared on.
 
 use super::Options;
-use super::fields::{Carried, Fields};
+use super::fields::Fields;
 use super::lines::{Lines, Overlap};
 use super::picture::{Frame, Picture};
 use super::tally::{Density, Tally};
@@ -71,7 +71,7 @@ pub fn cover(
                 outside += 1;
                 continue;
             };
-            let carried: Carried = fields.read(reader.rows(), number);
+            let carried = fields.read(reader.rows(), number);
             if carried.is_first {
                 *seen.cell([column / TILE, row / TILE], row % TILE * TILE + column % TILE)? = 1;
             }

@@ -4,12 +4,14 @@
 //! least squares. The difference is that of their elevations. So a slope makes no difference between lines whose points
 //! lie at different places of the cell, as it does between means of z.
 
+use std::collections::BTreeMap;
+
 use super::Options;
 use super::fields::Carried;
 use super::sample::{Differences, Pair, Sample};
 use super::tally::Tally;
 use crate::accumulators::Accumulators;
-use crate::files::{TilePlace, places, tiles_of};
+use crate::files::{TilePlace, tiles_of};
 use spmesh_base::error::Result;
 use spmesh_formats::raster::{Grid, TILE};
 use spmesh_stream::Coordinates;
@@ -45,6 +47,8 @@ type Sums = [f64; 9];
 /// Sums of lines, each in tiles of its own.
 pub(super) struct Lines {
     sums: Accumulators<Sums>,
+    /// The lines of each tile that has any.
+    lines_of: BTreeMap<TilePlace, Vec<usize>>,
     grid: Grid,
     tiles: TilePlace,
     /// Flight lines in their order.
@@ -69,7 +73,17 @@ impl Lines {
         let sums = Accumulators::new([0.0; 9], grid, options.memory / 2, options.temp_dir.as_deref())?;
         let (tiles, sample) = (tiles_of(grid)?, Sample::new(options.memory / 8));
         let (datum, unit_of_z) = (bounds.min[2], options.unit_of_z);
-        Ok(Some(Lines { sums, grid: *grid, tiles, sources, coordinates, datum, unit_of_z, sample }))
+        Ok(Some(Lines {
+            sums,
+            lines_of: BTreeMap::new(),
+            grid: *grid,
+            tiles,
+            sources,
+            coordinates,
+            datum,
+            unit_of_z,
+            sample,
+        }))
     }
 
     /// The tile of a line that has the cells of a tile of the grid. Those of other lines follow along the shorter axis,
@@ -89,7 +103,11 @@ impl Lines {
         let world = self.coordinates.to_world(*stored);
         let [centre_x, centre_y] = self.grid.center(column as u32, row as u32);
         let (x, y, z) = (world[0] - centre_x, world[1] - centre_y, world[2] - self.datum);
-        let tile = self.layer([column / TILE, row / TILE], line);
+        let at = [column / TILE, row / TILE];
+        let tile = self.layer(at, line);
+        if !self.sums.has(tile) {
+            self.lines_of.entry(at).or_default().push(line);
+        }
         let sums = self.sums.cell(tile, row % TILE * TILE + column % TILE)?;
         let added = [1.0, x, y, z, x * x, x * y, y * y, x * z, y * z];
         sums.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
@@ -99,33 +117,36 @@ impl Lines {
     /// Compares lines.
     pub(super) fn finish(mut self) -> Result<Overlap> {
         let (mut steep, mut first) = (0, Vec::new());
-        for at in places(self.tiles) {
-            let here = (0..self.sources.len()).filter(|&line| self.sums.has(self.layer(at, line)));
-            let here: Vec<usize> = here.collect();
-            for (number, &one) in here.iter().enumerate() {
+        for (at, mut lines) in std::mem::take(&mut self.lines_of) {
+            lines.sort_unstable();
+            for (number, &one) in lines.iter().enumerate() {
                 first.clear();
                 let layer = self.layer(at, one);
                 first.extend_from_slice(self.sums.read(layer)?.unwrap_or_default());
-                for &other in &here[number + 1..] {
-                    let layer = self.layer(at, other);
-                    let second = self.sums.read(layer)?.unwrap_or_default();
-                    for (cell, (one_sums, other_sums)) in first.iter().zip(second).enumerate() {
-                        if one_sums[0] < POINTS_MIN || other_sums[0] < POINTS_MIN {
-                            continue;
-                        }
-                        let place = [at[0] * TILE + cell % TILE, at[1] * TILE + cell / TILE];
-                        match difference(one_sums, other_sums, self.unit_of_z) {
-                            Some(found) => {
-                                self.sample.add([self.sources[one], self.sources[other]], place, found);
-                            }
-                            None => steep += 1,
-                        }
-                    }
+                for &other in &lines[number + 1..] {
+                    steep += self.compare(at, one, &first, other)?;
                 }
             }
         }
         let (all, pairs, one_in) = self.sample.finish();
         Ok(Overlap { cell: self.grid.step, all, pairs, steep, one_in })
+    }
+
+    /// Compares a line, which has the sums `first`, with another in a tile. Returns the number of cells without a
+    /// difference.
+    fn compare(&mut self, at: TilePlace, one: usize, first: &[Sums], other: usize) -> Result<u64> {
+        let (layer, mut steep) = (self.layer(at, other), 0);
+        let second = self.sums.read(layer)?.unwrap_or_default();
+        let pair = [one, other].map(|line| self.sources[line]);
+        let cells = first.iter().zip(second).enumerate();
+        for (cell, (one, other)) in cells.filter(|(_, (one, other))| one[0].min(other[0]) >= POINTS_MIN) {
+            let place = [at[0] * TILE + cell % TILE, at[1] * TILE + cell / TILE];
+            match difference(one, other, self.unit_of_z) {
+                Some(found) => self.sample.add(pair, place, found),
+                None => steep += 1,
+            }
+        }
+        Ok(steep)
     }
 }
 

@@ -5,8 +5,11 @@ use std::fmt::Write;
 /// From here on, numbers are shown with exponents.
 const LARGE: f64 = 1e9;
 
-/// A number with some decimals.
+/// A number with some decimals; a dash if it is not finite.
 pub(super) fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return "–".to_string();
+    }
     if value.abs() >= LARGE {
         return format!("{value:.3e}");
     }
