@@ -69,7 +69,7 @@ memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 ///
 /// Reads points of any format twice, a triangle mesh as spdelaunay2d writes it, and check points.
 #[derive(Debug, Parser)]
-#[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+#[command(name = TOOL, version, after_long_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {
     /// Points: LAS, LAZ, COPC, text and others
     #[arg(value_name = "FILE")]

@@ -83,12 +83,12 @@ mod tests {
     #[test]
     fn cells_become_coarser_when_memory_is_short() {
         let place = |number: u64| [(number % 40) as f64 - 20.0, (number / 40) as f64 - 20.0];
-        let (mut small, mut large) = (CellMap::new(1.0, 100 * CELL_LEN), CellMap::new(8.0, u64::MAX));
+        let (mut small, mut large) = (CellMap::new(1.0, 100 * CELL_LEN), CellMap::new(4.0, u64::MAX));
         for number in 0..1600 {
             small.add(place(number), number % 3 == 0);
             large.add(place(number), number % 3 == 0);
         }
-        assert_eq!((small.side(), small.cells().len()), (8.0, 36));
+        assert_eq!((small.side(), small.cells().len()), (4.0, 100));
         assert_eq!(small.cells, large.cells);
     }
 
