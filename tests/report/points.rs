@@ -18,7 +18,8 @@ struct Row {
     returns: [u8; 2],
 }
 
-/// Two flight lines over a slope of three degrees, of which the second is a quarter higher, with a hole in the middle.
+/// Two flight lines over a slope of three degrees, of which the second is a quarter higher, with a hole in
+/// the middle.
 fn rows() -> Vec<Row> {
     let mut random = Random::new(7);
     let rows = (0..6000).map(|at| {

@@ -1,5 +1,5 @@
-//! Pictures of a few colours as PNG. Source: Portable Network Graphics (PNG) Specification, third edition, sections 5,
-//! 9 and 11.
+//! Pictures of a few colours as PNG. Source: Portable Network Graphics (PNG) Specification, third edition,
+//! sections 5, 9 and 11.
 
 use std::io::Write;
 

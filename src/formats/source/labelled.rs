@@ -1,5 +1,5 @@
-//! Points that are held in memory, with a word about each, such as check points: lines of text, features of GeoJSON,
-//! Shapefiles and GeoPackages, and any other input of points.
+//! Points that are held in memory, with a word about each, such as check points: lines of text, features of
+//! GeoJSON, Shapefiles and GeoPackages, and any other input of points.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -85,12 +85,13 @@ impl LabelledPoints {
     }
 }
 
-/// Reads the points of the file at `path`, which are at most `most`, with what the column, property or attribute
-/// `label` says. Points of LAS files have their class without it.
+/// Reads the points of the file at `path`, which are at most `most`, with what the column, property or
+/// attribute `label` says. Points of LAS files have their class without it.
 ///
 /// # Errors
-/// If the file cannot be opened, holds something else than points with finite coordinates and elevations, or does
-/// not have what `label` names; memory, if there are more points. The file is named, and the place in it.
+/// If the file cannot be opened, holds something else than points with finite coordinates and elevations, or
+/// does not have what `label` names; memory, if there are more points. The file is named, and the place in
+/// it.
 pub fn read_labelled(
     path: &Path,
     label: Option<&Column>,

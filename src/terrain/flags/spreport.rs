@@ -95,7 +95,8 @@ pub struct Flags {
     #[arg(long, value_name = "FILE", requires = "mesh")]
     check: Option<PathBuf>,
 
-    /// Column, property or attribute that says what is at a check point; of LAS files, it is the class by default
+    /// Column, property or attribute that says what is at a check point; of LAS files, it is the class by
+    /// default
     #[arg(long, value_name = "NAME", requires = "check")]
     class_field: Option<Column>,
 
@@ -107,8 +108,8 @@ pub struct Flags {
     #[arg(long, value_name = "RMSE", requires = "check", value_parser = parse_length)]
     check_accuracy: Option<f64>,
 
-    /// Side of the cells in which densities are counted; their corners are at its multiples. It doubles where memory is
-    /// too little [default: 10]
+    /// Side of the cells in which densities are counted; their corners are at its multiples. It doubles where
+    /// memory is too little [default: 10]
     #[arg(long, value_name = "S", value_parser = parse_positive)]
     cell: Option<f64>,
 

@@ -1,7 +1,7 @@
 //! A mesh against check points.
 //!
-//! Terms are those of the ASPRS Positional Accuracy Standards for Digital Geospatial Data, edition 2, version 2 (2024),
-//! sections 7.4 and 7.11 to 7.16.
+//! Terms are those of the ASPRS Positional Accuracy Standards for Digital Geospatial Data, edition 2, version
+//! 2 (2024), sections 7.4 and 7.11 to 7.16.
 
 use std::num::NonZeroUsize;
 
@@ -200,7 +200,8 @@ fn shown(label: &str, is_class: bool) -> String {
 }
 
 impl Accuracy {
-    /// The accuracy of a product with this error against the check points, whose own error adds to it: `RMSE_V`.
+    /// The accuracy of a product with this error against the check points, whose own error adds to it:
+    /// `RMSE_V`.
     pub fn rmse_v(&self, rmse: f64) -> Option<f64> {
         self.of_survey.map(|survey| rmse.hypot(survey))
     }

@@ -18,7 +18,8 @@ pub(super) struct Counts {
     pub(super) first: u64,
 }
 
-/// Counts by cell. Sides double when memory has no room for more cells, so a cell becomes a quarter of another.
+/// Counts by cell. Sides double when memory has no room for more cells, so a cell becomes a quarter of
+/// another.
 #[derive(Debug)]
 pub(super) struct CellMap {
     side: f64,
@@ -66,8 +67,8 @@ impl CellMap {
     }
 }
 
-/// The greatest multiple of a side that is not above a coordinate. A coordinate nearer to one than numbers can tell is
-/// on it.
+/// The greatest multiple of a side that is not above a coordinate. A coordinate nearer to one than numbers
+/// can tell is on it.
 fn multiple(at: f64, side: f64) -> i64 {
     let place = at / side;
     let nearest = place.round();

@@ -13,10 +13,11 @@ use spmesh_base::error::Result;
 use spmesh_formats::raster::{Grid, TILE, Window};
 use spmesh_formats::source::Input;
 
-/// A void is as wide as so many pulse spacings, says the specification; and pulses should be in nine of ten squares that
-/// are half as wide.
+/// A void is as wide as so many pulse spacings, says the specification; and pulses should be in nine of ten
+/// squares that are half as wide.
 ///
-/// Source: USGS, Lidar Base Specification 2024 rev. A, "Data voids" and "Spatial distribution and regularity".
+/// Source: USGS, Lidar Base Specification 2024 rev. A, "Data voids" and "Spatial distribution and
+/// regularity".
 const SPACINGS: f64 = 4.0;
 /// Most columns and rows of cells: their first and last cells are in memory.
 const LINES_MAX: u64 = 1 << 20;
@@ -38,7 +39,8 @@ pub struct Cover {
     pub picture: Picture,
 }
 
-/// Reads all points again; calls `progress` with their number. Returns `None` for both if there are no points.
+/// Reads all points again; calls `progress` with their number. Returns `None` for both if there are no
+/// points.
 ///
 /// Memory: that of `options`. Disk: 72 bytes for each cell and flight line, if memory has no room for them.
 ///
@@ -87,8 +89,8 @@ pub fn cover(
     Ok((Some(cover), lines.map(Lines::finish).transpose()?))
 }
 
-/// The grid of cells that are four pulse spacings wide, rounded up to two digits, and twice as wide until they are few
-/// enough.
+/// The grid of cells that are four pulse spacings wide, rounded up to two digits, and twice as wide until
+/// they are few enough.
 fn grid(density: &Density, spacing: Option<f64>) -> Result<Grid> {
     let mut step = spacing.map_or_else(|| round_up(SPACINGS * density.spacing), |spacing| SPACINGS * spacing);
     let Frame { min, max } = density.frame;
@@ -116,8 +118,8 @@ fn round_up(length: f64) -> f64 {
     if exponent < 0 { digits / 10f64.powi(-exponent) } else { digits * 10f64.powi(exponent) }
 }
 
-/// The extent of the points: the cells that have one with first returns, or that have such cells both to the left and to
-/// the right, and above and below.
+/// The extent of the points: the cells that have one with first returns, or that have such cells both to the
+/// left and to the right, and above and below.
 struct Extent {
     columns: Vec<Ends>,
     rows: Vec<Ends>,

@@ -2,8 +2,8 @@
 
 /// Scales the median of absolute deviations so that it is the standard deviation of normal errors.
 ///
-/// Source: Höhle and Höhle, "Accuracy assessment of digital elevation models by means of robust statistical methods",
-/// ISPRS Journal 64 (2009), section 3.2.
+/// Source: Höhle and Höhle, "Accuracy assessment of digital elevation models by means of robust statistical
+/// methods", ISPRS Journal 64 (2009), section 3.2.
 const NMAD: f64 = 1.4826;
 
 /// Figures of some differences, at least one.
@@ -66,8 +66,8 @@ impl Figures {
     }
 }
 
-/// The percentile of ascending values, of which there is one at least: linear between the two next to its place, as
-/// numpy's.
+/// The percentile of ascending values, of which there is one at least: linear between the two next to its
+/// place, as numpy's.
 pub(super) fn percentile(sorted: &[f64], percent: f64) -> f64 {
     let place = percent / 100.0 * (sorted.len() - 1) as f64;
     let below = (place as usize).min(sorted.len() - 1);

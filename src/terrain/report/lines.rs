@@ -1,8 +1,8 @@
 //! Flight lines against each other, in cells that several of them see.
 //!
-//! In a cell, a plane of one slope and an elevation for each of two lines are fitted to the single returns of both, by
-//! least squares. The difference is that of their elevations. So a slope makes no difference between lines whose points
-//! lie at different places of the cell, as it does between means of z.
+//! In a cell, a plane of one slope and an elevation for each of two lines are fitted to the single returns of
+//! both, by least squares. The difference is that of their elevations. So a slope makes no difference between
+//! lines whose points lie at different places of the cell, as it does between means of z.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,8 @@ use spmesh_formats::raster::{Grid, TILE};
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::bounds::Point;
 
-/// Steepest plane that counts, in degrees. Source: USGS, Lidar Base Specification 2024 rev. A, "Interswath consistency".
+/// Steepest plane that counts, in degrees. Source: USGS, Lidar Base Specification 2024 rev. A, "Interswath
+/// consistency".
 pub const SLOPE_MAX: f64 = 10.0;
 /// Fewest points of each line in a cell.
 pub const POINTS_MIN: f64 = 3.0;
@@ -86,8 +87,8 @@ impl Lines {
         }))
     }
 
-    /// The tile of a line that has the cells of a tile of the grid. Those of other lines follow along the shorter axis,
-    /// so that no number is large.
+    /// The tile of a line that has the cells of a tile of the grid. Those of other lines follow along the
+    /// shorter axis, so that no number is large.
     fn layer(&self, at: TilePlace, line: usize) -> TilePlace {
         let axis = usize::from(self.tiles[1] < self.tiles[0]);
         let mut layer = at;
@@ -132,8 +133,8 @@ impl Lines {
         Ok(Overlap { cell: self.grid.step, all, pairs, steep, one_in })
     }
 
-    /// Compares a line, which has the sums `first`, with another in a tile. Returns the number of cells without a
-    /// difference.
+    /// Compares a line, which has the sums `first`, with another in a tile. Returns the number of cells
+    /// without a difference.
     fn compare(&mut self, at: TilePlace, one: usize, first: &[Sums], other: usize) -> Result<u64> {
         let (layer, mut steep) = (self.layer(at, other), 0);
         let second = self.sums.read(layer)?.unwrap_or_default();
@@ -150,7 +151,8 @@ impl Lines {
     }
 }
 
-/// The elevation of the first line above the second; `None` where the plane is too steep, or points are on a line.
+/// The elevation of the first line above the second; `None` where the plane is too steep, or points are on a
+/// line.
 fn difference(one: &Sums, other: &Sums, unit_of_z: f64) -> Option<f64> {
     let means = [one, other].map(|sums| [1, 2, 3].map(|axis| sums[axis] / sums[0]));
     // Sums of products around the means of each line, for both.

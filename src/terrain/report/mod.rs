@@ -1,9 +1,10 @@
 //! `spreport`: how good points and a mesh are.
 //!
-//! `tally` counts points of each kind and in large cells (`cell_map`), whose side follows from memory. From the spacing of
-//! pulses, `cover` makes small cells, and finds voids among them; `lines` compares flight lines there, with a `sample` of
-//! the differences. `fields` reads what points carry. `accuracy` compares a mesh with check points, and has `figures` of
-//! the differences. A [`Report`] is written as `json`, and as a `page` with a `picture` for each map.
+//! `tally` counts points of each kind and in large cells (`cell_map`), whose side follows from memory. From
+//! the spacing of pulses, `cover` makes small cells, and finds voids among them; `lines` compares flight
+//! lines there, with a `sample` of the differences. `fields` reads what points carry. `accuracy` compares a
+//! mesh with check points, and has `figures` of the differences. A [`Report`] is written as `json`, and as a
+//! `page` with a `picture` for each map.
 
 mod accuracy;
 mod cell_map;

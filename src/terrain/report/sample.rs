@@ -54,8 +54,8 @@ impl Sums {
     }
 }
 
-/// Sums of all differences, and a sample of them for percentiles: all of them, or those of one cell in 2, 4, 8 and so
-/// on, chosen by a hash, as soon as memory has no room for more.
+/// Sums of all differences, and a sample of them for percentiles: all of them, or those of one cell in 2, 4,
+/// 8 and so on, chosen by a hash, as soon as memory has no room for more.
 #[derive(Debug)]
 pub(super) struct Sample {
     sums: BTreeMap<Pair, Sums>,

@@ -53,8 +53,8 @@ pub struct Density {
     pub pulses: f64,
     /// The root of the area of a first return: the aggregate nominal pulse spacing.
     pub spacing: f64,
-    /// Of the density of first returns in cells with points: the least, the 5th percentile, the median, the 95th
-    /// percentile, and the greatest.
+    /// Of the density of first returns in cells with points: the least, the 5th percentile, the median, the
+    /// 95th percentile, and the greatest.
     pub quantiles: [f64; 5],
     /// The box of the cells, of which a few that are far from all others may be left out.
     pub frame: Frame,
@@ -154,8 +154,8 @@ fn density(map: &CellMap) -> Density {
     }
 }
 
-/// The box of the cells that are not far from the others. Far is what lies beyond the middle cells along an axis by more
-/// than these extend; the middle ones are all but one in [`FAR`] at both ends.
+/// The box of the cells that are not far from the others. Far is what lies beyond the middle cells along an
+/// axis by more than these extend; the middle ones are all but one in [`FAR`] at both ends.
 fn frame(map: &CellMap) -> Frame {
     let reach = of_axes(|axis| {
         let mut along: Vec<i64> = map.cells().map(|(cell, _)| cell[axis]).collect();
