@@ -5,12 +5,13 @@ use std::path::Path;
 
 use crate::programs::{Folder, outcome, run, sample};
 
-const TOOLS: [&str; 16] = [
+const TOOLS: [&str; 17] = [
     "spfinalize",
     "spdelaunay2d",
     "spdelaunay3d",
     "spdem",
     "spconstrain",
+    "spground",
     "spheight",
     "spreport",
     "spnode",
@@ -150,13 +151,14 @@ fn each_failure_has_its_exit_code() {
 #[test]
 fn names_of_other_formats_are_refused() {
     let folder = Folder::new();
-    let tools: [(&str, &[&str]); 16] = [
+    let tools: [(&str, &[&str]); 17] = [
         ("spfinalize", &["-"]),
         ("spdelaunay2d", &[]),
         ("spdelaunay3d", &[]),
         ("spdem", &[]),
         ("spdem", &["--contours", "1"]),
         ("spconstrain", &["--kill", "1"]),
+        ("spground", &["none.las"]),
         ("spheight", &["--ground", "none", "none.las"]),
         ("spreport", &["none.las"]),
         ("spnode", &["collect", "none.json", "-d", "."]),

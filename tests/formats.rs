@@ -36,6 +36,7 @@ fn arguments(tool: &str) -> &'static [&'static str] {
         "splinefit" => &["fit", "--tol", "1000"],
         "spconvert" => &["--to", "text"],
         "spcanopy" => &["--ground", "none"],
+        "spground" => &["--out-dir", "."],
         "spreport" => &["--json", "-"],
         "spheight" => &["--ground", "none", "--out-dir", "."],
         _ => &[],

@@ -12,6 +12,7 @@ mod contours;
 mod convert;
 mod dem;
 mod formats;
+mod ground;
 mod height;
 mod house;
 mod like;

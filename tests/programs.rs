@@ -18,6 +18,7 @@ pub fn tool(name: &str) -> Command {
         "spdelaunay3d" => env!("CARGO_BIN_EXE_spdelaunay3d"),
         "spdem" => env!("CARGO_BIN_EXE_spdem"),
         "spcanopy" => env!("CARGO_BIN_EXE_spcanopy"),
+        "spground" => env!("CARGO_BIN_EXE_spground"),
         "spheight" => env!("CARGO_BIN_EXE_spheight"),
         "spreport" => env!("CARGO_BIN_EXE_spreport"),
         "spnode" => env!("CARGO_BIN_EXE_spnode"),

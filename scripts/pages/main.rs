@@ -10,7 +10,7 @@ use spmesh_molecules::flags::tess3;
 use spmesh_pipeline::flags::{spdelaunay2d, spdelaunay3d, spfinalize, spinfo, spnode};
 use spmesh_spacetime::flags::dd4;
 use spmesh_splines::flags::{configgen, splinefit};
-use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spheight, spreport};
+use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spground, spheight, spreport};
 use spmesh_view::flags::spview;
 
 fn main() -> std::io::Result<()> {
@@ -33,13 +33,14 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-fn tools() -> [Command; 16] {
+fn tools() -> [Command; 17] {
     [
         spfinalize::Flags::command(),
         spdelaunay2d::Flags::command(),
         spdelaunay3d::Flags::command(),
         spdem::Flags::command(),
         spconstrain::Flags::command(),
+        spground::Flags::command(),
         spheight::Flags::command(),
         spreport::Flags::command(),
         spnode::Flags::command(),

@@ -10,7 +10,7 @@ from cases import Expected, Plan, Skip, fault, last
 from faults_inputs import choose, reads_files
 
 # Programs that take several files of points.
-TAKES_MANY = {"spfinalize", "spheight", "spcanopy", "configgen"}
+TAKES_MANY = {"spfinalize", "spground", "spheight", "spcanopy", "configgen"}
 
 
 def fill(path, data, is_over):

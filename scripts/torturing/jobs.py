@@ -92,6 +92,7 @@ JOBS = [
     Job(
         "height", "spfinalize in/tile.las | spdelaunay2d | spheight --ground - in/east.las", "-o out/east.laz"
     ),
+    Job("classes", "spground in/tile.laz in/east.laz --report out/found.json", "--out-dir out"),
     Job("canopy", "spcanopy --ground in/ground.spm in/tile.laz --step 2", "-o out/canopy.tif", ""),
     Job(
         "lines",

@@ -67,9 +67,20 @@ impl<C: Pod> Accumulators<C> {
     /// # Errors
     /// Memory, if this is too little for tiles that triangles and cells of points have in common.
     pub(crate) fn new(blank: C, grid: &Grid, memory: u64, temp_dir: Option<&Path>) -> Result<Self> {
-        let held_max = usize::try_from(memory / Self::TILE_LEN).unwrap_or(usize::MAX);
         let [across, down] = tiles_of(grid)?;
-        let needed = (across * down).min(HELD_MIN);
+        Self::with_tiles(blank, (across * down).min(HELD_MIN), memory, temp_dir)
+    }
+
+    /// No cells of a raster without an extent: its tiles may be anywhere.
+    ///
+    /// # Errors
+    /// As [`Accumulators::new`].
+    pub(crate) fn anywhere(blank: C, memory: u64, temp_dir: Option<&Path>) -> Result<Self> {
+        Self::with_tiles(blank, HELD_MIN, memory, temp_dir)
+    }
+
+    fn with_tiles(blank: C, needed: usize, memory: u64, temp_dir: Option<&Path>) -> Result<Self> {
+        let held_max = usize::try_from(memory / Self::TILE_LEN).unwrap_or(usize::MAX);
         if held_max < needed {
             let [tile, all] =
                 [Self::TILE_LEN, Self::TILE_LEN * needed as u64].map(|len| len.div_ceil(1 << 10));
@@ -113,6 +124,13 @@ impl<C: Pod> Accumulators<C> {
     /// Whether something was added to a tile.
     pub(crate) fn has(&self, at: TilePlace) -> bool {
         self.places.contains_key(&at)
+    }
+
+    /// The tiles that something was added to, row by row.
+    pub(crate) fn tiles(&self) -> Vec<TilePlace> {
+        let mut tiles: Vec<TilePlace> = self.places.keys().copied().collect();
+        tiles.sort_unstable_by_key(|&[column, row]| [row, column]);
+        tiles
     }
 
     /// Bytes of the temporary file.

@@ -1,24 +1,14 @@
 //! `spcanopy`: the surfaces through the points above each threshold, and the highest of them.
 //!
-//! Each layer goes through the same steps as a pipe of programs, with temporary files for pipes:
-//! finalization, triangulation, drawing.
-
-use std::fs::File;
-use std::io::{BufReader, BufWriter, Seek, Write};
-use std::path::PathBuf;
+//! Each layer is triangulated as a pipe of programs would ([`Meshing`]), and drawn.
 
 use crate::dem::{Highest, Options};
 use crate::height::HeightPoints;
+use crate::meshing::Meshing;
 use spmesh_base::error::{Error, Result};
-use spmesh_base::temporary::TemporaryFile;
 use spmesh_formats::raster::Grid;
 use spmesh_formats::source::{Description, PointReader};
-use spmesh_pipeline::finalize::{Budget, CELL_POINTS, InRegions, Leaves, Order, Passes, Spooling};
-use spmesh_pipeline::reduce::Duplicates;
-use spmesh_stream::StreamReader;
-
-/// Bytes of the buffers of temporary files.
-const BUFFER_LEN: usize = 1 << 18;
+use spmesh_pipeline::finalize::Passes;
 
 /// Thresholds of layers below the regular ones, and the distance of these.
 const LOW_LAYERS: [f64; 3] = [0.0, 2.0, 5.0];
@@ -31,12 +21,8 @@ const LAYERS_MAX: usize = 102;
 pub struct Settings {
     /// Longest edge of triangles in layers above 0, in world units.
     pub edge_max: f64,
-    /// Memory for points. Units: bytes.
-    pub memory: u64,
-    /// Threads that finalize and triangulate.
-    pub threads: usize,
-    /// Folder for temporary files; that of the system if `None`.
-    pub temp_dir: Option<PathBuf>,
+    /// How points are triangulated.
+    pub meshing: Meshing,
 }
 
 /// The thresholds of layers that have points up to `greatest`, ascending from 0; without `layers`, regular
@@ -79,56 +65,11 @@ pub fn draw(
         if threshold > 0.0 {
             (options.kill, options.concave) = (Some(settings.edge_max), None);
         }
-        let mut mesh = settings.triangulate(&Layer { points, threshold })?;
+        let mut mesh = settings.meshing.mesh(&Layer { points, threshold }, "layer")?;
         triangles += highest.add(&mut mesh, &options)?.triangles;
         progress(done);
     }
     Ok((highest, triangles))
-}
-
-impl Settings {
-    /// The mesh of a layer, as a stream.
-    fn triangulate(&self, layer: &Layer) -> Result<StreamReader<BufReader<File>>> {
-        let Settings { memory, threads, temp_dir, .. } = self;
-        let leaves = Leaves::Collapsed { cell_points: CELL_POINTS, level_max: None };
-        let options = spmesh_pipeline::finalize::Options {
-            leaves,
-            order: Order::Chunked,
-            compress: false,
-            thin: None,
-            budget: Budget::of_process(*memory, *threads)?,
-            temp_dir: temp_dir.clone(),
-            spooling: Spooling::Never,
-            regions: InRegions::NEVER,
-            weighted: None,
-        };
-        let points =
-            self.stream(|output| spmesh_pipeline::finalize::run(layer, &options, &mut (), output).map(drop))?;
-        let options = spmesh_pipeline::reduce::Options {
-            duplicates: Duplicates::Highest,
-            threads: *threads,
-            memory: Some(*memory),
-            ..spmesh_pipeline::reduce::Options::default()
-        };
-        self.stream(move |output| {
-            spmesh_pipeline::reduce::triangulate(points, output, &options, |_| {}).map(drop)
-        })
-    }
-
-    /// What `write` writes, as a stream from a temporary file.
-    fn stream(
-        &self,
-        write: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
-    ) -> Result<StreamReader<BufReader<File>>> {
-        let failed = |e| Error::io("writing a temporary file", e);
-        let file = TemporaryFile::create(self.temp_dir.as_deref())?.into_file();
-        let mut output = BufWriter::with_capacity(BUFFER_LEN, file);
-        write(&mut output)?;
-        output.flush().map_err(failed)?;
-        let mut file = output.into_inner().map_err(|e| failed(e.into_error()))?;
-        file.rewind().map_err(failed)?;
-        StreamReader::new(BufReader::with_capacity(BUFFER_LEN, file), "layer")
-    }
 }
 
 /// The points above a threshold, as an input of the finalization.

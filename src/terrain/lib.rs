@@ -5,7 +5,8 @@
 //! |---|---|
 //! | [`dem`], [`contours`], [`points`], [`files`] | `spdem` |
 //! | [`height`] | `spheight` |
-//! | [`canopy`], with [`height`] and [`dem`] | `spcanopy` |
+//! | [`canopy`], with [`height`], [`meshing`] and [`dem`] | `spcanopy` |
+//! | [`ground`], with [`height`] and [`meshing`] | `spground` |
 //! | [`constrain`] | `spconstrain` |
 //! | [`report`], with [`height`] | `spreport` |
 //!
@@ -19,7 +20,9 @@ pub mod dem;
 pub mod files;
 #[cfg(feature = "flags")]
 pub mod flags;
+pub mod ground;
 pub mod height;
+pub mod meshing;
 pub mod points;
 pub mod report;
 mod surface;

@@ -14,18 +14,18 @@ use crate::programs::{Folder, outcome, run};
 use crate::sources::las_file::LasFile;
 
 /// A LAS file that is taken apart by the offsets in the specification.
-struct Parts {
-    header: Vec<u8>,
+pub struct Parts {
+    pub header: Vec<u8>,
     /// User, number and body of each record before the points.
     vlrs: Vec<(String, u16, Vec<u8>)>,
-    record_len: usize,
+    pub record_len: usize,
     records: Vec<u8>,
     /// All that follows the points.
-    tail: Vec<u8>,
+    pub tail: Vec<u8>,
 }
 
 impl Parts {
-    fn of(file: &[u8]) -> Parts {
+    pub fn of(file: &[u8]) -> Parts {
         let (header_len, start) = (u16_at(file, 94).into(), u32_at(file, 96) as usize);
         let record_len = usize::from(u16_at(file, 105));
         let count = match u32_at(file, 107) {
@@ -69,7 +69,7 @@ impl Parts {
         Parts { header, vlrs, record_len, records, tail }
     }
 
-    fn records(&self) -> std::slice::ChunksExact<'_, u8> {
+    pub fn records(&self) -> std::slice::ChunksExact<'_, u8> {
         self.records.chunks_exact(self.record_len)
     }
 
@@ -83,7 +83,7 @@ impl Parts {
     }
 
     /// Records before the points without those that must change.
-    fn kept(&self) -> Vec<&(String, u16, Vec<u8>)> {
+    pub fn kept(&self) -> Vec<&(String, u16, Vec<u8>)> {
         let changes = |user: &str, number: u16| {
             user == "laszip encoded" || user == "copc" || (user, number) == ("LASF_Spec", 4)
         };
@@ -112,7 +112,7 @@ fn mesh_of(file: &[u8]) -> Vec<u8> {
 }
 
 /// The triangles of a mesh stream, in stored coordinates.
-fn triangles_of(mesh: &[u8]) -> Vec<[Point; 3]> {
+pub fn triangles_of(mesh: &[u8]) -> Vec<[Point; 3]> {
     let mut reader = StreamReader::new(mesh, "mesh").unwrap();
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     while let Some(event) = reader.next_event().unwrap() {

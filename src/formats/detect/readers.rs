@@ -57,6 +57,9 @@ pub const TESS3: Reader = reader("tess3", || [structures(), vec![Format::Off], p
 /// `spcanopy`.
 pub const SPCANOPY: Reader = reader("spcanopy", || vec![Format::Las]);
 
+/// `spground`.
+pub const SPGROUND: Reader = reader("spground", || vec![Format::Las]);
+
 /// `spheight`, for the files whose points get heights.
 pub const SPHEIGHT: Reader = reader("spheight", || vec![Format::Las, Format::Text, Format::OtherText]);
 
@@ -68,8 +71,19 @@ pub const DD4: Reader =
     Reader { has_raw: true, axes: 4, ..reader("dd4", || formats_with(|row| row.sites.is_some())) };
 
 /// All of them.
-pub const READERS: [&Reader; 10] =
-    [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &SPCANOPY, &SPHEIGHT, &SPREPORT, &TESS3, &DD4];
+pub const READERS: [&Reader; 11] = [
+    &SPFINALIZE,
+    &CONFIGGEN,
+    &SPLINEFIT,
+    &SPINFO,
+    &SPCONVERT,
+    &SPCANOPY,
+    &SPGROUND,
+    &SPHEIGHT,
+    &SPREPORT,
+    &TESS3,
+    &DD4,
+];
 
 /// The reader of a caller that does not name its tool.
 static ANY: Reader = Reader { has_raw: true, ..reader("this program", points) };

@@ -70,7 +70,7 @@ impl<W: Write + Seek> LasCopy<W> {
     /// under way.
     ///
     /// # Errors
-    /// Usage, if the output is a pipe, or records cannot take the field; if reading or writing fails.
+    /// Usage, if the output is a pipe or not at its start, or records cannot take the field; if reading or writing fails.
     pub fn start(
         source: &LasFile,
         mut output: W,
@@ -78,9 +78,14 @@ impl<W: Write + Seek> LasCopy<W> {
         threads: usize,
         ahead_max: u64,
     ) -> Result<LasCopy<W>> {
-        output.stream_position().map_err(|_| {
+        let position = output.stream_position().map_err(|_| {
             Error::usage("LAS and LAZ files cannot be written to a pipe: their header is completed last")
         })?;
+        if position != 0 {
+            return Err(Error::usage(
+                "LAS and LAZ files cannot follow what a file holds already: give --output",
+            ));
+        }
         let file = source.view()?;
         let raw = source.header.raw;
         let mut header = read_header(&file, raw.header_len)?;

@@ -4,7 +4,9 @@ use laz::DecompressionSelection;
 
 use crate::las::header::{LasHeader, RECORD_LENS};
 use crate::las::laz::LazRecords;
+use crate::source::filters::Filters;
 use crate::source::origin::{FileView, Origin};
+use crate::source::record_filter::RecordFilter;
 use crate::source::record_reader::RecordReader;
 use crate::source::records::PlainRecords;
 use spmesh_base::error::Result;
@@ -81,6 +83,12 @@ impl LasFile {
         self.origin.view()
     }
 
+    /// The classes of its records, and which of them filters keep. The interval of z is not looked at.
+    pub fn classes(&self, filters: &Filters) -> RecordClasses {
+        let format = self.header.format;
+        RecordClasses { is_extended: format >= 6, filter: RecordFilter::new(filters, format) }
+    }
+
     /// Starts a pass over all records; `threads` decompress them.
     ///
     /// Memory: one group of chunks for each thread.
@@ -100,6 +108,30 @@ impl LasFile {
         };
         let reader = open().map_err(|e| e.of_input(&self.name))?;
         Ok(LasRecords { reader, name: self.name.clone() })
+    }
+}
+
+/// The classes of the records of a file.
+pub struct RecordClasses {
+    is_extended: bool,
+    filter: RecordFilter,
+}
+
+impl RecordClasses {
+    /// Whether the filters keep a record.
+    pub fn keeps(&self, record: &[u8]) -> bool {
+        self.filter.reason(record).is_none()
+    }
+
+    /// Sets the class of a record, and leaves the flags beside it as they are. Domain: at most 31 in point
+    /// formats 0 to 5, which have five bits for it.
+    pub fn set(&self, record: &mut [u8], class: u8) {
+        if self.is_extended {
+            record[16] = class;
+        } else {
+            debug_assert!(class < 32);
+            record[15] = record[15] & 0xe0 | class & 0x1f;
+        }
     }
 }
 

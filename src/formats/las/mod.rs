@@ -18,4 +18,4 @@ pub(crate) mod records;
 
 pub use copy::{Changes, LasCopy};
 pub use field::ExtraField;
-pub use file::{LasFile, LasRecords};
+pub use file::{LasFile, LasRecords, RecordClasses};

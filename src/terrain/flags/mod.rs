@@ -1,8 +1,10 @@
-//! Command lines of `spdem`, `spheight`, `spcanopy`, `spconstrain` and `spreport`.
+//! Command lines of `spdem`, `spground`, `spheight`, `spcanopy`, `spconstrain` and `spreport`.
 
+mod names;
 mod sheets;
 pub mod spcanopy;
 pub mod spconstrain;
 pub mod spdem;
+pub mod spground;
 pub mod spheight;
 pub mod spreport;

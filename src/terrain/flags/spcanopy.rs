@@ -10,11 +10,12 @@ use super::sheets::SheetFlags;
 use crate::canopy::{Settings, draw, thresholds};
 use crate::dem::{Method, Options, Quantity, Sample};
 use crate::height::{Ground, HeightPoints, about_below};
-use spmesh_base::error::{Error, ErrorKind, Result, counted};
+use crate::meshing::Meshing;
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_formats::detect::SPCANOPY;
 use spmesh_formats::raster::{Grid, RasterFormat, Window};
 use spmesh_formats::source::{Filters, Input, SourceOptions};
-use spmesh_pipeline::finalize::Budget;
+use spmesh_pipeline::reduce::Duplicates;
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
 use spmesh_shell::endings;
 use spmesh_shell::outline::{OutlineFlags, length};
@@ -267,18 +268,15 @@ impl Flags {
     /// How layers are made. Half of the memory is for points, half for tiles.
     fn settings(&self, grid: &Grid) -> Result<Settings> {
         let threads = self.threads().get();
-        let least = 2 * Budget::process_min(threads);
-        if self.memory < least {
-            let [given, least] = [self.memory >> 20, least.div_ceil(1 << 20)];
-            let threads = counted(threads as u64, "thread", "threads");
-            let text = format!("--memory of {given} MiB is too little for {threads}: give {least}M or more");
-            return Err(Error::new(ErrorKind::Memory, text));
-        }
+        Meshing::check_half(self.memory, threads)?;
         Ok(Settings {
             edge_max: length("--max-edge", self.max_edge)?.unwrap_or(EDGE_CELLS * grid.step),
-            memory: self.memory / 2,
-            threads,
-            temp_dir: self.raster.temp_dir().map(Into::into),
+            meshing: Meshing {
+                duplicates: Duplicates::Highest,
+                memory: self.memory / 2,
+                threads,
+                temp_dir: self.raster.temp_dir().map(Into::into),
+            },
         })
     }
 

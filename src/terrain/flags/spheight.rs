@@ -1,16 +1,15 @@
 //! `spheight`: flags, and the counts of `--stats`.
 
 mod batch;
-mod names;
 
 use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 
-use names::ENDINGS;
+use super::names::{ENDINGS, FormatFlag, OutputNames};
 
 use crate::height::{
     Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights, write_text_heights,
@@ -154,12 +153,8 @@ pub struct Flags {
 /// The values of `--outside`.
 const OUTSIDE: Names<Outside> = &[("no-data", Outside::NoData), ("nearest", Outside::Nearest)];
 
-/// The values of `--format`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum FormatFlag {
-    Las,
-    Laz,
-}
+/// Endings of names of LAS files, and of text.
+const ENDINGS_OWN: &[&str] = &["las", "laz", "xyz", "csv", "tsv", "txt", "asc", "dat"];
 
 /// Sums over all files.
 #[derive(Debug, Default)]
@@ -226,7 +221,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     let started = Instant::now();
     let paths = flags.inputs()?;
-    let outputs = flags.outputs(&paths)?;
+    let outputs = flags.names().of(&paths)?;
     outputs.iter().take(1).try_for_each(|output| flags.options(output).map(drop))?;
     let finished = match &flags.batch {
         BatchFlags { out_dir: Some(folder), summary, resume, keep_going, .. }
@@ -357,7 +352,6 @@ impl Flags {
             return Err(Error::usage(format!("--name takes 1 to {NAME_LEN_MAX} bytes of text")));
         }
         let place = if self.replace_z { HeightPlace::Z } else { HeightPlace::Field(self.name.clone()) };
-        let is_named = self.output.is_some().then(|| of_ending(ENDINGS, output)).flatten();
         if self.replace_z && self.outside() == Outside::NoData {
             return Err(Error::usage(
                 "z cannot be without a value: give --outside nearest, or leave out --replace-z",
@@ -366,10 +360,35 @@ impl Flags {
         Ok(FileOptions {
             place,
             outside: self.outside(),
-            is_compressed: self.format.or(is_named).map(|format| format == FormatFlag::Laz),
+            is_compressed: self.names().is_compressed(output),
             memory: self.memory,
             threads: threads(self.threads).get(),
         })
+    }
+
+    fn names(&self) -> OutputNames<'_> {
+        OutputNames {
+            output: self.output.as_deref(),
+            folder: self.batch.out_dir.as_deref(),
+            format: self.format,
+            endings: ENDINGS_OWN,
+        }
+    }
+
+    /// Checks that the name of an output goes with the format of the file, which stays.
+    fn check_ending(&self, file: &PointFile, output: &Path) -> Result<()> {
+        let is_las = of_ending(ENDINGS, output).is_some();
+        let what = match file {
+            PointFile::Las(_) if self.output.is_some() && self.format.is_none() && !is_las => {
+                "points are written to NAME.las or NAME.laz, or choose with --format"
+            }
+            PointFile::Text(_) if self.format.is_some() => "--format is for LAS files: text stays text",
+            PointFile::Text(_) if self.output.is_some() && is_las => {
+                "text stays text: give a name such as heights.csv"
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::usage(what).of_input(output.display().to_string()))
     }
 
     fn outside(&self) -> Outside {

@@ -90,17 +90,68 @@ pub fn write_heights<W: Write + Seek>(
         has_new_z: options.place == HeightPlace::Z,
         is_compressed: options.is_compressed.unwrap_or(file.is_compressed()),
     };
+    let of_file = |e: Error| e.of_input(file.name());
+    let mut counts = Counts::default();
+    let mut finder = Finder::new(ground, file, scale[2], options);
+    let (record_len, mut piece) = (file.record_len(), Vec::new());
+    let (output, notices) =
+        rewrite(file, output, &changes, options.memory, options.threads, |batch, copy| {
+            counts.outside += finder.find(batch, record_len).map_err(of_file)?;
+            for (records, heights) in
+                batch.chunks(PIECE_LEN * record_len).zip(finder.heights.chunks(PIECE_LEN))
+            {
+                piece.clear();
+                for (record, &height) in records.chunks_exact(record_len).zip(heights) {
+                    let index = counts.points;
+                    counts.points += 1;
+                    counts.without += u64::from(height.is_nan());
+                    counts.below += u64::from(height < 0.0);
+                    let stored = stored(height, &options.place);
+                    let stored = stored.map_err(|e| of_file(e.at(format!("record {index}"))))?;
+                    match options.place {
+                        HeightPlace::Field(_) => {
+                            piece.extend_from_slice(record);
+                            piece.extend_from_slice(&stored.to_le_bytes());
+                        }
+                        HeightPlace::Z => {
+                            piece.extend_from_slice(&record[..8]);
+                            piece.extend_from_slice(&stored.to_le_bytes());
+                            piece.extend_from_slice(&record[12..]);
+                        }
+                    }
+                }
+                copy.write(&piece)?;
+            }
+            progress(counts.points);
+            Ok(())
+        })?;
+    counts.notices = notices;
+    Ok((output, counts))
+}
+
+/// Writes `file` again: `edit` gets its records in batches, and writes what becomes of them. Returns the
+/// output, and what could not be kept.
+///
+/// Memory: `memory`.
+///
+/// # Errors
+/// As [`LasCopy::start`]; malformed, if the file is; those of `edit`; if writing fails.
+pub(crate) fn rewrite<W: Write + Seek>(
+    file: &LasFile,
+    output: W,
+    changes: &Changes,
+    memory: u64,
+    threads: usize,
+    mut edit: impl FnMut(&mut [u8], &mut LasCopy<W>) -> Result<()>,
+) -> Result<(W, Vec<String>)> {
     let record_len = file.record_len();
     let point_len = 2 * record_len as u64 + POINT_LEN;
-    let batch_max = (options.memory / point_len).clamp(1, BATCH_MAX);
-    let batch_len = batch_max as usize * record_len;
+    let batch_len = (memory / point_len).clamp(1, BATCH_MAX) as usize * record_len;
     let of_file = |e: Error| e.of_input(file.name());
-    let mut copy =
-        LasCopy::start(file, output, &changes, options.threads, batch_len as u64).map_err(of_file)?;
-    let mut counts = Counts { notices: copy.notices().to_vec(), ..Counts::default() };
-    let mut finder = Finder::new(ground, file, scale[2], options);
-    let mut records = file.records(options.threads)?;
-    let (mut next, mut batch, mut piece) = (Vec::new(), Vec::new(), Vec::new());
+    let mut copy = LasCopy::start(file, output, changes, threads, batch_len as u64).map_err(of_file)?;
+    let notices = copy.notices().to_vec();
+    let mut records = file.records(threads)?;
+    let (mut next, mut batch) = (Vec::new(), Vec::new());
     loop {
         batch.clear();
         // A pool of decoders hands over more than one record at once, so a batch may exceed its length by that.
@@ -112,36 +163,10 @@ pub fn write_heights<W: Write + Seek>(
             batch.extend_from_slice(&next);
         }
         if batch.is_empty() {
-            break;
+            return Ok((copy.finish().map_err(of_file)?, notices));
         }
-        let first = counts.points;
-        counts.outside += finder.find(&batch, record_len).map_err(of_file)?;
-        for (records, heights) in batch.chunks(PIECE_LEN * record_len).zip(finder.heights.chunks(PIECE_LEN)) {
-            piece.clear();
-            for (record, &height) in records.chunks_exact(record_len).zip(heights) {
-                let index = counts.points;
-                counts.points += 1;
-                counts.without += u64::from(height.is_nan());
-                counts.below += u64::from(height < 0.0);
-                let stored = stored(height, &options.place).map_err(|e| e.at(format!("record {index}")))?;
-                match options.place {
-                    HeightPlace::Field(_) => {
-                        piece.extend_from_slice(record);
-                        piece.extend_from_slice(&stored.to_le_bytes());
-                    }
-                    HeightPlace::Z => {
-                        piece.extend_from_slice(&record[..8]);
-                        piece.extend_from_slice(&stored.to_le_bytes());
-                        piece.extend_from_slice(&record[12..]);
-                    }
-                }
-            }
-            copy.write(&piece)?;
-        }
-        debug_assert_eq!(counts.points - first, (batch.len() / record_len) as u64);
-        progress(counts.points);
+        edit(&mut batch, &mut copy)?;
     }
-    Ok((copy.finish().map_err(of_file)?, counts))
 }
 
 /// The integer that stands for a height.
@@ -200,7 +225,7 @@ impl<'g> Finder<'g> {
 }
 
 /// The stored integers of a record.
-fn stored_point(record: &[u8]) -> Point {
+pub(crate) fn stored_point(record: &[u8]) -> Point {
     [0, 4, 8]
         .map(|at| f64::from(i32::from_le_bytes(*record[at..].first_chunk().expect("records are longer"))))
 }

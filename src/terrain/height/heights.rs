@@ -6,8 +6,8 @@ use super::blocks::{Blocks, LoadedBlock, Triangle};
 use super::boxes::Box2;
 use super::ground::Ground;
 use super::nearest::Nearest;
-use super::point_grid::{MANY, PointGrid, Share, height_of, set_height};
-use super::surface::{PLAIN_MAX, beyond_numbers, height, plain_shares, rounded, shares, slope};
+use super::point_grid::{MANY, PointGrid, Share, height_of, set_height, slope_of};
+use super::surface::{PLAIN_MAX, beyond_numbers, height, plain_shares, rounded, shares, slope, steepness};
 use spmesh_base::error::Result;
 use spmesh_delaunay::parallel;
 use spmesh_stream::model::bounds::Point;
@@ -35,6 +35,14 @@ impl Unit {
             Unit::Stored | Unit::Slope => height,
         }
     }
+}
+
+/// What is found for each point.
+#[derive(Debug, Clone, Copy)]
+struct Wanted {
+    unit: Unit,
+    /// The least length of a triangle for its slope, if slopes are wanted.
+    run: Option<f64>,
 }
 
 /// The heights of points that are outside of the mesh.
@@ -80,6 +88,31 @@ impl<'g> Heights<'g> {
     /// If the temporary file fails; usage, if coordinates are too great or too small to interpolate between;
     /// malformed, if points are where not all of the ground was read.
     pub fn of(&mut self, points: &[Point], heights: &mut Vec<f64>) -> Result<u64> {
+        self.find(points, None)?;
+        self.answer(points.len(), heights, |_, _| {})
+    }
+
+    /// [`Heights::of`], and the slopes of the triangles there: how much stored z changes over a stored unit
+    /// of x and y, as if triangles were at least `run` long; 0 outside of the mesh. On an edge it is the
+    /// slope of that, and at a vertex 0, so it does not matter which triangle is met first.
+    ///
+    /// # Errors
+    /// As [`Heights::of`].
+    pub fn with_slopes(
+        &mut self,
+        points: &[Point],
+        run: f64,
+        heights: &mut Vec<f64>,
+        slopes: &mut Vec<f64>,
+    ) -> Result<u64> {
+        self.find(points, Some(run))?;
+        slopes.clear();
+        slopes.resize(points.len(), 0.0);
+        self.answer(points.len(), heights, |number, slope| slopes[number as usize] = slope)
+    }
+
+    /// Looks for the points in the triangles.
+    fn find(&mut self, points: &[Point], run: Option<f64>) -> Result<()> {
         if !points.is_empty() {
             let bounds = Box2::of(points);
             if !bounds.has_sides() {
@@ -89,22 +122,29 @@ impl<'g> Heights<'g> {
         }
         self.grid.fill(points);
         let parts = self.threads.get().min(points.len() / SHARE_MIN).max(1);
-        let (blocks, unit) = (self.ground.blocks(), self.unit);
-        let work = |(share, points)| search(blocks, &share, points, unit);
+        let (blocks, wanted) = (self.ground.blocks(), Wanted { unit: self.unit, run });
+        let work = |(share, points)| search(blocks, &share, points, wanted);
         parallel::map(self.threads, self.grid.split(parts), work)?;
+        Ok(())
+    }
+
+    /// Replaces `heights` with what was found of `len` points, whose slopes go to `slope`. Returns the number
+    /// of points outside of the mesh.
+    fn answer(&mut self, len: usize, heights: &mut Vec<f64>, mut slope: impl FnMut(u32, f64)) -> Result<u64> {
         heights.clear();
-        heights.resize(points.len(), f64::NAN);
+        heights.resize(len, f64::NAN);
         let mut outside = 0;
         for (number, point) in self.grid.numbered() {
             let height = &mut heights[number as usize];
             if let Some(found) = height_of(point) {
                 *height = found;
+                slope(number, slope_of(point));
                 continue;
             }
             outside += 1;
             if self.outside == Outside::Nearest {
                 let above = point[2] - self.nearest.elevation(point)?.unwrap_or(f64::NAN);
-                *height = unit.rounded(above);
+                *height = self.unit.rounded(above);
             }
         }
         Ok(outside)
@@ -112,7 +152,7 @@ impl<'g> Heights<'g> {
 }
 
 /// Finds the heights of a share of the points.
-fn search(blocks: &Blocks, share: &Share, points: &mut [Point], unit: Unit) -> Result<()> {
+fn search(blocks: &Blocks, share: &Share, points: &mut [Point], wanted: Wanted) -> Result<()> {
     let (mut block, mut cells) = (LoadedBlock::default(), Vec::new());
     for number in blocks.that(|bounds| share.has_points_in(bounds)) {
         blocks.read(number, &mut block)?;
@@ -125,10 +165,11 @@ fn search(blocks: &Blocks, share: &Share, points: &mut [Point], unit: Unit) -> R
             let triangle = block.triangle(corners);
             for range in share.ranges(min, max) {
                 if range.len() > MANY {
-                    share.for_each_near(&triangle, &mut |range| meet(&triangle, &mut points[range], unit))?;
+                    let mut look = |range| meet(&triangle, &mut points[range], wanted);
+                    share.for_each_near(&triangle, &mut look)?;
                     break;
                 }
-                meet(&triangle, &mut points[range], unit)?;
+                meet(&triangle, &mut points[range], wanted)?;
             }
         }
     }
@@ -137,11 +178,11 @@ fn search(blocks: &Blocks, share: &Share, points: &mut [Point], unit: Unit) -> R
 
 /// Sets the heights of waiting points in a triangle.
 #[inline]
-fn meet(triangle: &Triangle, points: &mut [Point], unit: Unit) -> Result<()> {
+fn meet(triangle: &Triangle, points: &mut [Point], wanted: Wanted) -> Result<()> {
     let bounds = Box2::of(triangle);
     for point in points {
         if bounds.contains(point) {
-            meet_point(triangle, &bounds, point, unit)?;
+            meet_point(triangle, &bounds, point, wanted)?;
         }
     }
     Ok(())
@@ -150,16 +191,16 @@ fn meet(triangle: &Triangle, points: &mut [Point], unit: Unit) -> Result<()> {
 /// Sets the height of a point, if the triangle contains it. What it needs of the triangle is computed for
 /// each point: most triangles need it for a point or two.
 #[inline(never)]
-fn meet_point(triangle: &Triangle, bounds: &Box2, point: &mut Point, unit: Unit) -> Result<()> {
-    let is_plain = matches!(unit, Unit::Steps(_)) && bounds.longer_side() <= PLAIN_MAX;
+fn meet_point(triangle: &Triangle, bounds: &Box2, point: &mut Point, wanted: Wanted) -> Result<()> {
+    let is_plain = matches!(wanted.unit, Unit::Steps(_)) && bounds.longer_side() <= PLAIN_MAX;
     let shares = if is_plain { plain_shares(triangle, point) } else { shares(triangle, point) };
     let Some(shares) = shares else { return Ok(()) };
     let above = height(triangle, shares, point)?;
-    let height = match unit {
+    let height = match wanted.unit {
         Unit::Steps(steps) => rounded(triangle, point, above, steps),
         Unit::Stored => above,
-        Unit::Slope => slope(triangle),
+        Unit::Slope => steepness(triangle),
     };
-    set_height(point, height);
+    set_height(point, height, wanted.run.map_or(0.0, |run| slope(triangle, shares, run)));
     Ok(())
 }

@@ -19,9 +19,9 @@ mod surface;
 mod text;
 
 pub use files::{Counts, FileOptions, HeightPlace, write_heights};
+pub(crate) use files::{rewrite, stored_point};
 pub use ground::Ground;
-pub(crate) use heights::Heights;
-pub use heights::{Outside, Unit};
+pub use heights::{Heights, Outside, Unit};
 pub(crate) use points::unit_of;
 pub use points::{HeightPoints, LayerReader};
 pub use text::write_text_heights;

@@ -48,9 +48,15 @@ pub(super) struct Share<'g> {
     range: Range<usize>,
 }
 
-/// Gives a point its height in place of its elevation. It waits no longer: no box contains it.
-pub(super) fn set_height(point: &mut Point, height: f64) {
-    *point = [f64::NAN, f64::NAN, height];
+/// Gives a point its height in place of its elevation, and the slope there. It waits no longer: no box
+/// contains it.
+pub(super) fn set_height(point: &mut Point, height: f64, slope: f64) {
+    *point = [f64::NAN, slope, height];
+}
+
+/// The slope at a point that has a height.
+pub(super) fn slope_of(&[_, slope, _]: &Point) -> f64 {
+    slope
 }
 
 /// The height of a point; `None` if it waits for one.

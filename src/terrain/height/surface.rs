@@ -15,6 +15,9 @@ pub(super) const PLAIN_MAX: f64 = (1u64 << 26) as f64;
 /// Heights in f64 are off by at most 2^-17: a few roundings of numbers below 2^34.
 const NEAR_TIE: f64 = 1.0 / (1u64 << 12) as f64;
 
+/// A place is on the edge to which a corner has at most this share: roundings of coordinates must not decide.
+const ON_EDGE: f64 = 1e-6;
+
 /// The shares of the corners in a place of the closed triangle, not normalized; `None` if the place is outside.
 #[inline]
 pub(super) fn shares(corners: &[Point; 3], at: &Point) -> Option<[f64; 3]> {
@@ -71,8 +74,33 @@ pub(super) fn height(corners: &[Point; 3], shares: [f64; 3], point: &Point) -> R
     Err(beyond_numbers())
 }
 
+/// How much z changes over a unit of x and y in the direction of the steepest ascent, at the place of a
+/// triangle where its corners have `shares`; along an edge if the place is on it, and 0 at a corner, so that
+/// triangles which share the place agree. At most what it would be if all of the triangle's relief were over
+/// `run`: a sliver between two points that nearly coincide is no cliff.
+pub(super) fn slope(corners: &[Point; 3], shares: [f64; 3], run: f64) -> f64 {
+    let [a, b, c] = corners;
+    let least = ON_EDGE * (shares[0] + shares[1] + shares[2]);
+    let is_off = shares.map(|share| share > least);
+    let between = |p: &Point, q: &Point| {
+        let [dx, dy, dz] = [0, 1, 2].map(|axis| q[axis] - p[axis]);
+        dz.abs() / dx.hypot(dy).max(run)
+    };
+    match is_off {
+        [true, true, true] => {}
+        [false, true, true] => return between(b, c),
+        [true, false, true] => return between(a, c),
+        [true, true, false] => return between(a, b),
+        _ => return 0.0,
+    }
+    let z = [a, b, c].map(|corner| corner[2]);
+    let relief = z[0].max(z[1]).max(z[2]) - z[0].min(z[1]).min(z[2]);
+    // `f64::min` ignores NaN.
+    steepness(corners).min(relief / run)
+}
+
 /// The tangent of the slope of a triangle that is not flat in x and y.
-pub(super) fn slope([a, b, c]: &[Point; 3]) -> f64 {
+pub(super) fn steepness([a, b, c]: &[Point; 3]) -> f64 {
     let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
     let size = u[0] * v[1] - v[0] * u[1];
     let rise = [u[2] * v[1] - v[2] * u[1], u[0] * v[2] - v[0] * u[2]];
@@ -139,6 +167,20 @@ mod tests {
                 assert_eq!(plain_shares(&triangle, &at), twice, "{triangle:?} {at:?}");
             }
         }
+    }
+
+    #[test]
+    fn slopes_are_those_of_planes() {
+        let middle = [1.0; 3];
+        assert_eq!(slope(&CORNERS, middle, 1.0), (1.25f64).hypot(2.5));
+        assert_eq!(slope(&[[0.0, 0.0, 3.0], [1.0, 0.0, 3.0], [5.0, 7.0, 3.0]], middle, 1.0), 0.0);
+        // Slivers.
+        assert_eq!(slope(&CORNERS, middle, 16.0), 1.25);
+        assert_eq!(slope(&[[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 2.0, 3.0]], middle, 4.0), 0.75);
+        // Edges and corners.
+        assert_eq!(slope(&CORNERS, [1.0, 2.0, 0.0], 1.0), 1.25);
+        assert_eq!(slope(&CORNERS, [2.0, 1e-9, 1.0], 1.0), 2.5);
+        assert_eq!(slope(&CORNERS, [0.0, 0.0, 1.0], 1.0), 0.0);
     }
 
     #[test]

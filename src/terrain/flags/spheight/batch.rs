@@ -193,7 +193,7 @@ impl Flags {
         let outside: Outside = self.outside();
         let mut text = format!("{place} --outside {}", value_name(super::OUTSIDE, &outside));
         if let Some(format) = self.format {
-            text += &format!(" --format {}", value_name(super::names::ENDINGS, &format));
+            text += &format!(" --format {}", value_name(super::ENDINGS, &format));
         }
         let crs = self.crs.text().map_or(String::new(), |crs| format!(" --crs {crs}"));
         text + &crs + &self.text.to_string()

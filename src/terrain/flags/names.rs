@@ -1,38 +1,54 @@
-//! Names of outputs.
+//! Names of the outputs of programs that write files of points again.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::{Flags, FormatFlag};
+use clap::ValueEnum;
+
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::ledger::check_distinct;
-use spmesh_formats::source::PointFile;
 use spmesh_shell::{Names, endings, of_ending};
+
+/// The values of `--format`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum FormatFlag {
+    Las,
+    Laz,
+}
 
 /// The formats that endings of names stand for.
 pub(super) const ENDINGS: Names<FormatFlag> = &[("las", FormatFlag::Las), ("laz", FormatFlag::Laz)];
 
-/// Endings of names of LAS files, and of text.
-const OWN: &[&str] = &["las", "laz", "xyz", "csv", "tsv", "txt", "asc", "dat"];
+/// Where outputs go.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OutputNames<'f> {
+    /// The file of a single output.
+    pub(super) output: Option<&'f Path>,
+    /// The folder of many.
+    pub(super) folder: Option<&'f Path>,
+    pub(super) format: Option<FormatFlag>,
+    /// Endings that the name of a single output may have.
+    pub(super) endings: &'static [&'static str],
+}
 
-impl Flags {
+impl OutputNames<'_> {
     /// The output of each input.
     ///
     /// # Errors
     /// Usage, if an output has the name of another format, or two files would have one output.
-    pub(super) fn outputs(&self, inputs: &[PathBuf]) -> Result<Vec<PathBuf>> {
-        if let Some(output) = &self.output {
+    pub(super) fn of(&self, inputs: &[PathBuf]) -> Result<Vec<PathBuf>> {
+        if let Some(output) = self.output {
             let name = output.display().to_string();
             if stem(&name, ".copc.laz").is_some() {
                 let what = "COPC files are not written: give a name that ends in .laz alone";
                 return Err(Error::usage(what).of_input(name));
             }
             if self.format.is_none() {
-                endings::check(output, &[OWN])?;
+                endings::check(output, &[self.endings])?;
             }
-            return Ok(vec![output.clone()]);
+            return Ok(vec![output.to_path_buf()]);
         }
-        let folder = self.batch.out_dir.as_deref().unwrap_or(Path::new("."));
+        let folder = self.folder.unwrap_or(Path::new("."));
         let output = |input: &PathBuf| -> Result<PathBuf> {
             let name = input.file_name().filter(|name| *name != "-").and_then(|name| name.to_str());
             let name = name.ok_or_else(|| {
@@ -47,20 +63,10 @@ impl Flags {
         Ok(outputs)
     }
 
-    /// Checks that the name of an output goes with the format of the file, which stays.
-    pub(super) fn check_ending(&self, file: &PointFile, output: &Path) -> Result<()> {
-        let is_las = of_ending(ENDINGS, output).is_some();
-        let what = match file {
-            PointFile::Las(_) if self.output.is_some() && self.format.is_none() && !is_las => {
-                "points are written to NAME.las or NAME.laz, or choose with --format"
-            }
-            PointFile::Text(_) if self.format.is_some() => "--format is for LAS files: text stays text",
-            PointFile::Text(_) if self.output.is_some() && is_las => {
-                "text stays text: give a name such as heights.csv"
-            }
-            _ => return Ok(()),
-        };
-        Err(Error::usage(what).of_input(output.display().to_string()))
+    /// Whether the points of an output are compressed; as in the input if `None`.
+    pub(super) fn is_compressed(&self, output: &Path) -> Option<bool> {
+        let is_named = self.output.is_some().then(|| of_ending(ENDINGS, output)).flatten();
+        self.format.or(is_named).map(|format| format == FormatFlag::Laz)
     }
 
     /// The name of the output of the file `name`.

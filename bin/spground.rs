@@ -1,0 +1,8 @@
+//! Which points are on the ground.
+
+#[global_allocator]
+static ALLOCATOR: spmesh_shell::Allocator = spmesh_shell::Allocator;
+
+fn main() -> std::process::ExitCode {
+    spmesh_shell::main(spmesh_terrain::flags::spground::run)
+}

@@ -1,0 +1,384 @@
+//! `spground`: flags, and its report.
+
+mod parameters;
+
+use std::io::Write;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Parser;
+use serde_json::json;
+
+use parameters::ParameterFlags;
+
+use super::names::{FormatFlag, OutputNames};
+use crate::ground::{
+    Class, ClassCounts, Found, FoundCounts, GroundPoints, Parameters, RewriteOptions, Settings, Step,
+    write_classes,
+};
+use crate::meshing::Meshing;
+use spmesh_base::error::{Error, Result};
+use spmesh_base::output::{Output, create_folder};
+use spmesh_base::places::check_apart;
+use spmesh_base::temporary::TemporaryFile;
+use spmesh_formats::detect::SPGROUND;
+use spmesh_formats::las::LasFile;
+use spmesh_formats::ledger::check_distinct;
+use spmesh_formats::source::{Filters, Input, PointFile, SourceOptions, TextOptions};
+use spmesh_pipeline::reduce::Duplicates;
+use spmesh_shell::progress::Progress;
+use spmesh_shell::stats::Row;
+use spmesh_shell::{
+    Common, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, peak_memory, read_list,
+    threads,
+};
+
+const TOOL: &str = "spground";
+
+/// Endings of single outputs: the mesh of the ground, or points.
+const ENDINGS_OWN: &[&str] = &["spm", "las", "laz"];
+
+const EXAMPLES: &str = "\
+Examples:
+  Every tile again, with classes; tiles may be of any size, as all of them are one set of points:
+    spground tiles/*.laz --out-dir classified
+  From raw tiles to a terrain model:
+    spground tiles/*.laz -o ground.spm
+    spdem --step 1 ground.spm -o terrain.tif
+  A town with large halls, whose buildings and water are classified already:
+    spground tiles/*.laz --preset urban --keep-class-of 6,7,9,18 --out-dir classified
+";
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "
+The lowest points of cells make a raster. Disks of growing radius are pushed up below it; what they do not reach, and is \
+steeper than --slope allows, is an object (the SMRF filter of Pingel and others, 2013). The cells that are left are \
+triangulated, and the same is done again with heights above this surface, so hills matter less. Points that are near \
+the second surface are ground: up to --threshold above it, and further where it is steep. docs/theory/ground.md says it \
+exactly.
+
+Classes are 2 for the ground, 7 for points more than twice as far below it, 18 for points above --max-height, and for up \
+to 3 points with nothing for --noise-gap below them, 1 for all others. Records keep everything else, and their order. Classes depend on \
+the set of points alone: not on how it is cut into files, on their order, on threads or on memory. Each output gets its name \
+when it is complete; after a failure, only the outputs of earlier files exist.
+
+Lengths are in metres, whatever the unit of the points, if their coordinate reference system states it. Points in degrees \
+are refused. Files are read twice, so they cannot come from a pipe. All tiles are needed together: a tile alone lacks what \
+is around it.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
+memory, 6 input of another version of spmesh.";
+
+/// Find which points are on the ground.
+///
+/// Reads LAS, LAZ or COPC files. Writes them again with classes, or the triangulation of the ground.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+pub struct Flags {
+    /// LAS, LAZ or COPC files: one set of points
+    #[arg(value_name = "FILE")]
+    inputs: Vec<PathBuf>,
+
+    /// File with names of input files, one per line; - is stdin
+    #[arg(long, value_name = "FILE")]
+    lof: Option<PathBuf>,
+
+    /// File for the points of a single input (.las, .laz), or for the mesh of the ground of all (.spm)
+    #[arg(short, long, value_name = "FILE", required_unless_present = "out_dir", conflicts_with = "out_dir")]
+    output: Option<PathBuf>,
+
+    /// Folder for the files with classes, which keep their names; it is made if necessary
+    #[arg(long, value_name = "FOLDER")]
+    out_dir: Option<PathBuf>,
+
+    /// File for counts and parameters, as JSON
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+
+    /// Whether points are compressed [default: by the extension of --output, else as in the input]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    format: Option<FormatFlag>,
+
+    /// Memory for cells, triangulations and points under way; others wait in temporary files
+    #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M")]
+    memory: u64,
+
+    /// Threads [default: one per core, at most 8]
+    #[arg(long, value_name = "N", value_parser = parse_threads())]
+    threads: Option<NonZeroUsize>,
+
+    /// Folder for temporary files [default: the system's]
+    #[arg(long, value_name = "FOLDER")]
+    temp_dir: Option<PathBuf>,
+
+    #[command(flatten)]
+    stats: StatsFlag,
+
+    #[command(flatten)]
+    common: Common,
+
+    #[command(flatten)]
+    points: PointFlags,
+
+    // The last, as its heading holds for all flags after it.
+    #[command(flatten)]
+    parameters: ParameterFlags,
+}
+
+/// Which points take part.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Which points")]
+struct PointFlags {
+    /// Points of these classes keep them, and do not count for the ground
+    #[arg(long, value_name = "CLASS", value_delimiter = ',', default_value = "7,18")]
+    keep_class_of: Vec<u8>,
+
+    /// Only last returns count for the ground and get classes; others keep theirs
+    #[arg(long)]
+    last_only: bool,
+
+    /// Points in the overlap of swaths keep their class, and do not count for the ground
+    #[arg(long)]
+    drop_overlap: bool,
+
+    /// Treat points that are marked as withheld as others; otherwise they keep their class and do not count
+    #[arg(long)]
+    keep_withheld: bool,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// As [`Found::find`]; if an input or output cannot be opened; if writing fails.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    advise_on_memory(TOOL, "give less --memory, or fewer --threads");
+    let started = Instant::now();
+    let paths = flags.inputs()?;
+    flags.parameters.parameters().check()?;
+    let mesh = flags.mesh();
+    let outputs = match mesh {
+        Some(_) => check_distinct(&paths).map(|()| Vec::new())?,
+        None => flags.names().of(&paths)?,
+    };
+    // Before the check, which needs the folder to tell its files.
+    if let Some(folder) = &flags.out_dir {
+        create_folder(folder)?;
+    }
+    let flag = if flags.output.is_some() { "--output" } else { "--out-dir" };
+    let named = outputs.iter().map(|output| (flag, output.as_path()));
+    let others = mesh.map(|path| ("--output", path)).into_iter();
+    let report = flags.report.as_deref().map(|path| ("--report", path));
+    check_apart([], &named.chain(others).chain(report).collect::<Vec<_>>())?;
+    let input = Input::open(&paths, &flags.source_options())?;
+    input.notices().iter().for_each(|text| flags.notice(text));
+    // All headers are looked at before the work begins.
+    let files = if mesh.is_some() { Vec::new() } else { flags.files(&paths)? };
+    let mesh = mesh.map(|path| Output::create(path, false)).transpose()?;
+    let report = flags.report.as_deref().map(|path| Output::create(path, false)).transpose()?;
+
+    // What cannot be written is better known before the work than after it.
+    TemporaryFile::create(flags.temp_dir.as_deref())?;
+    outputs.iter().try_for_each(|output| Output::create(output, true).map(drop))?;
+
+    let found = flags.find(&input)?;
+    if found.counts().triangles == 0 {
+        flags.notice(
+            "there is no ground: it takes three cells with points that are no objects, not on a line",
+        );
+    }
+    let mut counts = ClassCounts::default();
+    if let Some(mut mesh) = mesh {
+        let points = GroundPoints::new(&found, &input, flags.threads(), flags.memory / 4);
+        flags.meshing().write(&points, &mut mesh)?;
+        mesh.commit()?;
+    }
+    for (file, output) in files.iter().zip(&outputs) {
+        flags.write(&found, file, output, &mut counts)?;
+    }
+    if let Some(mut output) = report {
+        let text = format!("{:#}\n", flags.report_of(found.counts(), &counts, files.len()));
+        output.write_all(text.as_bytes()).map_err(|e| Error::io("writing the report", e))?;
+        output.commit()?;
+    }
+    input.withheld_notice().iter().filter(|_| files.is_empty()).for_each(|text| flags.notice(text));
+    flags.stats.print(|| Report::of(started.elapsed()).counts(rows(found.counts(), &counts)));
+    Ok(())
+}
+
+impl Flags {
+    fn notice(&self, text: &str) {
+        notice(TOOL, &self.common, text);
+    }
+
+    fn threads(&self) -> NonZeroUsize {
+        threads(self.threads)
+    }
+
+    /// The output, if it is the mesh of the ground.
+    fn mesh(&self) -> Option<&Path> {
+        self.output
+            .as_deref()
+            .filter(|path| path.extension().is_some_and(|end| end.eq_ignore_ascii_case("spm")))
+    }
+
+    fn inputs(&self) -> Result<Vec<PathBuf>> {
+        let mut files = self.inputs.clone();
+        if let Some(list) = &self.lof {
+            files.extend(read_list(list)?);
+        }
+        if files.is_empty() {
+            return Err(Error::usage(
+                "no input: give LAS or LAZ files, or a list of them with --lof (see --help)",
+            ));
+        }
+        for file in &files {
+            let is_pipe = std::fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir());
+            if is_pipe || file.as_os_str() == "-" {
+                let what = "points are read twice, so they cannot come from a pipe: give files";
+                return Err(Error::usage(what).of_input(file.display().to_string()));
+            }
+        }
+        if self.format.is_some() && self.mesh().is_some() {
+            return Err(Error::usage("--format is for points: leave it out, as the output is a mesh"));
+        }
+        if files.len() > 1 && self.output.is_some() && self.mesh().is_none() {
+            return Err(Error::usage("several files need a folder for their outputs: --out-dir FOLDER"));
+        }
+        Ok(files)
+    }
+
+    fn names(&self) -> OutputNames<'_> {
+        OutputNames {
+            output: self.output.as_deref(),
+            folder: self.out_dir.as_deref(),
+            format: self.format,
+            endings: ENDINGS_OWN,
+        }
+    }
+
+    fn filters(&self) -> Filters {
+        let PointFlags { keep_class_of, last_only, drop_overlap, keep_withheld } = &self.points;
+        Filters {
+            drop_class: keep_class_of.clone(),
+            last_only: *last_only,
+            drop_overlap: *drop_overlap,
+            keep_withheld: *keep_withheld,
+            ..Filters::default()
+        }
+    }
+
+    fn source_options(&self) -> SourceOptions {
+        SourceOptions {
+            reader: &SPGROUND,
+            filters: self.filters(),
+            dims: 2,
+            temp_dir: self.temp_dir.clone(),
+            threads: Some(self.threads()),
+            ..SourceOptions::default()
+        }
+    }
+
+    fn files(&self, paths: &[PathBuf]) -> Result<Vec<LasFile>> {
+        let open = |path: &PathBuf| match PointFile::open(
+            path,
+            self.temp_dir.as_deref(),
+            &TextOptions::default(),
+        )? {
+            PointFile::Las(file) => Ok(*file),
+            PointFile::Text(file) => Err(Error::usage("is no LAS or LAZ file").of_input(file.name())),
+        };
+        paths.iter().map(open).collect()
+    }
+
+    fn find(&self, input: &Input) -> Result<Found> {
+        let settings =
+            Settings { memory: self.memory, threads: self.threads().get(), temp_dir: self.temp_dir.clone() };
+        let total = input.description().stated_points;
+        let mut reading = Progress::new(&self.common, "reading points", total);
+        let mut opening = None;
+        Found::find(input, &self.parameters.parameters(), &settings, &mut |step, done| match step {
+            Step::Reading => reading.set(done),
+            Step::Opening => {
+                let bar = || Progress::counting("blocks", &self.common, "finding the ground", None);
+                opening.get_or_insert_with(bar).set(done);
+            }
+            Step::Surface => opening = None,
+        })
+    }
+
+    fn meshing(&self) -> Meshing {
+        Meshing {
+            duplicates: Duplicates::Lowest,
+            memory: self.memory / 2,
+            threads: self.threads().get(),
+            temp_dir: self.temp_dir.clone(),
+        }
+    }
+
+    /// Writes one file.
+    fn write(&self, found: &Found, file: &LasFile, output: &Path, counts: &mut ClassCounts) -> Result<()> {
+        let options = RewriteOptions {
+            filters: self.filters(),
+            is_compressed: self.names().is_compressed(output),
+            memory: self.memory / 4,
+            threads: self.threads().get(),
+        };
+        let mut progress = Progress::new(&self.common, "writing points", Some(file.points()));
+        let created = Output::create(output, true)?;
+        let (written, of_file, notices) =
+            write_classes(found, file, created, &options, |points| progress.set(points))?;
+        written.commit()?;
+        drop(progress);
+        notices.iter().for_each(|text| self.notice(&format!("{}: {text}", file.name())));
+        counts.add(&of_file);
+        Ok(())
+    }
+
+    /// The report. A mesh has no points of each class.
+    fn report_of(&self, found: &FoundCounts, counts: &ClassCounts, files: usize) -> serde_json::Value {
+        let Parameters { cell, window, slope, residual_slope, step, threshold, scaling, pit, highest, gap } =
+            self.parameters.parameters();
+        let mut report = json!({
+            "parameters": {
+                "cell": cell, "window": window, "slope": slope, "residual_slope": residual_slope, "rise": step,
+                "threshold": threshold, "scaling": scaling, "pit": pit, "max_height": highest, "noise_gap": gap,
+            },
+            "points": found.points,
+            "cells": found.cells,
+            "noise_cells": found.noise,
+            "object_cells": found.objects,
+            "triangles": found.triangles,
+        });
+        if files > 0 {
+            let classes = Class::ALL.iter().zip(counts.classes);
+            report["files"] = json!(files);
+            report["points_written"] = json!(counts.points);
+            report["kept"] = json!(counts.kept);
+            report["classes"] =
+                classes.map(|(class, count)| ((*class as u8).to_string(), json!(count))).collect();
+        }
+        report
+    }
+}
+
+fn rows(found: &FoundCounts, counts: &ClassCounts) -> Vec<Row<u64>> {
+    let mut rows = vec![
+        ("points", "points", found.points),
+        ("cells", "cells", found.cells),
+        ("cells of noise", "noise_cells", found.noise),
+        ("triangles of the surface", "triangles", found.triangles),
+    ];
+    if counts.points > 0 {
+        let [other, ground, low, high] = counts.classes;
+        rows.extend([
+            ("points of the ground (2)", "ground", ground),
+            ("low noise (7)", "low_noise", low),
+            ("high noise (18)", "high_noise", high),
+            ("other points (1)", "other", other),
+            ("points that kept their class", "kept", counts.kept),
+        ]);
+    }
+    rows.push(("peak memory (bytes)", "peak_memory_bytes", peak_memory()));
+    rows
+}

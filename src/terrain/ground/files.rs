@@ -1,0 +1,93 @@
+//! LAS and LAZ files with the classes of their points.
+
+use std::io::{Seek, Write};
+use std::num::NonZeroUsize;
+
+use super::{Class, Found};
+use crate::height::{rewrite, stored_point};
+use spmesh_base::error::{Error, Result};
+use spmesh_formats::las::{Changes, LasFile};
+use spmesh_formats::source::Filters;
+
+/// How files are written.
+#[derive(Debug, Clone)]
+pub struct RewriteOptions {
+    /// Points that these drop keep the class that they have.
+    pub filters: Filters,
+    /// Whether points are compressed; as in the input if `None`.
+    pub is_compressed: Option<bool>,
+    /// Memory for points under way. Units: bytes.
+    pub memory: u64,
+    /// Threads that decompress, as many that compress, and as many that find classes.
+    pub threads: usize,
+}
+
+/// Counts of a file, or of several.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ClassCounts {
+    /// Points of the file.
+    pub points: u64,
+    /// Those of each class, in the order of [`Class::ALL`].
+    pub classes: [u64; 4],
+    /// Those that kept the class that they had.
+    pub kept: u64,
+}
+
+impl ClassCounts {
+    /// Adds the counts of another file.
+    pub fn add(&mut self, other: &ClassCounts) {
+        self.points += other.points;
+        self.kept += other.kept;
+        self.classes.iter_mut().zip(other.classes).for_each(|(sum, count)| *sum += count);
+    }
+}
+
+/// Writes `file` again with the classes of its points; calls `progress` with the number of points written.
+/// All else stays as it is, also the order of the points. Also returns what could not be kept.
+///
+/// Memory: `options.memory`.
+///
+/// # Errors
+/// Malformed, if the file is; if reading or writing fails.
+pub fn write_classes<W: Write + Seek>(
+    found: &Found,
+    file: &LasFile,
+    output: W,
+    options: &RewriteOptions,
+    mut progress: impl FnMut(u64),
+) -> Result<(W, ClassCounts, Vec<String>)> {
+    let changes = Changes {
+        is_compressed: options.is_compressed.unwrap_or(file.is_compressed()),
+        ..Changes::default()
+    };
+    let threads = NonZeroUsize::new(options.threads).unwrap_or(NonZeroUsize::MIN);
+    let mut classifier = found.classifier(file.coordinates(), threads);
+    let of_file = |e: Error| e.of_input(file.name());
+    let (record_len, classes_of) = (file.record_len(), file.classes(&options.filters));
+    let mut counts = ClassCounts::default();
+    let (mut points, mut classes) = (Vec::new(), Vec::new());
+    let written = rewrite(file, output, &changes, options.memory, options.threads, |batch, copy| {
+        points.clear();
+        points.extend(
+            batch.chunks_exact(record_len).filter(|record| classes_of.keeps(record)).map(stored_point),
+        );
+        classifier.of(&points, &mut classes).map_err(of_file)?;
+        let mut next = classes.iter();
+        for record in batch.chunks_exact_mut(record_len) {
+            counts.points += 1;
+            if !classes_of.keeps(record) {
+                counts.kept += 1;
+                continue;
+            }
+            let class = *next.next().expect("each point that is kept has a class");
+            let place = Class::ALL.iter().position(|other| *other == class).expect("these are all");
+            counts.classes[place] += 1;
+            classes_of.set(record, class as u8);
+        }
+        copy.write(batch)?;
+        progress(counts.points);
+        Ok(())
+    })?;
+    let (output, notices) = written;
+    Ok((output, counts, notices))
+}
