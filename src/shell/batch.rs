@@ -53,26 +53,12 @@ pub struct SummaryPaths {
 }
 
 impl BatchFlags {
-    /// The files of the command line, then those of `--lof`.
+    /// As [`listed`].
     ///
     /// # Errors
-    /// As [`read_list`]; usage, if there is no file, or stdin is asked for twice or is a terminal.
+    /// As [`listed`].
     pub fn files(&self, inputs: &[PathBuf]) -> Result<Vec<PathBuf>> {
-        let stdin = Path::new("-");
-        let mut files = inputs.to_vec();
-        if let Some(path) = &self.lof {
-            files.extend(read_list(path)?);
-        }
-        if self.lof.as_deref() == Some(stdin) && files.iter().any(|file| file == stdin) {
-            return Err(Error::usage("the list of files and a file cannot both come from stdin"));
-        }
-        if files.is_empty() {
-            return Err(Error::usage("no input: give files, or a list of them with --lof (see --help)"));
-        }
-        if files.iter().any(|file| file == stdin) {
-            refuse_terminal()?;
-        }
-        Ok(files)
+        listed(inputs, self.lof.as_deref())
     }
 
     /// Where the summary goes: by default, to `name` in the folder of outputs.
@@ -91,6 +77,28 @@ impl BatchFlags {
         }
         Ok(SummaryPaths { parquet: is_parquet.then(|| shown.clone()), shown, summary })
     }
+}
+
+/// The files of the command line, then those of a list.
+///
+/// # Errors
+/// As [`read_list`]; usage, if there is no file, or stdin is asked for twice or is a terminal.
+pub fn listed(inputs: &[PathBuf], list: Option<&Path>) -> Result<Vec<PathBuf>> {
+    let stdin = Path::new("-");
+    let mut files = inputs.to_vec();
+    if let Some(path) = list {
+        files.extend(read_list(path)?);
+    }
+    if list == Some(stdin) && files.iter().any(|file| file == stdin) {
+        return Err(Error::usage("the list of files and a file cannot both come from stdin"));
+    }
+    if files.is_empty() {
+        return Err(Error::usage("no input: give files, or a list of them with --lof (see --help)"));
+    }
+    if files.iter().any(|file| file == stdin) {
+        refuse_terminal()?;
+    }
+    Ok(files)
 }
 
 /// Progress and messages of a batch.

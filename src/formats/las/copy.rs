@@ -70,7 +70,8 @@ impl<W: Write + Seek> LasCopy<W> {
     /// under way.
     ///
     /// # Errors
-    /// Usage, if the output is a pipe or not at its start, or records cannot take the field; if reading or writing fails.
+    /// Usage, if the output is a pipe or not at its start, or records cannot take the field; if reading or
+    /// writing fails.
     pub fn start(
         source: &LasFile,
         mut output: W,

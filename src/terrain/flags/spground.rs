@@ -17,7 +17,6 @@ use crate::ground::{
     Class, ClassCounts, Found, FoundCounts, GroundPoints, Parameters, RewriteOptions, Settings, Step,
     write_classes,
 };
-use crate::meshing::Meshing;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::check_apart;
@@ -26,12 +25,11 @@ use spmesh_formats::detect::SPGROUND;
 use spmesh_formats::las::LasFile;
 use spmesh_formats::ledger::check_distinct;
 use spmesh_formats::source::{Filters, Input, PointFile, SourceOptions, TextOptions};
-use spmesh_pipeline::reduce::Duplicates;
+use spmesh_shell::batch::listed;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
 use spmesh_shell::{
-    Common, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, peak_memory, read_list,
-    threads,
+    Common, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, peak_memory, threads,
 };
 
 const TOOL: &str = "spground";
@@ -190,7 +188,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut counts = ClassCounts::default();
     if let Some(mut mesh) = mesh {
         let points = GroundPoints::new(&found, &input, flags.threads(), flags.memory / 4);
-        flags.meshing().write(&points, &mut mesh)?;
+        flags.settings().meshing().write(&points, &mut mesh)?;
         mesh.commit()?;
     }
     for (file, output) in files.iter().zip(&outputs) {
@@ -223,15 +221,7 @@ impl Flags {
     }
 
     fn inputs(&self) -> Result<Vec<PathBuf>> {
-        let mut files = self.inputs.clone();
-        if let Some(list) = &self.lof {
-            files.extend(read_list(list)?);
-        }
-        if files.is_empty() {
-            return Err(Error::usage(
-                "no input: give LAS or LAZ files, or a list of them with --lof (see --help)",
-            ));
-        }
+        let files = listed(&self.inputs, self.lof.as_deref())?;
         for file in &files {
             let is_pipe = std::fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir());
             if is_pipe || file.as_os_str() == "-" {
@@ -291,13 +281,15 @@ impl Flags {
         paths.iter().map(open).collect()
     }
 
+    fn settings(&self) -> Settings {
+        Settings { memory: self.memory, threads: self.threads().get(), temp_dir: self.temp_dir.clone() }
+    }
+
     fn find(&self, input: &Input) -> Result<Found> {
-        let settings =
-            Settings { memory: self.memory, threads: self.threads().get(), temp_dir: self.temp_dir.clone() };
         let total = input.description().stated_points;
         let mut reading = Progress::new(&self.common, "reading points", total);
         let mut opening = None;
-        Found::find(input, &self.parameters.parameters(), &settings, &mut |step, done| match step {
+        Found::find(input, &self.parameters.parameters(), &self.settings(), &mut |step, done| match step {
             Step::Reading => reading.set(done),
             Step::Opening => {
                 let bar = || Progress::counting("blocks", &self.common, "finding the ground", None);
@@ -305,15 +297,6 @@ impl Flags {
             }
             Step::Surface => opening = None,
         })
-    }
-
-    fn meshing(&self) -> Meshing {
-        Meshing {
-            duplicates: Duplicates::Lowest,
-            memory: self.memory / 2,
-            threads: self.threads().get(),
-            temp_dir: self.temp_dir.clone(),
-        }
     }
 
     /// Writes one file.

@@ -5,7 +5,7 @@ use std::sync::PoisonError;
 
 use super::Found;
 use super::cells::{STEPS, Z_STEPS};
-use crate::height::{Heights, Outside, Unit};
+use crate::height::{Heights, Outside, Slopes, Unit};
 use spmesh_base::error::Result;
 use spmesh_formats::source::Alignment;
 use spmesh_stream::Coordinates;
@@ -83,7 +83,8 @@ impl Classifier<'_> {
     pub fn of(&mut self, points: &[Point], classes: &mut Vec<Class>) -> Result<()> {
         self.placed.clear();
         self.placed.extend(points.iter().map(|&point| self.alignment.place(point)));
-        self.heights_above.with_slopes(&self.placed, LEAST_RUN, &mut self.heights, &mut self.slopes)?;
+        let slopes = Slopes::AtPlaces(LEAST_RUN);
+        self.heights_above.with_slopes(&self.placed, slopes, &mut self.heights, &mut self.slopes)?;
         let Found { cells, parameters, slope, noise, .. } = self.found;
         let mut noise = noise.lock().unwrap_or_else(PoisonError::into_inner);
         classes.clear();

@@ -65,25 +65,25 @@ pub fn write_classes<W: Write + Seek>(
     let of_file = |e: Error| e.of_input(file.name());
     let (record_len, classes_of) = (file.record_len(), file.classes(&options.filters));
     let mut counts = ClassCounts::default();
-    let (mut points, mut classes) = (Vec::new(), Vec::new());
+    let (mut wanted, mut points, mut classes) = (Vec::new(), Vec::new(), Vec::new());
     let written = rewrite(file, output, &changes, options.memory, options.threads, |batch, copy| {
         points.clear();
-        points.extend(
-            batch.chunks_exact(record_len).filter(|record| classes_of.keeps(record)).map(stored_point),
-        );
-        classifier.of(&points, &mut classes).map_err(of_file)?;
-        let mut next = classes.iter();
-        for record in batch.chunks_exact_mut(record_len) {
-            counts.points += 1;
-            if !classes_of.keeps(record) {
-                counts.kept += 1;
-                continue;
+        wanted.clear();
+        for (number, record) in batch.chunks_exact(record_len).enumerate() {
+            if classes_of.keeps(record) {
+                wanted.push(number);
+                points.push(stored_point(record));
             }
-            let class = *next.next().expect("each point that is kept has a class");
+        }
+        classifier.of(&points, &mut classes).map_err(of_file)?;
+        for (&number, &class) in wanted.iter().zip(&classes) {
             let place = Class::ALL.iter().position(|other| *other == class).expect("these are all");
             counts.classes[place] += 1;
-            classes_of.set(record, class as u8);
+            classes_of.set(&mut batch[number * record_len..][..record_len], class as u8);
         }
+        let records = (batch.len() / record_len) as u64;
+        counts.points += records;
+        counts.kept += records - wanted.len() as u64;
         copy.write(batch)?;
         progress(counts.points);
         Ok(())

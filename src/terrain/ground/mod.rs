@@ -93,8 +93,8 @@ impl Found {
     /// 65,536 cells with a point, 1.3 MB for each of as many columns, and two meshes of the cells.
     ///
     /// # Errors
-    /// Those of reading; usage, if points are too far from each other or in degrees; memory, if there is too little; if
-    /// temporary files fail.
+    /// Those of reading; usage, if points are too far from each other or in degrees; memory, if there is too
+    /// little; if temporary files fail.
     pub fn find(
         input: &Input,
         parameters: &Parameters,
@@ -103,10 +103,9 @@ impl Found {
     ) -> Result<Found> {
         let description = input.description();
         let of_input = |e: Error| e.of_input(input.name());
-        let system = System::of(&description.crs);
         parameters.check()?;
-        let in_units = parameters.in_units(&system).map_err(of_input)?;
-        let metre = [in_units.cell / parameters.cell, metre_of_z(&system, in_units.cell / parameters.cell)];
+        let units = parameters::units(&System::of(&description.crs)).map_err(of_input)?;
+        let (in_units, metre) = (parameters.in_units(units), units.map(f64::recip));
         let rules = Rules::new(&in_units, metre);
         let (memory, temp_dir) = (settings.memory, settings.temp_dir.as_deref());
         let (meshing, opening_threads) = settings.shares(&rules)?;
@@ -143,16 +142,6 @@ impl Found {
     pub fn counts(&self) -> &FoundCounts {
         &self.counts
     }
-
-    /// The parameters in the units of the points.
-    pub fn parameters(&self) -> &Parameters {
-        &self.parameters
-    }
-}
-
-/// The length of a metre in units of z.
-fn metre_of_z(system: &System, metre: f64) -> f64 {
-    system.vertical.as_ref().map_or(metre, |known| 1.0 / known.unit.size)
 }
 
 fn counts(lows: &mut Lows, points: u64, triangles: u64) -> Result<FoundCounts> {
@@ -170,7 +159,18 @@ fn counts(lows: &mut Lows, points: u64, triangles: u64) -> Result<FoundCounts> {
 }
 
 impl Settings {
-    /// How surfaces are triangulated, with half of the memory, and how many threads open blocks.
+    /// How points are triangulated: with half of the memory.
+    pub fn meshing(&self) -> Meshing {
+        Meshing {
+            // Only a mesh of all points of the ground has several at one place.
+            duplicates: Duplicates::Lowest,
+            memory: self.memory / 2,
+            threads: self.threads,
+            temp_dir: self.temp_dir.clone(),
+        }
+    }
+
+    /// How surfaces are triangulated, and how many threads open blocks, with the same half of the memory.
     fn shares(&self, rules: &Rules) -> Result<(Meshing, usize)> {
         Meshing::check_half(self.memory, self.threads)?;
         let block = rules.block_memory();
@@ -183,13 +183,6 @@ impl Settings {
             );
             return Err(Error::new(ErrorKind::Memory, what));
         }
-        let meshing = Meshing {
-            // Each cell has one point.
-            duplicates: Duplicates::Lowest,
-            memory: half,
-            threads: self.threads,
-            temp_dir: self.temp_dir.clone(),
-        };
-        Ok((meshing, self.threads.min((half / block) as usize).max(1)))
+        Ok((self.meshing(), self.threads.min((half / block) as usize).max(1)))
     }
 }

@@ -3,7 +3,7 @@
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::crs::System;
 
-/// Lengths in metres until [`Parameters::in_units`] makes them units of x and y or of z; slopes are rises
+/// Lengths in metres; slopes are rises
 /// over runs. What each is for: `docs/theory/ground.md`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
@@ -54,20 +54,10 @@ const CELL_RANGE: [f64; 2] = [0.02, 1000.0];
 const WINDOW_CELLS_MAX: f64 = 256.0;
 
 impl Parameters {
-    /// The same in the units of a coordinate reference system; metres, if it does not state any.
-    ///
-    /// # Errors
-    /// Usage, if x and y are angles.
-    pub fn in_units(&self, system: &System) -> Result<Parameters> {
-        if system.horizontal.as_ref().is_some_and(|known| known.is_angular()) {
-            return Err(Error::usage(
-                "x and y are degrees, and the ground is found with lengths: reproject the points first",
-            ));
-        }
-        let run = system.horizontal.as_ref().map_or(1.0, |known| known.unit.size);
-        let rise = system.vertical.as_ref().map_or(run, |known| known.unit.size);
+    /// The same in units of x and y and of z, whose lengths in metres are given.
+    pub(super) fn in_units(&self, [run, rise]: [f64; 2]) -> Parameters {
         let slope = run / rise;
-        Ok(Parameters {
+        Parameters {
             cell: self.cell / run,
             window: self.window / run,
             slope: self.slope * slope,
@@ -79,7 +69,7 @@ impl Parameters {
             pit: self.pit / rise,
             highest: self.highest / rise,
             gap: self.gap / rise,
-        })
+        }
     }
 
     /// Refuses parameters out of their ranges.
@@ -120,4 +110,19 @@ impl Parameters {
     pub(super) fn cells(&self, length: f64) -> usize {
         (length / self.cell - 1e-6).ceil().max(1.0) as usize
     }
+}
+
+/// The lengths in metres of a unit of x and y, and of one of z; those of metres, if the system does not state
+/// any.
+///
+/// # Errors
+/// Usage, if x and y are angles.
+pub(super) fn units(system: &System) -> Result<[f64; 2]> {
+    if system.horizontal.as_ref().is_some_and(|known| known.is_angular()) {
+        return Err(Error::usage(
+            "x and y are degrees, and the ground is found with lengths: reproject the points first",
+        ));
+    }
+    let run = system.horizontal.as_ref().map_or(1.0, |known| known.unit.size);
+    Ok([run, system.vertical.as_ref().map_or(run, |known| known.unit.size)])
 }

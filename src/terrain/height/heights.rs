@@ -23,8 +23,6 @@ pub enum Unit {
     Steps(f64),
     /// The unit of the ground's stored z, not rounded to integers.
     Stored,
-    /// No heights: the tangent of the slope of the triangle at the point, in the ground's stored units.
-    Slope,
 }
 
 impl Unit {
@@ -32,17 +30,26 @@ impl Unit {
     fn rounded(self, height: f64) -> f64 {
         match self {
             Unit::Steps(steps) => (height / steps).round(),
-            Unit::Stored | Unit::Slope => height,
+            Unit::Stored => height,
         }
     }
+}
+
+/// Which slope a point has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Slopes {
+    /// That of the triangle with its height.
+    OfTriangles,
+    /// That of the triangle as if it were at least so long; on an edge that of the edge, and at a vertex 0,
+    /// so it does not matter which triangle is met first.
+    AtPlaces(f64),
 }
 
 /// What is found for each point.
 #[derive(Debug, Clone, Copy)]
 struct Wanted {
     unit: Unit,
-    /// The least length of a triangle for its slope, if slopes are wanted.
-    run: Option<f64>,
+    slopes: Option<Slopes>,
 }
 
 /// The heights of points that are outside of the mesh.
@@ -92,27 +99,26 @@ impl<'g> Heights<'g> {
         self.answer(points.len(), heights, |_, _| {})
     }
 
-    /// [`Heights::of`], and the slopes of the triangles there: how much stored z changes over a stored unit
-    /// of x and y, as if triangles were at least `run` long; 0 outside of the mesh. On an edge it is the
-    /// slope of that, and at a vertex 0, so it does not matter which triangle is met first.
+    /// [`Heights::of`], and the slopes there: how much stored z changes over a stored unit of x and y; 0
+    /// outside of the mesh.
     ///
     /// # Errors
     /// As [`Heights::of`].
     pub fn with_slopes(
         &mut self,
         points: &[Point],
-        run: f64,
+        which: Slopes,
         heights: &mut Vec<f64>,
         slopes: &mut Vec<f64>,
     ) -> Result<u64> {
-        self.find(points, Some(run))?;
+        self.find(points, Some(which))?;
         slopes.clear();
         slopes.resize(points.len(), 0.0);
         self.answer(points.len(), heights, |number, slope| slopes[number as usize] = slope)
     }
 
     /// Looks for the points in the triangles.
-    fn find(&mut self, points: &[Point], run: Option<f64>) -> Result<()> {
+    fn find(&mut self, points: &[Point], slopes: Option<Slopes>) -> Result<()> {
         if !points.is_empty() {
             let bounds = Box2::of(points);
             if !bounds.has_sides() {
@@ -122,7 +128,7 @@ impl<'g> Heights<'g> {
         }
         self.grid.fill(points);
         let parts = self.threads.get().min(points.len() / SHARE_MIN).max(1);
-        let (blocks, wanted) = (self.ground.blocks(), Wanted { unit: self.unit, run });
+        let (blocks, wanted) = (self.ground.blocks(), Wanted { unit: self.unit, slopes });
         let work = |(share, points)| search(blocks, &share, points, wanted);
         parallel::map(self.threads, self.grid.split(parts), work)?;
         Ok(())
@@ -199,8 +205,12 @@ fn meet_point(triangle: &Triangle, bounds: &Box2, point: &mut Point, wanted: Wan
     let height = match wanted.unit {
         Unit::Steps(steps) => rounded(triangle, point, above, steps),
         Unit::Stored => above,
-        Unit::Slope => steepness(triangle),
     };
-    set_height(point, height, wanted.run.map_or(0.0, |run| slope(triangle, shares, run)));
+    let slope = match wanted.slopes {
+        None => 0.0,
+        Some(Slopes::OfTriangles) => steepness(triangle),
+        Some(Slopes::AtPlaces(run)) => slope(triangle, shares, run),
+    };
+    set_height(point, height, slope);
     Ok(())
 }

@@ -21,7 +21,7 @@ mod text;
 pub use files::{Counts, FileOptions, HeightPlace, write_heights};
 pub(crate) use files::{rewrite, stored_point};
 pub use ground::Ground;
-pub use heights::{Heights, Outside, Unit};
+pub use heights::{Heights, Outside, Slopes, Unit};
 pub(crate) use points::unit_of;
 pub use points::{HeightPoints, LayerReader};
 pub use text::write_text_heights;

@@ -7,7 +7,7 @@ use std::num::NonZeroUsize;
 
 use super::classes::class_name;
 use super::figures::Figures;
-use crate::height::{Ground, Heights, Outside, Unit, unit_of};
+use crate::height::{Ground, Heights, Outside, Slopes, Unit, unit_of};
 use spmesh_base::error::Result;
 use spmesh_formats::source::{Alignment, LabelledPoints};
 use spmesh_stream::Coordinates;
@@ -91,14 +91,12 @@ pub fn check(
     let alignment = Alignment::between(&Coordinates::F64, ground.coordinates());
     let unit = unit_of(ground.coordinates());
     let mut heights = Heights::new(ground, Unit::Stored, Outside::NoData, threads);
-    let mut slopes = Heights::new(ground, Unit::Slope, Outside::NoData, threads);
     let (mut placed, mut above, mut steep) = (Vec::new(), Vec::new(), Vec::new());
     let mut found = Found::new(points);
     for (batch, first) in points.points.chunks(BATCH_LEN).zip((0..).step_by(BATCH_LEN)) {
         placed.clear();
         placed.extend(batch.iter().map(|&point| on_grid(alignment.place(point), ground.coordinates())));
-        heights.of(&placed, &mut above)?;
-        slopes.of(&placed, &mut steep)?;
+        heights.with_slopes(&placed, Slopes::OfTriangles, &mut above, &mut steep)?;
         for (number, (height, slope)) in above.iter().zip(&steep).enumerate() {
             let degrees = (slope * slope_unit(ground.coordinates()) * options.unit_of_z).atan().to_degrees();
             found.add(points.numbers[first + number], -height * unit, degrees);
