@@ -133,6 +133,17 @@ fn canopies_are_the_highest_of_their_layers() {
     let two = canopy(&["--layers", "8", "--max-edge", "3"]);
     let expected = highest(bottom, &layer(&["--keep-z", "8,"], &["--kill", "3"]));
     assert!(alike(&two, &expected));
+    // On a plane, elevations are its own and heights. Points below the ground stay there.
+    let elevations = canopy(&["--elevations"]);
+    for (cell, (elevation, height)) in elevations.iter().zip(&found).enumerate() {
+        let ground = ground_at(0.5 * (cell % 80) as f64 + 0.25) as f32;
+        assert_eq!(elevation.is_nan(), height.is_nan());
+        let is_near = (-0.07..0.02).contains(&(elevation - ground - height));
+        assert!(is_near || height.is_nan(), "{elevation} {height}");
+    }
+    // Noise has a class, and is too high.
+    assert!(alike(&canopy(&["--drop-class", "2", "--max-height", "25"]), &found));
+    assert!(!alike(&canopy(&["--drop-class", "2"]), &found));
     // Neither memory nor threads show.
     for flags in [["--memory", "80M", "--threads", "1"].as_slice(), &["--threads", "3"]] {
         let again = canopy(flags);

@@ -14,11 +14,12 @@ type Corners = [[f64; 3]; 3];
 /// The lowest point of a cell: z, then x and y within, in steps.
 type Lows = BTreeMap<Cell, (i64, [i64; 2])>;
 
-/// The parameters that tests vary: the window in cells of a metre, and the slope.
+/// The parameters that tests vary: the window in cells of a metre, the slope, and the reach in metres.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules {
     pub window: i64,
     pub slope: f64,
+    pub reach: f64,
 }
 
 /// The classes of points in centimetres, and for each how far it is from getting another one, in steps of z.
@@ -34,22 +35,24 @@ pub fn classes(points: &[[i32; 3]], rules: Rules) -> Vec<(u8, f64)> {
     let heights: BTreeMap<Cell, f64> = lows.iter().map(|(&cell, &(z, _))| (cell, z as f64)).collect();
     let sound = with_company(&without_pits(&heights), rules.window);
     let objects = risen(&sound, rules.window, |radius| (rules.slope * radius).min(2.0) * Z_STEPS);
-    let first = mesh(&lows, sound.keys().filter(|cell| !objects.contains(cell)));
+    let reach = rules.reach * STEPS;
+    let first = mesh(&lows, sound.keys().filter(|cell| !objects.contains(cell)), reach);
     let above = |cell: &Cell| {
         let place = place(&lows, cell);
-        (*cell, elevation(&first, place).map_or(f64::NAN, |(surface, _)| place[2] - surface) as f32 as f64)
+        let (surface, _) = elevation(&first, place, reach)?;
+        Some((*cell, (place[2] - surface) as f32 as f64))
     };
-    let residuals: BTreeMap<Cell, f64> = sound.keys().map(above).collect();
+    let residuals: BTreeMap<Cell, f64> = sound.keys().filter_map(above).collect();
     let objects = risen(&residuals, rules.window, |radius| (0.4 + 0.12 * radius).min(2.0) * Z_STEPS);
-    let second = mesh(&lows, sound.keys().filter(|cell| !objects.contains(cell)));
-    points.iter().map(|&point| class(&second, point, points)).collect()
+    let second = mesh(&lows, residuals.keys().filter(|cell| !objects.contains(cell)), reach);
+    points.iter().map(|&point| class(&second, reach, point, points)).collect()
 }
 
 /// The class of a point, and how near it is to another one.
-fn class(surface: &[Corners], [x, y, z]: [i32; 3], points: &[[i32; 3]]) -> (u8, f64) {
+fn class(surface: &[Corners], reach: f64, [x, y, z]: [i32; 3], points: &[[i32; 3]]) -> (u8, f64) {
     let at = [x, y].map(|at| f64::from(at) / 100.0 * STEPS - 0.5);
     let z_steps = f64::from(z) / 100.0 * Z_STEPS;
-    let Some((ground, slope)) = elevation(surface, [at[0], at[1], z_steps]) else {
+    let Some((ground, slope)) = elevation(surface, [at[0], at[1], z_steps], reach) else {
         return (1, f64::INFINITY);
     };
     let (height, limit) = (z_steps - ground, (0.3 + 1.25 * (slope * STEPS / Z_STEPS).min(2.0)) * Z_STEPS);
@@ -134,10 +137,20 @@ fn place(lows: &Lows, cell: &Cell) -> [f64; 3] {
     [(cell[0] * 256 + within[0]) as f64, (cell[1] * 256 + within[1]) as f64, z as f64]
 }
 
-fn mesh<'c>(lows: &Lows, cells: impl Iterator<Item = &'c Cell>) -> Vec<Corners> {
+/// The triangles whose circles have a radius of at most `reach`.
+fn mesh<'c>(lows: &Lows, cells: impl Iterator<Item = &'c Cell>, reach: f64) -> Vec<Corners> {
     let places: Vec<[f64; 3]> = cells.map(|cell| place(lows, cell)).collect();
     let flat: Vec<[i64; 2]> = places.iter().map(|place| [place[0] as i64, place[1] as i64]).collect();
-    triangles(&flat).into_iter().map(|corners| corners.map(|corner| places[corner as usize])).collect()
+    let all = triangles(&flat).into_iter().map(|corners| corners.map(|corner| places[corner as usize]));
+    all.filter(|corners| circumradius(corners) <= reach).collect()
+}
+
+/// Of the sides a, b, c, and the area by Heron: a b c / (4 area).
+fn circumradius(corners: &Corners) -> f64 {
+    let side = |i: usize, j: usize| (corners[i][0] - corners[j][0]).hypot(corners[i][1] - corners[j][1]);
+    let [a, b, c] = [side(1, 2), side(0, 2), side(0, 1)];
+    let half = (a + b + c) / 2.0;
+    a * b * c / (4.0 * (half * (half - a) * (half - b) * (half - c)).max(0.0).sqrt())
 }
 
 /// The slope of the edge that a place lies on; 0 at a corner.
@@ -156,8 +169,8 @@ fn on_edge(corners: Corners, at: [f64; 3], area: f64) -> Option<f64> {
 }
 
 /// The elevation and the slope of the first triangle that contains a place, or the elevation of the nearest
-/// place with slope 0.
-fn elevation(mesh: &[Corners], at: [f64; 3]) -> Option<(f64, f64)> {
+/// place within reach with slope 0.
+fn elevation(mesh: &[Corners], at: [f64; 3], reach: f64) -> Option<(f64, f64)> {
     let side = |p: [f64; 3], q: [f64; 3]| (q[0] - p[0]) * (at[1] - p[1]) - (q[1] - p[1]) * (at[0] - p[0]);
     let inside =
         mesh.iter().find(|[a, b, c]| side(*a, *b) >= 0.0 && side(*b, *c) >= 0.0 && side(*c, *a) >= 0.0);
@@ -178,5 +191,6 @@ fn elevation(mesh: &[Corners], at: [f64; 3]) -> Option<(f64, f64)> {
         let distance = (at[0] - p[0] - share * d[0]).hypot(at[1] - p[1] - share * d[1]);
         (distance, p[2] + share * d[2])
     });
-    nearest.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, z)| (z, 0.0))
+    let nearest = nearest.min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.filter(|(distance, _)| *distance <= reach).map(|(_, z)| (z, 0.0))
 }

@@ -52,14 +52,19 @@ fn found(folder: &Folder, file: &LasFile, flags: &[&str]) -> Vec<u8> {
 fn classes_are_those_of_the_definition() {
     let folder = Folder::new();
     let (mut random, mut birds) = (Random::new(21), 0);
-    for (points, side, steepness, window, slope) in
-        [(1500, 24, 0.0, 4, 0.2), (900, 20, 0.4, 5, 0.3), (250, 24, 0.1, 3, 0.2), (2500, 16, 0.9, 6, 0.15)]
-    {
+    for (points, side, steepness, window, slope, reach) in [
+        (1500, 24, 0.0, 4, 0.2, 100.0),
+        (900, 20, 0.4, 5, 0.3, 2.0),
+        (250, 24, 0.1, 3, 0.2, 1.7),
+        (250, 24, 0.1, 3, 0.2, 100.0),
+        (2500, 16, 0.9, 6, 0.15, 3.0),
+    ] {
         let scene = scene(&mut random, points, side, steepness);
         let window_text = window.to_string();
-        let flags = ["--window", &window_text, "--slope", &slope.to_string()];
+        let [slope_text, reach_text] = [slope, reach].map(|value| value.to_string());
+        let flags = ["--window", &window_text, "--slope", &slope_text, "--reach", &reach_text];
         let found = found(&folder, &unclassified(&scene), &flags);
-        let expected = classes(&scene, Rules { window, slope });
+        let expected = classes(&scene, Rules { window, slope, reach });
         let mut unsure = 0;
         for (at, (&found, &(class, margin))) in found.iter().zip(&expected).enumerate() {
             unsure += usize::from(margin < 0.01);
@@ -83,7 +88,7 @@ fn stages_and_blocks_do_not_matter() {
     // Far enough away for a block of its own.
     points.extend(scene(&mut random, 300, 9, 0.1).iter().map(|[x, y, z]| [x + 200_000, *y, *z]));
     let found = found(&folder, &unclassified(&points), &["--window", "21", "--slope", "0.25"]);
-    let expected = classes(&points, Rules { window: 21, slope: 0.25 });
+    let expected = classes(&points, Rules { window: 21, slope: 0.25, reach: 100.0 });
     for (at, (found, &(class, margin))) in found.iter().zip(&expected).enumerate() {
         assert!(*found == class || margin < 0.01, "{:?}: {found}, not {class} ({margin})", points[at]);
     }
@@ -137,6 +142,58 @@ fn cuttings_and_order_do_not_matter() {
         let classes = classes_of(&std::fs::read(format!("{out}/part{part}.laz")).unwrap());
         let expected: Vec<u8> = all.iter().skip(part).step_by(7).copied().collect();
         assert_eq!(classes, expected, "{part}");
+    }
+}
+
+/// Jobs that see no more than the halo of their tiles.
+#[test]
+fn tiles_of_a_plan_have_the_classes_of_all() {
+    let folder = Folder::new();
+    let mut random = Random::new(8);
+    let parameters = ["--window", "2", "--reach", "2"];
+    let tiles: Vec<Vec<[i32; 3]>> = (0..7)
+        .map(|tile| {
+            let own = scene(&mut random, 1500, 40, 0.1);
+            // The last ones are sparse, so that triangles are as large as they may be.
+            let step = if tile < 5 { 1 } else { 4 };
+            own.iter().step_by(step).map(|[x, y, z]| [x + 4000 * tile, *y, *z]).collect()
+        })
+        .collect();
+    let all = found(&folder, &unclassified(&tiles.concat()), &parameters);
+    let name = |tile: usize| format!("tile{tile}.las");
+    let paths: Vec<String> =
+        (0..7).map(|tile| folder.write(&name(tile), unclassified(&tiles[tile]).bytes())).collect();
+    let paths: Vec<&str> = paths.iter().map(String::as_str).collect();
+    let plan = folder.path("plan.json");
+    let done = run("spfinalize", &[&["--plan", &plan, "--leaf-points", "2000"][..], &paths].concat(), &[]);
+    assert!(done.status.success(), "{:?}", outcome(&done));
+    let (out, report) = (folder.path("classified"), folder.path("report.json"));
+    let mut at = 0;
+    for tile in 0..7 {
+        let arguments = ["--plan", &plan, paths[tile], "--out-dir", &out, "--report", &report];
+        let done = run("spground", &[&arguments[..], &parameters].concat(), &[]);
+        assert!(done.status.success(), "{:?}", outcome(&done));
+        let classes = classes_of(&std::fs::read(format!("{out}/{}", name(tile))).unwrap());
+        let count = tiles[tile].len();
+        assert_eq!(classes, all[at..at + count], "{tile}");
+        at += count;
+        let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&report).unwrap()).unwrap();
+        assert!(report["points"].as_u64().unwrap() < all.len() as u64, "{report}");
+    }
+    // Leaves have each tile once.
+    let leaves = folder.path("leaves");
+    let listed = run("spnode", &["list", &plan, "--stage", "0"], &[]);
+    let numbers = String::from_utf8(listed.stdout).unwrap();
+    for line in numbers.lines() {
+        let number = line.split_whitespace().next().unwrap();
+        let arguments = ["--plan", &plan, "--leaf", number, "--out-dir", &leaves];
+        let done = run("spground", &[&arguments[..], &parameters].concat(), &[]);
+        assert!(done.status.success(), "{:?}", outcome(&done));
+    }
+    for tile in 0..7 {
+        let [of_tile, of_leaf] =
+            [&out, &leaves].map(|folder| std::fs::read(format!("{folder}/{}", name(tile))));
+        assert_eq!(of_tile.unwrap(), of_leaf.unwrap(), "{tile}");
     }
 }
 

@@ -13,8 +13,8 @@ use spmesh_base::error::{Error, Result};
 
 pub use crate::drivers::Format;
 pub use readers::{
-    CONFIGGEN, DD4, READERS, Reader, SPCANOPY, SPCONVERT, SPFINALIZE, SPGROUND, SPHEIGHT, SPINFO, SPLINEFIT,
-    SPREPORT, TESS3,
+    CONFIGGEN, DD4, READERS, Reader, SPCANOPY, SPCONVERT, SPFINALIZE, SPGROUND, SPGROUND_MESH, SPHEIGHT,
+    SPINFO, SPLINEFIT, SPREPORT, TESS3,
 };
 pub(crate) use text::is_off;
 

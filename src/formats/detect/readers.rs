@@ -57,8 +57,11 @@ pub const TESS3: Reader = reader("tess3", || [structures(), vec![Format::Off], p
 /// `spcanopy`.
 pub const SPCANOPY: Reader = reader("spcanopy", || vec![Format::Las]);
 
-/// `spground`.
-pub const SPGROUND: Reader = reader("spground", || vec![Format::Las]);
+/// `spground`, for the files whose points get classes.
+pub const SPGROUND: Reader = reader("spground", || vec![Format::Las, Format::Text, Format::OtherText]);
+
+/// `spground`, for points whose ground is triangulated.
+pub const SPGROUND_MESH: Reader = reader("spground", points);
 
 /// `spheight`, for the files whose points get heights.
 pub const SPHEIGHT: Reader = reader("spheight", || vec![Format::Las, Format::Text, Format::OtherText]);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::detect::{Format, SPHEIGHT, read_head};
+use crate::detect::{Format, Reader, read_head};
 use crate::las::LasFile;
 use crate::source::TextOptions;
 use crate::source::input::check_text_options;
@@ -20,22 +20,28 @@ pub enum PointFile {
 }
 
 impl PointFile {
-    /// Opens the file at `path` ("-" is stdin) and reads its header, or the first lines of a text.
+    /// Opens the file at `path` ("-" is stdin) and reads its header, or the first lines of a text. `reader` is the
+    /// program, for messages, and takes no other formats.
     ///
     /// Cost: the header. Stdin, and LAS files within gzip, are copied to an unlinked temporary file in
     /// `temp_dir`, or in the system's folder for temporary files.
     ///
     /// # Errors
     /// If the file cannot be opened, is of another format, or its header is damaged; the file is named.
-    pub fn open(path: &Path, temp_dir: Option<&Path>, text: &TextOptions) -> Result<PointFile> {
+    pub fn open(
+        path: &Path,
+        reader: &'static Reader,
+        temp_dir: Option<&Path>,
+        text: &TextOptions,
+    ) -> Result<PointFile> {
         let name = name_of(path);
         let temp_dir = temp_dir.map_or_else(std::env::temp_dir, PathBuf::from);
         let mut notices = Vec::new();
-        let origin = Origin::new(path, Admitted::Formats(&SPHEIGHT), &temp_dir, &mut notices)?;
+        let origin = Origin::new(path, Admitted::Formats(reader), &temp_dir, &mut notices)?;
         let detect = || -> Result<(Format, bool)> {
             let mut plain = origin.plain()?;
             let head = read_head(&mut plain).map_err(|e| Error::io("reading", e))?;
-            let format = SPHEIGHT.detect(&head)?;
+            let format = reader.detect(&head)?;
             check_text_options(text, format)?;
             Ok((format, plain.is_compressed()))
         };

@@ -195,13 +195,21 @@ impl TextBatch {
         self.lines.is_empty()
     }
 
-    /// Writes its lines. Those of points get one of the `values`, NaN where it is unknown; a line of names
+    /// Writes its lines. Those of points get one of the `values`, NaN where it is unknown, with so many
+    /// decimals, if `None` as many as the elevation of the first point has, but from 3 to 9; a line of names
     /// gets `name`.
     ///
     /// # Errors
     /// If writing fails.
-    pub fn write(&self, name: &str, values: &[f64], output: &mut impl Write) -> Result<()> {
+    pub fn write(
+        &self,
+        name: &str,
+        values: &[f64],
+        decimals: Option<usize>,
+        output: &mut impl Write,
+    ) -> Result<()> {
         let (mut start, mut values) = (0, values.iter());
+        let decimals = decimals.unwrap_or(self.decimals);
         let mut text = Vec::with_capacity(self.text.len() + 12 * self.points.len());
         for &CopiedLine { end, column, separator, kind } in &self.lines {
             text.extend_from_slice(&self.text[start..column]);
@@ -214,7 +222,7 @@ impl TextBatch {
                 LineKind::Point => {
                     text.push(separator);
                     let value = values.next().copied().unwrap_or(f64::NAN);
-                    text.extend(decimal(value, self.decimals).as_bytes());
+                    text.extend(decimal(value, decimals).as_bytes());
                 }
             }
             text.extend_from_slice(&self.text[column..end]);

@@ -3,7 +3,7 @@
 pub mod lines;
 pub mod point_filters;
 mod reduction;
-mod roots;
+pub mod roots;
 pub mod spdelaunay2d;
 pub mod spdelaunay3d;
 pub mod spfinalize;

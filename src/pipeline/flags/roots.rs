@@ -9,7 +9,7 @@ use spmesh_base::error::{Error, ErrorKind, Result};
 
 /// The flag for roots.
 #[derive(Debug, Clone, Default, Args)]
-pub(super) struct RootFlags {
+pub struct RootFlags {
     /// Name files in the folder PATH relative to it, as files of the root NAME: so a plan may move with its
     /// files. May be given several times
     #[arg(long = "root", value_name = "NAME=PATH", value_parser = parse_root)]
@@ -21,7 +21,7 @@ impl RootFlags {
     ///
     /// # Errors
     /// Usage, if a name is given twice; I/O, if there is no such folder.
-    pub(super) fn roots(&self) -> Result<Roots> {
+    pub fn roots(&self) -> Result<Roots> {
         let mut roots = Roots::new();
         for (name, path) in &self.roots {
             if !path.is_dir() {

@@ -17,6 +17,7 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::limits::PLAN_LEN_MAX;
 use spmesh_formats::source::{Description, Extent, SkippedFile, Survey};
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::model::points::Point2;
 use spmesh_stream::{Coordinates, Crs, Header, Kind, PartName};
 
@@ -361,6 +362,28 @@ impl Plan {
     /// The files that reach into a leaf.
     pub fn files_of(&self, node: &Node) -> Vec<&PlannedFile> {
         node.files.iter().filter_map(|&file| self.files.get(file as usize)).collect()
+    }
+
+    /// The file of the plan at a path, whether or not it is as it was; `None` if the plan has none.
+    ///
+    /// # Errors
+    /// I/O, if the path leads through a folder that is not there.
+    pub fn file_at(&self, path: &Path) -> Result<Option<&PlannedFile>> {
+        let place =
+            settled(path).map_err(|e| Error::io("finding", e).of_input(path.display().to_string()))?;
+        Ok(self.files.iter().find(|file| file.path(&self.roots) == place))
+    }
+
+    /// The files whose boxes begin in a leaf: each file with points begins in one leaf.
+    pub fn files_from<'p>(&'p self, leaf: &'p Node) -> impl Iterator<Item = &'p PlannedFile> {
+        let region = leaf.region.region();
+        self.files_of(leaf).into_iter().filter(move |file| file.min.is_some_and(|min| region.contains(min)))
+    }
+
+    /// The box of the world of a file, as wide as roundings may make it; `None` without points.
+    pub fn in_world(&self, file: &PlannedFile) -> Option<Bounds> {
+        let (coordinates, Bounds { min, max }) = (self.coordinates(), file.bounds()?);
+        Some(coordinates.widened(&Bounds { min: coordinates.to_world(min), max: coordinates.to_world(max) }))
     }
 
     /// The nodes in an order in which each comes behind its children, and few wait for their parent.

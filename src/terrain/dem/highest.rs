@@ -45,7 +45,8 @@ impl Highest {
         run.draw(reader, self, options.memory / 2, |_| {})
     }
 
-    /// Writes the raster. Returns the number of cells with a value, and notices for the user.
+    /// Writes the raster, whose values are elevations or heights above something. Returns the number of cells with
+    /// a value, and notices for the user.
     ///
     /// # Errors
     /// If writing fails.
@@ -54,9 +55,9 @@ impl Highest {
         output: Destination<W>,
         options: &Options,
         crs: &Crs,
+        has_elevations: bool,
     ) -> Result<(u64, Vec<String>)> {
-        // Heights above the ground are no elevations.
-        let mut reference = Reference::of_crs(crs, false, options.raster.format);
+        let mut reference = Reference::of_crs(crs, has_elevations, options.raster.format);
         let notices = std::mem::take(&mut reference.notices);
         let (file, grid) = (options.file(self.grid, &reference), self.grid);
         let around = Surroundings::new(&grid, 0, None);

@@ -7,6 +7,7 @@ use clap::ValueEnum;
 
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::ledger::check_distinct;
+use spmesh_formats::source::PointFile;
 use spmesh_shell::{Names, endings, of_ending};
 
 /// The values of `--format`.
@@ -19,6 +20,9 @@ pub(super) enum FormatFlag {
 /// The formats that endings of names stand for.
 pub(super) const ENDINGS: Names<FormatFlag> = &[("las", FormatFlag::Las), ("laz", FormatFlag::Laz)];
 
+/// Endings of points: LAS files, and text.
+const OF_POINTS: &[&str] = &["las", "laz", "xyz", "csv", "tsv", "txt", "asc", "dat"];
+
 /// Where outputs go.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OutputNames<'f> {
@@ -27,8 +31,8 @@ pub(super) struct OutputNames<'f> {
     /// The folder of many.
     pub(super) folder: Option<&'f Path>,
     pub(super) format: Option<FormatFlag>,
-    /// Endings that the name of a single output may have.
-    pub(super) endings: &'static [&'static str],
+    /// Endings that the name of a single output may have, beside those of points.
+    pub(super) others: &'static [&'static str],
 }
 
 impl OutputNames<'_> {
@@ -44,7 +48,7 @@ impl OutputNames<'_> {
                 return Err(Error::usage(what).of_input(name));
             }
             if self.format.is_none() {
-                endings::check(output, &[self.endings])?;
+                endings::check(output, &[OF_POINTS, self.others])?;
             }
             return Ok(vec![output.to_path_buf()]);
         }
@@ -61,6 +65,25 @@ impl OutputNames<'_> {
         check_distinct(inputs)?;
         check_apart(inputs, &outputs)?;
         Ok(outputs)
+    }
+
+    /// Checks that the name of an output goes with the format of the file, which stays.
+    ///
+    /// # Errors
+    /// Usage, if it does not.
+    pub(super) fn check(&self, file: &PointFile, output: &Path) -> Result<()> {
+        let is_las = of_ending(ENDINGS, output).is_some();
+        let what = match file {
+            PointFile::Las(_) if self.output.is_some() && self.format.is_none() && !is_las => {
+                "points are written to NAME.las or NAME.laz, or choose with --format"
+            }
+            PointFile::Text(_) if self.format.is_some() => "--format is for LAS files: text stays text",
+            PointFile::Text(_) if self.output.is_some() && is_las => {
+                "text stays text: give a name such as points.csv"
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::usage(what).of_input(output.display().to_string()))
     }
 
     /// Whether the points of an output are compressed; as in the input if `None`.

@@ -9,7 +9,7 @@ use clap::Parser;
 use super::sheets::SheetFlags;
 use crate::canopy::{Settings, draw, thresholds};
 use crate::dem::{Method, Options, Quantity, Sample};
-use crate::height::{Ground, HeightPoints, about_below};
+use crate::height::{Ground, HeightPoints, Surface, about_below};
 use crate::meshing::Meshing;
 use spmesh_base::error::{Error, Result, counted};
 use spmesh_formats::detect::SPCANOPY;
@@ -43,6 +43,8 @@ Examples:
     spcanopy --ground ground.spm tiles/*.laz --step 0.5 -o canopy.tif
   The same in one pipe:
     spfinalize tiles/*.laz --keep-class 2 | spdelaunay2d | spcanopy --ground - tiles/*.laz --step 0.5 -o canopy.tif
+  A surface model in elevations, without pits and without birds:
+    spcanopy --ground ground.spm tiles/*.laz --elevations --max-height 60 --step 0.5 -o surface.tif
   Only vegetation, with layers of one's own:
     spcanopy --ground ground.spm tiles/*.laz --keep-class 2,3,4,5 --layers 0,3,6,12,18 --step 1 -o canopy.tif
 ";
@@ -54,7 +56,8 @@ several surfaces (Khosravipour and others, 2014): a triangulation of all first r
 10 m, 15 m and so on. The upper ones leave out triangles with an edge longer than --max-edge, so they cover single crowns \
 only. All are exact Delaunay triangulations and are streamed, so tiles have no seams.
 
-Heights are those above the ground at each point; below zero, they are zero. Points outside of the ground are left out. \
+Heights are those above the ground at each point; below zero, they are zero. With --elevations, points keep their elevation, \
+and heights only say in which layers they are: so the surface has no pits, and stands on the ground. Points outside of the ground are left out. \
 Withheld points and noise (classes 7 and 18) are dropped, unless flags say which classes to keep or drop.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
@@ -91,6 +94,14 @@ pub struct Flags {
     /// Longest edge of triangles in layers above 0 [default: four cells]
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     max_edge: Option<f64>,
+
+    /// Write elevations of the canopy, and not its heights above the ground: a surface model without pits
+    #[arg(long)]
+    elevations: bool,
+
+    /// Leave out points that are higher above the ground: birds and clouds
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    max_height: Option<f64>,
 
     /// Take all returns, not only the first
     #[arg(long)]
@@ -169,30 +180,36 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     bottom.mask = flags.outline.mask(crs, |text| flags.notice(text))?;
     let total = input.description().stated_points;
     let mut progress = Progress::new(&flags.common, "finding heights", total);
-    let points =
-        HeightPoints::read(&ground, &input, temp_dir, flags.threads(), |points| progress.set(points))?;
+    let surface = flags.surface()?;
+    let points = HeightPoints::read(&ground, &input, surface, temp_dir, flags.threads(), |points| {
+        progress.set(points);
+    })?;
     drop(ground);
     let thresholds = thresholds(&flags.layers, points.greatest())?;
     let mut progress = Progress::counting("layers", &flags.common, "drawing", Some(thresholds.len() as u64));
     let (highest, triangles) =
         draw(&points, &grid, &bottom, &settings, &thresholds, |done| progress.set(done))?;
     drop(progress);
-    let (known, notices) = highest.write(output.destination(), &bottom, &input.description().crs)?;
+    let crs = &input.description().crs;
+    let (known, notices) = highest.write(output.destination(), &bottom, crs, surface.has_elevations)?;
     let committed = output.commit(&input.description().crs)?;
     notices.iter().for_each(|text| flags.notice(text));
-    if points.outside() > 0 {
-        let outside =
-            counted(points.outside(), "point outside of the ground was", "points outside of the ground were");
-        flags.notice(&format!("{outside} left out"));
+    let found = points.counts();
+    for (count, what) in [(found.outside, "outside of the ground"), (found.high, "above --max-height")] {
+        if count > 0 {
+            let points = counted(count, "point", "points");
+            flags.notice(&format!("{points} {what} left out"));
+        }
     }
-    let below = about_below(points.below(), points.points());
+    let below = about_below(found.below, found.points);
     below.iter().for_each(|text| flags.notice(text));
     flags.notice(&cells::summary(&grid, grid.cells() - known));
     committed.notice().iter().for_each(|text| flags.notice(text));
-    let counts = || -> [Row<u64>; 8] {
+    let counts = || -> [Row<u64>; 9] {
         [
-            ("points", "points", points.points()),
-            ("points outside of the ground", "outside", points.outside()),
+            ("points", "points", found.points),
+            ("points outside of the ground", "outside", found.outside),
+            ("points that are too high", "high", found.high),
             ("layers", "layers", thresholds.len() as u64),
             ("triangles of all layers", "triangles", triangles),
             ("cells", "cells", grid.cells()),
@@ -278,6 +295,11 @@ impl Flags {
                 temp_dir: self.raster.temp_dir().map(Into::into),
             },
         })
+    }
+
+    fn surface(&self) -> Result<Surface> {
+        let highest = length("--max-height", self.max_height)?.unwrap_or(f64::INFINITY);
+        Ok(Surface { has_elevations: self.elevations, highest })
     }
 
     /// Refuses points in another coordinate reference system than the ground's.

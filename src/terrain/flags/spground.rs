@@ -1,6 +1,7 @@
 //! `spground`: flags, and its report.
 
 mod parameters;
+mod plans;
 
 use std::io::Write;
 use std::num::NonZeroUsize;
@@ -11,31 +12,30 @@ use clap::Parser;
 use serde_json::json;
 
 use parameters::ParameterFlags;
+use plans::PlanFlags;
 
 use super::names::{FormatFlag, OutputNames};
 use crate::ground::{
     Class, ClassCounts, Found, FoundCounts, GroundPoints, Parameters, RewriteOptions, Settings, Step,
-    write_classes,
+    write_classes, write_text_classes,
 };
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::check_apart;
 use spmesh_base::temporary::TemporaryFile;
-use spmesh_formats::detect::SPGROUND;
-use spmesh_formats::las::LasFile;
+use spmesh_formats::detect::{SPGROUND, SPGROUND_MESH};
 use spmesh_formats::ledger::check_distinct;
-use spmesh_formats::source::{Filters, Input, PointFile, SourceOptions, TextOptions};
+use spmesh_formats::source::{Filters, Input, PointFile, SourceOptions};
 use spmesh_shell::batch::listed;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
+use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{
     Common, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, peak_memory, threads,
 };
+use spmesh_stream::model::bounds::Bounds;
 
 const TOOL: &str = "spground";
-
-/// Endings of single outputs: the mesh of the ground, or points.
-const ENDINGS_OWN: &[&str] = &["spm", "las", "laz"];
 
 const EXAMPLES: &str = "\
 Examples:
@@ -46,6 +46,9 @@ Examples:
     spdem --step 1 ground.spm -o terrain.tif
   A town with large halls, whose buildings and water are classified already:
     spground tiles/*.laz --preset urban --keep-class-of 6,7,9,18 --out-dir classified
+  One tile of a country, in a job of its own:
+    spfinalize --plan plan.json tiles/*.laz
+    spground --plan plan.json tiles/17.laz --out-dir classified
 ";
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -53,7 +56,8 @@ const NOTES: &str = "
 The lowest points of cells make a raster. Disks of growing radius are pushed up below it; what they do not reach, and is \
 steeper than --slope allows, is an object (the SMRF filter of Pingel and others, 2013). The cells that are left are \
 triangulated, and the same is done again with heights above this surface, so hills matter less. Points that are near \
-the second surface are ground: up to --threshold above it, and further where it is steep. docs/theory/ground.md says it \
+the second surface are ground: up to --threshold above it, and further where it is steep. Triangles bridge gaps up to \
+about twice --reach; what lies in wider ones has class 1. docs/theory/ground.md says it \
 exactly.
 
 Classes are 2 for the ground, 7 for points more than twice as far below it, 18 for points above --max-height, and for up \
@@ -70,11 +74,12 @@ memory, 6 input of another version of spmesh.";
 
 /// Find which points are on the ground.
 ///
-/// Reads LAS, LAZ or COPC files. Writes them again with classes, or the triangulation of the ground.
+/// Reads LAS, LAZ or COPC files, or text of points, and writes them again with classes; or reads points of any
+/// format, and writes the triangulation of the ground.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {
-    /// LAS, LAZ or COPC files: one set of points
+    /// Files of points: one set
     #[arg(value_name = "FILE")]
     inputs: Vec<PathBuf>,
 
@@ -111,6 +116,9 @@ pub struct Flags {
     temp_dir: Option<PathBuf>,
 
     #[command(flatten)]
+    plan: PlanFlags,
+
+    #[command(flatten)]
     stats: StatsFlag,
 
     #[command(flatten)]
@@ -118,6 +126,9 @@ pub struct Flags {
 
     #[command(flatten)]
     points: PointFlags,
+
+    #[command(flatten)]
+    text: TextFlags,
 
     // The last, as its heading holds for all flags after it.
     #[command(flatten)]
@@ -152,13 +163,24 @@ struct PointFlags {
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     let started = Instant::now();
-    let paths = flags.inputs()?;
     flags.parameters.parameters().check()?;
+    let around = flags.plan.around(&flags)?;
+    let paths = match &around {
+        Some(around) => around.files.clone(),
+        None => flags.inputs()?,
+    };
+    if paths.is_empty() {
+        flags.notice("no tile begins in this leaf: there is nothing to do");
+        return Ok(());
+    }
     let mesh = flags.mesh();
     let outputs = match mesh {
         Some(_) => check_distinct(&paths).map(|()| Vec::new())?,
         None => flags.names().of(&paths)?,
     };
+    if let Some(around) = &around {
+        around.check_outputs(&outputs)?;
+    }
     // Before the check, which needs the folder to tell its files.
     if let Some(folder) = &flags.out_dir {
         create_folder(folder)?;
@@ -168,10 +190,13 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let others = mesh.map(|path| ("--output", path)).into_iter();
     let report = flags.report.as_deref().map(|path| ("--report", path));
     check_apart([], &named.chain(others).chain(report).collect::<Vec<_>>())?;
-    let input = Input::open(&paths, &flags.source_options())?;
+    let input = match &around {
+        Some(around) => Input::open(&around.inputs, &around.options(flags.source_options()))?,
+        None => Input::open(&paths, &flags.source_options())?,
+    };
     input.notices().iter().for_each(|text| flags.notice(text));
     // All headers are looked at before the work begins.
-    let files = if mesh.is_some() { Vec::new() } else { flags.files(&paths)? };
+    let files = if mesh.is_some() { Vec::new() } else { flags.files(&paths, &outputs)? };
     let mesh = mesh.map(|path| Output::create(path, false)).transpose()?;
     let report = flags.report.as_deref().map(|path| Output::create(path, false)).transpose()?;
 
@@ -179,7 +204,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     TemporaryFile::create(flags.temp_dir.as_deref())?;
     outputs.iter().try_for_each(|output| Output::create(output, true).map(drop))?;
 
-    let found = flags.find(&input)?;
+    let found = flags.find(&input, around.as_ref().and_then(|around| around.window.as_ref()))?;
     if found.counts().triangles == 0 {
         flags.notice(
             "there is no ground: it takes three cells with points that are no objects, not on a line",
@@ -222,10 +247,11 @@ impl Flags {
 
     fn inputs(&self) -> Result<Vec<PathBuf>> {
         let files = listed(&self.inputs, self.lof.as_deref())?;
-        for file in &files {
+        for file in files.iter().filter(|_| self.mesh().is_none()) {
             let is_pipe = std::fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir());
             if is_pipe || file.as_os_str() == "-" {
-                let what = "points are read twice, so they cannot come from a pipe: give files";
+                let what = "points that get classes are read twice, so they cannot come from a pipe: give files, or \
+                            write the mesh of the ground, --output NAME.spm";
                 return Err(Error::usage(what).of_input(file.display().to_string()));
             }
         }
@@ -243,7 +269,7 @@ impl Flags {
             output: self.output.as_deref(),
             folder: self.out_dir.as_deref(),
             format: self.format,
-            endings: ENDINGS_OWN,
+            others: &["spm"],
         }
     }
 
@@ -260,7 +286,8 @@ impl Flags {
 
     fn source_options(&self) -> SourceOptions {
         SourceOptions {
-            reader: &SPGROUND,
+            reader: if self.mesh().is_some() { &SPGROUND_MESH } else { &SPGROUND },
+            text: self.text.options(),
             filters: self.filters(),
             dims: 2,
             temp_dir: self.temp_dir.clone(),
@@ -269,48 +296,55 @@ impl Flags {
         }
     }
 
-    fn files(&self, paths: &[PathBuf]) -> Result<Vec<LasFile>> {
-        let open = |path: &PathBuf| match PointFile::open(
-            path,
-            self.temp_dir.as_deref(),
-            &TextOptions::default(),
-        )? {
-            PointFile::Las(file) => Ok(*file),
-            PointFile::Text(file) => Err(Error::usage("is no LAS or LAZ file").of_input(file.name())),
+    /// Opens the files that get classes.
+    fn files(&self, paths: &[PathBuf], outputs: &[PathBuf]) -> Result<Vec<PointFile>> {
+        let open = |(path, output): (&PathBuf, &PathBuf)| {
+            let file = PointFile::open(path, &SPGROUND, self.temp_dir.as_deref(), &self.text.options())?;
+            self.names().check(&file, output).map(|()| file)
         };
-        paths.iter().map(open).collect()
+        paths.iter().zip(outputs).map(open).collect()
     }
 
     fn settings(&self) -> Settings {
         Settings { memory: self.memory, threads: self.threads().get(), temp_dir: self.temp_dir.clone() }
     }
 
-    fn find(&self, input: &Input) -> Result<Found> {
+    fn find(&self, input: &Input, window: Option<&Bounds>) -> Result<Found> {
         let total = input.description().stated_points;
         let mut reading = Progress::new(&self.common, "reading points", total);
         let mut opening = None;
-        Found::find(input, &self.parameters.parameters(), &self.settings(), &mut |step, done| match step {
+        let mut show = |step, done| match step {
             Step::Reading => reading.set(done),
             Step::Opening => {
                 let bar = || Progress::counting("blocks", &self.common, "finding the ground", None);
                 opening.get_or_insert_with(bar).set(done);
             }
             Step::Surface => opening = None,
-        })
+        };
+        Found::find(input, &self.parameters.parameters(), &self.settings(), window, &mut show)
     }
 
     /// Writes one file.
-    fn write(&self, found: &Found, file: &LasFile, output: &Path, counts: &mut ClassCounts) -> Result<()> {
+    fn write(&self, found: &Found, file: &PointFile, output: &Path, counts: &mut ClassCounts) -> Result<()> {
         let options = RewriteOptions {
             filters: self.filters(),
             is_compressed: self.names().is_compressed(output),
             memory: self.memory / 4,
             threads: self.threads().get(),
         };
-        let mut progress = Progress::new(&self.common, "writing points", Some(file.points()));
-        let created = Output::create(output, true)?;
-        let (written, of_file, notices) =
-            write_classes(found, file, created, &options, |points| progress.set(points))?;
+        let total = match file {
+            PointFile::Las(file) => Some(file.points()),
+            PointFile::Text(_) => None,
+        };
+        let mut progress = Progress::new(&self.common, "writing points", total);
+        let (created, mut show) = (Output::create(output, true)?, |points| progress.set(points));
+        let (written, of_file, notices) = match file {
+            PointFile::Las(file) => write_classes(found, file, created, &options, show)?,
+            PointFile::Text(file) => {
+                let (written, counts) = write_text_classes(found, file, created, &options, &mut show)?;
+                (written, counts, Vec::new())
+            }
+        };
         written.commit()?;
         drop(progress);
         notices.iter().for_each(|text| self.notice(&format!("{}: {text}", file.name())));
@@ -320,12 +354,23 @@ impl Flags {
 
     /// The report. A mesh has no points of each class.
     fn report_of(&self, found: &FoundCounts, counts: &ClassCounts, files: usize) -> serde_json::Value {
-        let Parameters { cell, window, slope, residual_slope, step, threshold, scaling, pit, highest, gap } =
-            self.parameters.parameters();
+        let Parameters {
+            cell,
+            window,
+            slope,
+            residual_slope,
+            step,
+            reach,
+            threshold,
+            scaling,
+            pit,
+            highest,
+            gap,
+        } = self.parameters.parameters();
         let mut report = json!({
             "parameters": {
                 "cell": cell, "window": window, "slope": slope, "residual_slope": residual_slope, "rise": step,
-                "threshold": threshold, "scaling": scaling, "pit": pit, "max_height": highest, "noise_gap": gap,
+                "reach": reach, "threshold": threshold, "scaling": scaling, "pit": pit, "max_height": highest, "noise_gap": gap,
             },
             "points": found.points,
             "cells": found.cells,

@@ -18,6 +18,7 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::check_apart;
+use spmesh_formats::detect::SPHEIGHT;
 use spmesh_formats::ledger::{Outcome, modified_of};
 use spmesh_formats::source::PointFile;
 use spmesh_shell::batch::BatchFlags;
@@ -26,8 +27,8 @@ use spmesh_shell::progress::Progress;
 use spmesh_shell::stats::Row;
 use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{
-    Common, Mesh, MeshReader, Names, Needs, Report, StatsFlag, advise_on_memory, named, notice, of_ending,
-    parse_size, parse_threads, peak_memory, threads,
+    Common, Mesh, MeshReader, Names, Needs, Report, StatsFlag, advise_on_memory, named, notice, parse_size,
+    parse_threads, peak_memory, threads,
 };
 use spmesh_stream::Crs;
 use spmesh_stream::model::bounds::Bounds;
@@ -151,10 +152,7 @@ pub struct Flags {
 }
 
 /// The values of `--outside`.
-const OUTSIDE: Names<Outside> = &[("no-data", Outside::NoData), ("nearest", Outside::Nearest)];
-
-/// Endings of names of LAS files, and of text.
-const ENDINGS_OWN: &[&str] = &["las", "laz", "xyz", "csv", "tsv", "txt", "asc", "dat"];
+const OUTSIDE: Names<Outside> = &[("no-data", Outside::NoData), ("nearest", Outside::NEAREST)];
 
 /// Sums over all files.
 #[derive(Debug, Default)]
@@ -293,8 +291,8 @@ impl Flags {
     }
 
     fn open(&self, input: &Path, output: &Path) -> Result<PointFile> {
-        let file = PointFile::open(input, self.temp_dir.as_deref(), &self.text.options())?;
-        self.check_ending(&file, output)?;
+        let file = PointFile::open(input, &SPHEIGHT, self.temp_dir.as_deref(), &self.text.options())?;
+        self.names().check(&file, output)?;
         Ok(file)
     }
 
@@ -312,7 +310,7 @@ impl Flags {
     /// The box that the headers of the files state; `None` if the ground is needed beyond it: the place
     /// nearest to a point may be anywhere.
     fn window(&self, files: impl IntoIterator<Item = Stated>) -> Option<Bounds> {
-        if self.outside() == Outside::Nearest {
+        if self.outside() == Outside::NEAREST {
             return None;
         }
         let stated = files.into_iter().filter(|file| file.points > 0).map(|file| file.bounds);
@@ -371,28 +369,12 @@ impl Flags {
             output: self.output.as_deref(),
             folder: self.batch.out_dir.as_deref(),
             format: self.format,
-            endings: ENDINGS_OWN,
+            others: &[],
         }
     }
 
-    /// Checks that the name of an output goes with the format of the file, which stays.
-    fn check_ending(&self, file: &PointFile, output: &Path) -> Result<()> {
-        let is_las = of_ending(ENDINGS, output).is_some();
-        let what = match file {
-            PointFile::Las(_) if self.output.is_some() && self.format.is_none() && !is_las => {
-                "points are written to NAME.las or NAME.laz, or choose with --format"
-            }
-            PointFile::Text(_) if self.format.is_some() => "--format is for LAS files: text stays text",
-            PointFile::Text(_) if self.output.is_some() && is_las => {
-                "text stays text: give a name such as heights.csv"
-            }
-            _ => return Ok(()),
-        };
-        Err(Error::usage(what).of_input(output.display().to_string()))
-    }
-
     fn outside(&self) -> Outside {
-        self.outside.unwrap_or(if self.replace_z { Outside::Nearest } else { Outside::NoData })
+        self.outside.unwrap_or(if self.replace_z { Outside::NEAREST } else { Outside::NoData })
     }
 
     fn about_outside(&self, sums: &Sums, has_triangles: bool) -> String {
@@ -400,7 +382,7 @@ impl Flags {
             1 => "1 point is".to_string(),
             count => format!("{count} points are"),
         };
-        let is_nearest = self.outside() == Outside::Nearest;
+        let is_nearest = self.outside() == Outside::NEAREST;
         let what = match sums.without {
             _ if !has_triangles => "they have no height, as it has no triangles".to_string(),
             _ if !is_nearest => {

@@ -9,7 +9,7 @@ use spmesh_base::error::{Error, Result};
 use spmesh_formats::raster::TILE;
 use spmesh_formats::source::PointReader;
 use spmesh_stream::Coordinates;
-use spmesh_stream::model::bounds::Point;
+use spmesh_stream::model::bounds::{Bounds, Point};
 use std::path::Path;
 
 /// Steps of x and y in a cell, and of z in its unit.
@@ -118,19 +118,47 @@ pub(super) fn first_cell(tile: TilePlace) -> [i64; 2] {
     tile.map(|number| (number as i64 - MIDDLE) * TILE as i64)
 }
 
+/// A rectangle of cells.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extent {
+    /// The first and the last cell. They may be infinite.
+    ends: [[f64; 2]; 2],
+}
+
+impl Extent {
+    /// The cells of a box of the world, and of all places that are at most so far away.
+    pub(super) fn around(window: &Bounds, halo: f64, size: f64) -> Extent {
+        let ends = [(window.min, -halo), (window.max, halo)];
+        Extent { ends: ends.map(|(end, halo)| [0, 1].map(|axis| ((end[axis] + halo) / size).floor())) }
+    }
+
+    fn contains(&self, cell: [i32; 2]) -> bool {
+        let [first, last] = self.ends;
+        (0..2).all(|axis| (first[axis]..=last[axis]).contains(&f64::from(cell[axis])))
+    }
+}
+
 /// The lowest points of all cells.
 pub(super) struct Lows {
     pub(super) tiles: Accumulators<Lowest>,
     pub(super) cells: Cells,
+    /// Points in other cells do not count.
+    extent: Option<Extent>,
 }
 
 impl Lows {
-    /// No points. `memory` is for tiles.
+    /// No points. Points outside of `extent` will not count; `memory` is for tiles.
     ///
     /// # Errors
     /// Memory, if that is too little.
-    pub(super) fn new(size: f64, memory: u64, temp_dir: Option<&Path>) -> Result<Lows> {
-        Ok(Lows { tiles: Accumulators::anywhere(Lowest::BLANK, memory, temp_dir)?, cells: Cells { size } })
+    pub(super) fn new(
+        size: f64,
+        extent: Option<Extent>,
+        memory: u64,
+        temp_dir: Option<&Path>,
+    ) -> Result<Lows> {
+        let tiles = Accumulators::anywhere(Lowest::BLANK, memory, temp_dir)?;
+        Ok(Lows { tiles, cells: Cells { size }, extent })
     }
 
     /// Adds the points of a pass, and shows each batch to `also`, with the number of points so far; it says
@@ -151,7 +179,10 @@ impl Lows {
             reader.next_batch(&mut batch)?;
             points += batch.len() as u64;
             for &stored in &batch {
-                placed.push(self.cells.place(coordinates.to_world(stored))?);
+                let point = self.cells.place(coordinates.to_world(stored))?;
+                if self.extent.is_none_or(|extent| extent.contains(point.cell)) {
+                    placed.push(point);
+                }
             }
             if is_sorted && placed.len() < SORTED && !batch.is_empty() {
                 continue;

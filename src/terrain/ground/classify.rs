@@ -40,6 +40,11 @@ pub enum Class {
 impl Class {
     /// All classes.
     pub const ALL: [Class; 4] = [Class::Other, Class::Ground, Class::LowNoise, Class::HighNoise];
+
+    /// Its place in [`Class::ALL`].
+    pub fn number(self) -> usize {
+        Class::ALL.iter().position(|other| *other == self).expect("these are all")
+    }
 }
 
 /// Finds classes, batch by batch.
@@ -59,7 +64,8 @@ impl Found {
     /// Prepares to find classes of points with these coordinates on some threads.
     pub fn classifier(&self, coordinates: &Coordinates, threads: NonZeroUsize) -> Classifier<'_> {
         let alignment = Alignment::between(coordinates, self.surface.coordinates());
-        let heights_above = Heights::new(&self.surface, Unit::Stored, Outside::Nearest, threads);
+        let outside = Outside::Within(self.reach);
+        let heights_above = Heights::new(&self.surface, Unit::Stored, outside, threads);
         let (placed, heights, slopes) = (Vec::new(), Vec::new(), Vec::new());
         let steepest = STEEPEST * self.metre[1] / self.metre[0];
         Classifier {

@@ -1,13 +1,14 @@
-//! LAS and LAZ files with the classes of their points.
+//! Files with the classes of their points.
 
 use std::io::{Seek, Write};
 use std::num::NonZeroUsize;
 
-use super::{Class, Found};
+use super::Found;
 use crate::height::{rewrite, stored_point};
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::las::{Changes, LasFile};
-use spmesh_formats::source::Filters;
+use spmesh_formats::source::{Filters, TextBatch, TextFile};
+use spmesh_stream::Coordinates;
 
 /// How files are written.
 #[derive(Debug, Clone)]
@@ -21,6 +22,20 @@ pub struct RewriteOptions {
     /// Threads that decompress, as many that compress, and as many that find classes.
     pub threads: usize,
 }
+
+impl RewriteOptions {
+    fn threads(&self) -> NonZeroUsize {
+        NonZeroUsize::new(self.threads).unwrap_or(NonZeroUsize::MIN)
+    }
+}
+
+/// Bytes of a line of text and of what is found for it, about.
+const LINE_LEN: u64 = 200;
+/// Most points of a text whose classes are found together.
+const POINTS_MAX: u64 = 1 << 18;
+
+/// The name of the column of classes.
+const COLUMN: &str = "class";
 
 /// Counts of a file, or of several.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -42,6 +57,42 @@ impl ClassCounts {
     }
 }
 
+/// Writes the lines of `file` again, each point with its class in one more column; calls `progress` with the
+/// number of points written.
+///
+/// Memory: `options.memory`.
+///
+/// # Errors
+/// Malformed, if the file is; if reading or writing fails.
+pub fn write_text_classes<W: Write>(
+    found: &Found,
+    file: &TextFile,
+    mut output: W,
+    options: &RewriteOptions,
+    mut progress: impl FnMut(u64),
+) -> Result<(W, ClassCounts)> {
+    let of_file = |e: Error| e.of_input(file.name());
+    let mut classifier = found.classifier(&Coordinates::F64, options.threads());
+    let (mut lines, mut batch) = (file.lines()?, TextBatch::default());
+    let most = (options.memory / LINE_LEN).clamp(1, POINTS_MAX) as usize;
+    let (mut counts, mut classes, mut values) = (ClassCounts::default(), Vec::new(), Vec::new());
+    loop {
+        lines.next(&mut batch, most, most * LINE_LEN as usize)?;
+        if batch.is_empty() {
+            return Ok((output, counts));
+        }
+        classifier.of(batch.points(), &mut classes).map_err(of_file)?;
+        values.clear();
+        for &class in &classes {
+            counts.classes[class.number()] += 1;
+            values.push(f64::from(class as u8));
+        }
+        counts.points += classes.len() as u64;
+        batch.write(COLUMN, &values, Some(0), &mut output)?;
+        progress(counts.points);
+    }
+}
+
 /// Writes `file` again with the classes of its points; calls `progress` with the number of points written.
 /// All else stays as it is, also the order of the points. Also returns what could not be kept.
 ///
@@ -60,8 +111,7 @@ pub fn write_classes<W: Write + Seek>(
         is_compressed: options.is_compressed.unwrap_or(file.is_compressed()),
         ..Changes::default()
     };
-    let threads = NonZeroUsize::new(options.threads).unwrap_or(NonZeroUsize::MIN);
-    let mut classifier = found.classifier(file.coordinates(), threads);
+    let mut classifier = found.classifier(file.coordinates(), options.threads());
     let of_file = |e: Error| e.of_input(file.name());
     let (record_len, classes_of) = (file.record_len(), file.classes(&options.filters));
     let mut counts = ClassCounts::default();
@@ -77,8 +127,7 @@ pub fn write_classes<W: Write + Seek>(
         }
         classifier.of(&points, &mut classes).map_err(of_file)?;
         for (&number, &class) in wanted.iter().zip(&classes) {
-            let place = Class::ALL.iter().position(|other| *other == class).expect("these are all");
-            counts.classes[place] += 1;
+            counts.classes[class.number()] += 1;
             classes_of.set(&mut batch[number * record_len..][..record_len], class as u8);
         }
         let records = (batch.len() / record_len) as u64;

@@ -20,19 +20,20 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 pub use classify::{Class, Classifier};
-pub use files::{ClassCounts, RewriteOptions, write_classes};
+pub use files::{ClassCounts, RewriteOptions, write_classes, write_text_classes};
 pub use parameters::Parameters;
 pub use points::GroundPoints;
 
 use crate::height::Ground;
 use crate::meshing::Meshing;
-use cells::{Cells, Lowest, Lows};
+use cells::{Cells, Extent, Lowest, Lows};
 use noise::{COLUMN, Columns, NoiseLimits};
 use rounds::{Rules, Work};
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_formats::crs::System;
 use spmesh_formats::source::Input;
 use spmesh_pipeline::reduce::Duplicates;
+use spmesh_stream::model::bounds::Bounds;
 use surface::Frame;
 
 /// Resources of a run.
@@ -68,6 +69,8 @@ pub struct Found {
     slope: f64,
     /// The length of a metre in units of x and y, and of z.
     metre: [f64; 2],
+    /// How far from its triangles the surface is known. Units: stored ones of the surface.
+    reach: f64,
     counts: FoundCounts,
 }
 
@@ -87,7 +90,9 @@ pub struct FoundCounts {
 }
 
 impl Found {
-    /// Finds the ground of an input, which is read once; lengths of `parameters` are in metres.
+    /// Finds the ground of an input, which is read once; lengths of `parameters` are in metres. With a
+    /// `window`, classes are those of all points within this box of the world, if the input has all within
+    /// [`Parameters::halo`] of it; points beyond do not count.
     ///
     /// Memory: `settings.memory`, and 48 bytes for each two thousand triangles. Disk: 1 MB for each tile of
     /// 65,536 cells with a point, 1.3 MB for each of as many columns, and two meshes of the cells.
@@ -99,11 +104,15 @@ impl Found {
         input: &Input,
         parameters: &Parameters,
         settings: &Settings,
+        window: Option<&Bounds>,
         progress: &mut dyn FnMut(Step, u64),
     ) -> Result<Found> {
         let description = input.description();
         let of_input = |e: Error| e.of_input(input.name());
         parameters.check()?;
+        if !description.has_elevation {
+            return Err(of_input(Error::usage("points have no elevation: give points x y z")));
+        }
         let units = parameters::units(&System::of(&description.crs)).map_err(of_input)?;
         let (in_units, metre) = (parameters.in_units(units), units.map(f64::recip));
         let rules = Rules::new(&in_units, metre);
@@ -111,7 +120,8 @@ impl Found {
         let (meshing, opening_threads) = settings.shares(&rules)?;
 
         let cell = in_units.cell;
-        let mut lows = Lows::new(cell, memory / 4, temp_dir)?;
+        let extent = window.map(|window| Extent::around(window, in_units.halo_of(&rules, metre), cell));
+        let mut lows = Lows::new(cell, extent, memory / 4, temp_dir)?;
         let mut columns = Columns::new(COLUMN * metre[0], in_units.gap, memory / 16, temp_dir)?;
         let mut reader = input.read()?;
         let points = lows.add(&mut *reader, &description.coordinates, |placed, points| {
@@ -121,7 +131,7 @@ impl Found {
         let points = points.map_err(of_input)?;
         drop(reader);
         let noise = Mutex::new(columns.limits(memory / 16, temp_dir)?);
-        let frame = Frame::new(&lows.tiles.tiles(), cell, &description.crs).map_err(of_input)?;
+        let frame = Frame::new(&lows.tiles.tiles(), &in_units, &description.crs).map_err(of_input)?;
 
         let mut opening = |done| progress(Step::Opening, done);
         let mut work =
@@ -133,9 +143,10 @@ impl Found {
         rounds::mark_objects(&mut lows, heights, 1, &rules, &mut work)?;
         progress(Step::Surface, 0);
         let surface = surface::triangulated(&mut lows, &frame, Lowest::OBJECT[1], &meshing)?;
+        let surface = surface.within(window.copied());
         let counts = counts(&mut lows, points, surface.triangles())?;
-        let slope = frame.step_of_slope(cell);
-        Ok(Found { surface, noise, cells: lows.cells, parameters: in_units, slope, metre, counts })
+        let (slope, reach) = (frame.step_of_slope(cell), frame.reach);
+        Ok(Found { surface, noise, cells: lows.cells, parameters: in_units, slope, metre, reach, counts })
     }
 
     /// What was found on the way.

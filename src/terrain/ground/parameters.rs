@@ -1,10 +1,11 @@
 //! What the search for the ground depends on.
 
+use super::noise::COLUMN;
+use super::rounds::Rules;
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::crs::System;
 
-/// Lengths in metres; slopes are rises
-/// over runs. What each is for: `docs/theory/ground.md`.
+/// Lengths in metres; slopes are rises over runs. What each is for: `docs/theory/ground.md`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     /// Side of a cell.
@@ -17,6 +18,8 @@ pub struct Parameters {
     pub residual_slope: f64,
     /// How far the ground may rise above the first surface at once.
     pub step: f64,
+    /// Radius of the largest circle of a triangle of a surface, and how far from its triangles a surface is known.
+    pub reach: f64,
     /// How far points of the ground lie from the surface where it is level.
     pub threshold: f64,
     /// How much further for each unit of slope: a length.
@@ -37,6 +40,7 @@ impl Default for Parameters {
             slope: 0.2,
             residual_slope: 0.12,
             step: 0.4,
+            reach: 100.0,
             threshold: 0.3,
             scaling: 1.25,
             pit: 2.0,
@@ -63,6 +67,7 @@ impl Parameters {
             slope: self.slope * slope,
             residual_slope: self.residual_slope * slope,
             step: self.step / rise,
+            reach: self.reach / run,
             threshold: self.threshold / rise,
             // A length for each unit of slope.
             scaling: self.scaling / run,
@@ -77,7 +82,12 @@ impl Parameters {
     /// # Errors
     /// Usage, with the name of the flag.
     pub fn check(&self) -> Result<()> {
-        let positive = [("--cell", self.cell), ("--window", self.window), ("--noise-gap", self.gap)];
+        let positive = [
+            ("--cell", self.cell),
+            ("--window", self.window),
+            ("--reach", self.reach),
+            ("--noise-gap", self.gap),
+        ];
         if let Some((flag, value)) = positive.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
             return Err(Error::usage(format!("{flag} takes a length above 0, not {value}")));
         }
@@ -104,6 +114,26 @@ impl Parameters {
             )));
         }
         Ok(())
+    }
+
+    /// How far around a place points can change its class, in units of x and y of a system: what
+    /// `docs/theory/ground.md` proves.
+    ///
+    /// # Errors
+    /// Usage, if x and y are angles.
+    pub fn halo(&self, system: &System) -> Result<f64> {
+        let units = units(system)?;
+        let (in_units, metre) = (self.in_units(units), units.map(f64::recip));
+        Ok(in_units.halo_of(&Rules::new(&in_units, metre), metre))
+    }
+
+    /// [`Parameters::halo`] of parameters in units.
+    pub(super) fn halo_of(&self, rules: &Rules, metre: [f64; 2]) -> f64 {
+        // A place depends on triangles within the reach, which depend on vertices two reaches further.
+        let surfaces = 2.0 * 3.0 * self.reach;
+        // Cells and columns that the border cuts.
+        let cut = self.cell + COLUMN * metre[0];
+        rules.halo() as f64 * self.cell + surfaces + 2.0 * cut
     }
 
     /// A length in cells, rounded up, at least one.

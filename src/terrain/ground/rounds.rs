@@ -68,6 +68,11 @@ impl Rules {
         }
     }
 
+    /// Cells around one that its marks of both rounds depend on, beside the surface between them.
+    pub(super) fn halo(&self) -> usize {
+        self.noise_halo() + 2 * halo_of(&(1..self.window + 1))
+    }
+
     /// Cells around a block that its noise depends on.
     fn noise_halo(&self) -> usize {
         self.window + self.pit_halo()

@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::cells::{Lowest, Lows, STEPS, Z_STEPS, first_cell};
 use super::opening::GAP;
+use super::parameters::Parameters;
 use crate::accumulators::Accumulators;
 use crate::files::TilePlace;
 use crate::height::{Ground, Heights, Outside, Unit};
@@ -23,6 +24,9 @@ pub(super) struct Frame {
     /// The first cell of the first column and row of tiles.
     corner: [i64; 2],
     pub(super) description: Description,
+    /// Radius of the largest circle of a triangle of a surface, and how far from its triangles a surface is
+    /// known. Units: steps of x and y.
+    pub(super) reach: f64,
 }
 
 impl Frame {
@@ -30,7 +34,8 @@ impl Frame {
     ///
     /// # Errors
     /// Usage, if these are too far from each other.
-    pub(super) fn new(tiles: &[TilePlace], cell: f64, crs: &Crs) -> Result<Frame> {
+    pub(super) fn new(tiles: &[TilePlace], parameters: &Parameters, crs: &Crs) -> Result<Frame> {
+        let cell = parameters.cell;
         let ends = [0, 1].map(|axis| {
             let numbers = || tiles.iter().map(move |tile| tile[axis]);
             [numbers().min().unwrap_or(0), numbers().max().unwrap_or(0)]
@@ -56,7 +61,7 @@ impl Frame {
             attributes: Attributes::default(),
             stated_points: None,
         };
-        Ok(Frame { corner, description })
+        Ok(Frame { corner, description, reach: parameters.reach / cell * f64::from(STEPS) })
     }
 
     /// The lowest point of a cell of a tile.
@@ -127,16 +132,30 @@ impl PointReader for VertexReader<'_, '_> {
     }
 }
 
-/// The triangulation of the lowest points of sound cells without a mark.
+/// The triangulation of the lowest points of sound cells without a mark; no triangles with a greater circle.
 ///
 /// # Errors
 /// Those of triangulating.
 pub(super) fn triangulated(lows: &mut Lows, frame: &Frame, mark: u16, meshing: &Meshing) -> Result<Ground> {
     let mut mesh = meshing.mesh(&Vertices::new(lows, frame, mark), "ground")?;
-    Ground::read(&mut mesh, meshing.temp_dir.as_deref(), meshing.memory, |_| {})
+    let most = frame.reach * frame.reach;
+    let keeps = |corners: &[Point; 3]| circumradius2(corners) <= most;
+    Ground::read_where(&mut mesh, meshing.temp_dir.as_deref(), meshing.memory, keeps, |_| {})
 }
 
-/// The heights of the lowest points of all sound cells above a surface, in steps of z.
+/// The squared radius of the circle through three corners, whatever their order.
+fn circumradius2([a, b, c]: &[Point; 3]) -> f64 {
+    let between = |p: &Point, q: &Point| [q[0] - p[0], q[1] - p[1]];
+    let [u, v, w] = [between(a, b), between(a, c), between(b, c)];
+    let mut squares = [u, v, w].map(|[x, y]| x * x + y * y);
+    // Products of sorted factors are rounded alike for any order of the corners.
+    squares.sort_unstable_by(f64::total_cmp);
+    let twice = u[0] * v[1] - u[1] * v[0];
+    squares[0] * squares[1] * squares[2] / (4.0 * twice * twice)
+}
+
+/// The heights of the lowest points of all sound cells above a surface, in steps of z. Cells that the surface
+/// does not reach are marked as objects of the second round: nothing says that they are ground.
 ///
 /// # Errors
 /// If temporary files fail.
@@ -149,7 +168,7 @@ pub(super) fn heights(
 ) -> Result<Accumulators<f32>> {
     let mut all = Accumulators::anywhere(GAP, memory, meshing.temp_dir.as_deref())?;
     let threads = NonZeroUsize::new(meshing.threads).unwrap_or(NonZeroUsize::MIN);
-    let mut above = Heights::new(surface, Unit::Stored, Outside::Nearest, threads);
+    let mut above = Heights::new(surface, Unit::Stored, Outside::Within(frame.reach), threads);
     let (mut places, mut points, mut heights) = (Vec::new(), Vec::new(), Vec::new());
     for tile in lows.tiles.tiles() {
         let first = first_cell(tile);
@@ -162,8 +181,11 @@ pub(super) fn heights(
         }
         above.of(&points, &mut heights)?;
         for (&at, &height) in places.iter().zip(&heights) {
-            // Without a surface, nothing is known.
-            *all.cell(tile, at)? = if height.is_nan() { GAP } else { height as f32 };
+            if height.is_nan() {
+                lows.tiles.cell(tile, at)?.marks |= Lowest::OBJECT[1];
+            } else {
+                *all.cell(tile, at)? = height as f32;
+            }
         }
     }
     Ok(all)

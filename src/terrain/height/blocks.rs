@@ -9,7 +9,7 @@ use spmesh_stream::model::bounds::Point;
 const GROUP_LEN: usize = 64;
 
 /// A triangle with corners in stored coordinates.
-pub(super) type Triangle = [Point; 3];
+pub type Triangle = [Point; 3];
 
 /// The corners of a triangle, as places among the vertices of its block.
 pub(super) type Corners = [u16; 3];
@@ -63,9 +63,10 @@ impl Blocks {
         groups.flat_map(|group| self.group(group)).filter(move |&block| condition(self.bounds(block)))
     }
 
-    /// The first of the blocks whose boxes are nearest to a point; `None` if there is no block.
-    pub(super) fn closest(&self, point: &Point) -> Option<usize> {
-        let (mut closest, mut least) = (None, f64::INFINITY);
+    /// The first of the blocks whose boxes are nearest to a point; `None` if the squared distance of all is
+    /// greater than `within2`.
+    pub(super) fn closest(&self, point: &Point, within2: f64) -> Option<usize> {
+        let (mut closest, mut least) = (None, within2.next_up());
         for (group, bounds) in self.groups.iter().enumerate() {
             if bounds.distance2(point) >= least {
                 continue;

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::block_writer::BlockWriter;
-use super::blocks::Blocks;
+use super::blocks::{Blocks, Triangle};
 use super::boxes::Box2;
 use crate::surface::is_counterclockwise;
 use spmesh_base::error::{Error, Result};
@@ -42,6 +42,20 @@ impl Ground {
         reader: &mut StreamReader<R>,
         temp_dir: Option<&Path>,
         memory: u64,
+        progress: impl FnMut(u64),
+    ) -> Result<Ground> {
+        Ground::read_where(reader, temp_dir, memory, |_| true, progress)
+    }
+
+    /// [`Ground::read`], of the triangles that `keeps` holds for alone; their corners are in stored coordinates.
+    ///
+    /// # Errors
+    /// As [`Ground::read`].
+    pub fn read_where<R: Read>(
+        reader: &mut StreamReader<R>,
+        temp_dir: Option<&Path>,
+        memory: u64,
+        keeps: impl Fn(&Triangle) -> bool,
         mut progress: impl FnMut(u64),
     ) -> Result<Ground> {
         let header = reader.header().clone();
@@ -57,7 +71,9 @@ impl Ground {
                 triangles.clear();
                 for triangle in patch.triangles() {
                     let corners = triangle.map(|local| vertices[local as usize].1);
-                    if is_counterclockwise(corners.map(|[x, y, _]| [x, y]), &mut predicates)? {
+                    if keeps(&corners)
+                        && is_counterclockwise(corners.map(|[x, y, _]| [x, y]), &mut predicates)?
+                    {
                         triangles.push(triangle);
                     }
                 }
@@ -90,8 +106,8 @@ impl Ground {
             return Ok(());
         }
         Err(Error::malformed(
-            "points lie outside of the box that the header states, where parts of the ground were not read: \
-             write the file again with a right header, or make one stream of the ground with spconvert",
+            "points lie outside of the box that the header states, where parts of the ground are not known: \
+             write the file again with a right header",
         ))
     }
 

@@ -53,12 +53,18 @@ struct Wanted {
 }
 
 /// The heights of points that are outside of the mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Outside {
     /// None.
     NoData,
-    /// Those above the nearest place of the mesh.
-    Nearest,
+    /// Those above the nearest place of the mesh, if it is no further away than this. Units: stored ones of the
+    /// ground.
+    Within(f64),
+}
+
+impl Outside {
+    /// Those above the nearest place of the mesh, however far away.
+    pub const NEAREST: Outside = Outside::Within(f64::INFINITY);
 }
 
 /// Finds heights above a ground, batch by batch, on several threads.
@@ -148,8 +154,8 @@ impl<'g> Heights<'g> {
                 continue;
             }
             outside += 1;
-            if self.outside == Outside::Nearest {
-                let above = point[2] - self.nearest.elevation(point)?.unwrap_or(f64::NAN);
+            if let Outside::Within(distance) = self.outside {
+                let above = point[2] - self.nearest.elevation(point, distance)?.unwrap_or(f64::NAN);
                 *height = self.unit.rounded(above);
             }
         }

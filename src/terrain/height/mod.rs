@@ -23,7 +23,7 @@ pub(crate) use files::{rewrite, stored_point};
 pub use ground::Ground;
 pub use heights::{Heights, Outside, Slopes, Unit};
 pub(crate) use points::unit_of;
-pub use points::{HeightPoints, LayerReader};
+pub use points::{HeightCounts, HeightPoints, LayerReader, Surface};
 pub use text::write_text_heights;
 
 /// A warning if most of some points are `below` the ground, which happens when z is not the elevation that it

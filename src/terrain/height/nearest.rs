@@ -29,12 +29,13 @@ impl<'b> Nearest<'b> {
         Nearest { blocks, kept: Vec::new() }
     }
 
-    /// The elevation of the mesh at the place nearest to a point outside of it; `None` if it has no triangles.
+    /// The elevation of the mesh at the place nearest to a point outside of it; `None` if no triangle is
+    /// within a distance.
     ///
     /// Cost: looks at the boxes of all groups of blocks, and at the triangles of a few blocks.
-    pub(super) fn elevation(&mut self, point: &Point) -> Result<Option<f64>> {
-        let blocks = self.blocks;
-        let Some(first) = blocks.closest(point) else { return Ok(None) };
+    pub(super) fn elevation(&mut self, point: &Point, within: f64) -> Result<Option<f64>> {
+        let (blocks, within2) = (self.blocks, within * within);
+        let Some(first) = blocks.closest(point, within2) else { return Ok(None) };
         let mut best = nearest_of(self.triangles(first)?, point);
         let mut nearer: Vec<usize> = blocks.that(|bounds| bounds.distance2(point) < best.distance2).collect();
         nearer.sort_by(|&p, &q| {
@@ -47,7 +48,7 @@ impl<'b> Nearest<'b> {
                 best = if other.distance2 < best.distance2 { other } else { best };
             }
         }
-        Ok(Some(best.elevation))
+        Ok((best.distance2 <= within2).then_some(best.elevation))
     }
 
     /// The triangles of a block.
@@ -122,7 +123,9 @@ mod tests {
         for _ in 0..200 {
             let point = [4.0 * random.unit() - 2.0, 4.0 * random.unit() - 2.0, 0.0];
             let expected = nearest_of(all.iter().copied(), &point);
-            assert_eq!(nearest.elevation(&point).unwrap(), Some(expected.elevation));
+            assert_eq!(nearest.elevation(&point, f64::INFINITY).unwrap(), Some(expected.elevation));
+            let is_near = expected.distance2 <= 0.25;
+            assert_eq!(nearest.elevation(&point, 0.5).unwrap().is_some(), is_near);
         }
     }
 }

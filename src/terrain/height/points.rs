@@ -1,4 +1,4 @@
-//! Points with heights instead of elevations, in a temporary file, from which layers are read.
+//! Points with their heights above a ground, in a temporary file, from which layers are read.
 
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -12,26 +12,51 @@ use spmesh_stream::Coordinates;
 use spmesh_stream::model::attributes::Attributes;
 use spmesh_stream::model::bounds::Point;
 
-/// Bytes of a point.
-const POINT_LEN: usize = size_of::<Point>();
+/// Bytes of a point and its height.
+const RECORD_LEN: usize = size_of::<Record>();
 /// Points that heights are found for at once.
 const BATCH_LEN: usize = 1 << 19;
 /// Points read back at once.
 const READ_LEN: usize = 1 << 14;
 
-/// Points whose third stored coordinate is the height above a ground. Heights below zero are zero.
+/// A point of the layers, and its stored height above the ground, not below zero.
+type Record = [f64; 4];
+
+/// What the points of layers are, and which ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surface {
+    /// Whether their third coordinate is the elevation, and not the height above the ground.
+    pub has_elevations: bool,
+    /// The greatest height of a point, in the unit of the world.
+    pub highest: f64,
+}
+
+/// Points with their heights above a ground. Heights below zero are zero.
 ///
 /// Memory: 68 bytes for each point of a batch of half a million, while points are read.
-/// Disk: 24 bytes for each point.
+/// Disk: 32 bytes for each point.
 #[derive(Debug)]
 pub struct HeightPoints {
     file: TemporaryFile,
+    surface: Surface,
     description: Description,
-    /// Number of points, and of those that were left out because they are outside of the ground.
-    points: u64,
-    outside: u64,
-    below: u64,
+    /// The coordinates of points with stored heights.
+    heights: Coordinates,
+    counts: HeightCounts,
     greatest: f64,
+}
+
+/// Numbers of points.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct HeightCounts {
+    /// Those that have heights.
+    pub points: u64,
+    /// Those that were left out because they are outside of the ground.
+    pub outside: u64,
+    /// Those that were left out because they are too high.
+    pub high: u64,
+    /// Those with heights below zero, which became zero.
+    pub below: u64,
 }
 
 impl HeightPoints {
@@ -44,6 +69,7 @@ impl HeightPoints {
     pub fn read(
         ground: &Ground,
         input: &Input,
+        surface: Surface,
         temp_dir: Option<&Path>,
         threads: NonZeroUsize,
         mut progress: impl FnMut(u64),
@@ -54,7 +80,7 @@ impl HeightPoints {
         }
         let alignment = Alignment::between(&found.coordinates, ground.coordinates());
         // Heights have the scale of z, and count from zero.
-        let (coordinates, per_unit) = match (found.coordinates, ground.coordinates()) {
+        let (of_heights, per_unit) = match (found.coordinates, ground.coordinates()) {
             (Coordinates::I32 { scale, offset }, ground) => {
                 let heights = Coordinates::I32 { scale, offset: [offset[0], offset[1], 0.0] };
                 (heights, unit_of(ground) / scale[2])
@@ -62,7 +88,7 @@ impl HeightPoints {
             (Coordinates::F64, ground) => (Coordinates::F64, unit_of(ground)),
         };
         let description = Description {
-            coordinates,
+            coordinates: if surface.has_elevations { found.coordinates } else { of_heights },
             stated_bounds: None,
             attributes: Attributes::default(),
             stated_points: None,
@@ -70,7 +96,9 @@ impl HeightPoints {
         };
         let file = TemporaryFile::create(temp_dir)?;
         let mut heights_above = Heights::new(ground, Unit::Stored, Outside::NoData, threads);
-        let mut points = HeightPoints { file, description, points: 0, outside: 0, below: 0, greatest: 0.0 };
+        let counts = HeightCounts::default();
+        let mut points =
+            HeightPoints { file, surface, description, heights: of_heights, counts, greatest: 0.0 };
         let (mut done, mut heights) = (0, Vec::new());
         let mut reader = input.read()?;
         let (mut next, mut batch, mut placed) = (Vec::new(), Vec::new(), Vec::new());
@@ -83,7 +111,7 @@ impl HeightPoints {
             placed.clear();
             placed.extend(batch.iter().map(|&point| alignment.place(point)));
             let outside = heights_above.of(&placed, &mut heights);
-            points.outside += outside.map_err(|e| e.of_input(input.name()))?;
+            points.counts.outside += outside.map_err(|e| e.of_input(input.name()))?;
             points.add(&batch, &heights, per_unit)?;
             done += batch.len() as u64;
             progress(done);
@@ -96,47 +124,48 @@ impl HeightPoints {
 
     /// Writes points with heights in units of the ground.
     fn add(&mut self, batch: &[Point], heights: &[f64], per_unit: f64) -> Result<()> {
-        self.below += heights.iter().filter(|height| **height < 0.0).count() as u64;
-        let known = batch.iter().zip(heights).filter(|(_, height)| !height.is_nan());
-        let stored: Vec<Point> = known
-            .map(|(&[x, y, _], height)| {
-                [x, y, self.description.coordinates.rounded((height * per_unit).max(0.0))]
-            })
-            .collect();
-        self.greatest = stored.iter().map(|point| point[2]).fold(self.greatest, f64::max);
-        self.points += stored.len() as u64;
-        let bytes = bytemuck::cast_slice(&stored);
-        self.file.append("writing points", bytes)
+        let highest = self.stored(self.surface.highest).floor();
+        let mut records = Vec::with_capacity(batch.len());
+        for (&[x, y, z], height) in batch.iter().zip(heights).filter(|(_, height)| !height.is_nan()) {
+            self.counts.below += u64::from(*height < 0.0);
+            let height = self.heights.rounded((height * per_unit).max(0.0));
+            if height > highest {
+                self.counts.high += 1;
+                continue;
+            }
+            self.greatest = self.greatest.max(height);
+            records.push([x, y, if self.surface.has_elevations { z } else { height }, height]);
+        }
+        self.counts.points += records.len() as u64;
+        self.file.append("writing points", bytemuck::cast_slice(&records))
     }
 
-    /// Properties of the points; their third coordinate is the height.
+    /// What a height of the world is among stored ones, but for roundings not below it.
+    fn stored(&self, height: f64) -> f64 {
+        match self.heights {
+            Coordinates::F64 => height,
+            Coordinates::I32 { scale, .. } => height / scale[2] + 1e-6,
+        }
+    }
+
+    /// Properties of the points.
     pub fn description(&self) -> &Description {
         &self.description
     }
 
-    /// Number of points.
-    pub fn points(&self) -> u64 {
-        self.points
-    }
-
-    /// Number of points that were left out because they are outside of the ground.
-    pub fn outside(&self) -> u64 {
-        self.outside
-    }
-
-    /// Number of points with heights below zero, which became zero.
-    pub fn below(&self) -> u64 {
-        self.below
+    /// Numbers of points.
+    pub fn counts(&self) -> HeightCounts {
+        self.counts
     }
 
     /// The greatest height, in the unit of the world.
     pub fn greatest(&self) -> f64 {
-        self.description.coordinates.to_world([0.0, 0.0, self.greatest])[2]
+        self.heights.to_world([0.0, 0.0, self.greatest])[2]
     }
 
     /// Reads the points that are at least this high, in the unit of the world.
     pub fn layer(&self, threshold: f64) -> LayerReader<'_> {
-        let least = match self.description.coordinates {
+        let least = match self.heights {
             Coordinates::F64 => threshold,
             // A height that is meant to be the threshold is not below it.
             Coordinates::I32 { scale, .. } => (threshold / scale[2] - 1e-6).ceil(),
@@ -167,13 +196,14 @@ pub struct LayerReader<'p> {
 impl PointReader for LayerReader<'_> {
     fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
         batch.clear();
-        while batch.is_empty() && self.read < self.points.points {
-            let count = (self.points.points - self.read).min(READ_LEN as u64);
-            self.bytes.resize(count as usize * POINT_LEN, 0);
-            self.points.file.read_at("reading points", &mut self.bytes, self.read * POINT_LEN as u64)?;
+        let points = self.points.counts.points;
+        while batch.is_empty() && self.read < points {
+            let count = (points - self.read).min(READ_LEN as u64);
+            self.bytes.resize(count as usize * RECORD_LEN, 0);
+            self.points.file.read_at("reading points", &mut self.bytes, self.read * RECORD_LEN as u64)?;
             self.read += count;
-            let points = self.bytes.chunks_exact(POINT_LEN).map(bytemuck::pod_read_unaligned::<Point>);
-            batch.extend(points.filter(|point| point[2] >= self.least));
+            let records = self.bytes.chunks_exact(RECORD_LEN).map(bytemuck::pod_read_unaligned::<Record>);
+            batch.extend(records.filter(|record| record[3] >= self.least).map(|[x, y, z, _]| [x, y, z]));
         }
         Ok(())
     }

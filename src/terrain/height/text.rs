@@ -63,7 +63,7 @@ pub fn write_text_heights<W: Write>(
             counts.below += u64::from(*height < 0.0);
         }
         counts.points += points.len() as u64;
-        batch.write(name, &heights, &mut output)?;
+        batch.write(name, &heights, None, &mut output)?;
         progress(counts.points);
     }
 }

@@ -5,6 +5,7 @@ use std::io::{Cursor, Read};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
+use spmesh_formats::detect::SPHEIGHT;
 use spmesh_formats::drivers::Format;
 use spmesh_formats::las::{Changes, LasCopy};
 use spmesh_formats::molecules::{Radii, read_structure_from};
@@ -80,8 +81,9 @@ fn pass(path: &Path, options: SourceOptions) {
 
 /// LAS and LAZ as they are, written again: the records are the same.
 pub fn copy(bytes: &[u8]) {
-    let open =
-        |name: &str, bytes: &[u8]| PointFile::open(&file_named(name, bytes), None, &TextOptions::default());
+    let open = |name: &str, bytes: &[u8]| {
+        PointFile::open(&file_named(name, bytes), &SPHEIGHT, None, &TextOptions::default())
+    };
     let Ok(PointFile::Las(source)) = open("tile.las", bytes) else { return };
     let changes = Changes { field: None, has_new_z: true, is_compressed: bytes.len().is_multiple_of(2) };
     let Ok(mut copy) = LasCopy::start(&source, Cursor::new(Vec::new()), &changes, 1, 1 << 20) else { return };

@@ -36,6 +36,11 @@ pub(super) struct ParameterFlags {
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     rise: Option<f64>,
 
+    /// How wide gaps of the ground may be that triangles bridge, as the radius of a circle without a point
+    /// [default: 100]
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    reach: Option<f64>,
+
     /// Depth from which a small pit is low noise [default: 2]
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pit: Option<f64>,
@@ -81,6 +86,7 @@ impl ParameterFlags {
             slope: self.slope.unwrap_or(of_preset.slope),
             residual_slope: of_preset.residual_slope,
             step: self.rise.unwrap_or(of_preset.step),
+            reach: self.reach.unwrap_or(of_preset.reach),
             threshold: self.threshold.unwrap_or(of_preset.threshold),
             scaling: self.scaling.unwrap_or(of_preset.scaling),
             pit: self.pit.unwrap_or(of_preset.pit),
