@@ -77,10 +77,10 @@ truncated input, 5 not enough memory, 6 input of another version of spmesh, 141 
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
-/// Reads PDB, PQR, PDBx/mmCIF, GRO, XYZ, trajectories (XTC, TRR, DCD), lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF,
-/// VTK and LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table, also of areas,
-/// volumes, contacts and pockets of atoms as balls. The triangulation is exact and canonical: it depends on
-/// the set of points only.
+/// Reads PDB, PQR, PDBx/mmCIF, BinaryCIF, GRO, XYZ, trajectories (XTC, TRR, DCD), lines of x y z, spmesh
+/// streams of points or tetrahedra, PLY, OBJ, OFF, VTK and LAS, plain or compressed (.gz, .zst), and writes
+/// a tetrahedral mesh stream or a table, also of areas, volumes, contacts and pockets of atoms as balls. The
+/// triangulation is exact and canonical: it depends on the set of points only.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 #[command(mut_arg("stats", |stats| stats.help("Print statistics on stderr")))]
@@ -173,6 +173,7 @@ const FORMATS: Names<Format> = &[
     ("pdb: PDB", Format::Pdb),
     ("pqr: PQR: PDB with charges and radii", Format::Pqr),
     ("mmcif: PDBx/mmCIF", Format::Mmcif),
+    ("bcif: BinaryCIF", Format::BinaryCif),
     ("gro: GRO of GROMACS", Format::Gro),
     ("xtc: XTC of GROMACS, with --top", Format::Xtc),
     ("trr: TRR of GROMACS, with --top", Format::Trr),
