@@ -140,8 +140,7 @@ const OF_FEATURES: &str =
 const OF_CELLS: &str = "list its cells as lines of x y z, for example with gdal2xyz";
 const TO_PLY: &str = "convert it first with spconvert --to ply";
 
-// Of each: its name with an article, its name in lists, how it is recognized, and a hint for tools that do
-// not read it.
+// Of each: its name with an article and in lists, its test, and a hint for tools that do not read it.
 formats! {
     Las("a LAS, LAZ or COPC file", "LAS, LAZ, COPC", Test::Magic(&[b"LASF"]), "") {
         is_in_parts: true, points: Some(records::open)

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::molecules::Rows;
-use crate::programs::{Folder, outcome, output, run};
+use crate::programs::{Folder, outcome, run};
 
 fn sample(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name).to_str().unwrap().to_string()
@@ -12,7 +12,9 @@ fn sample(name: &str) -> String {
 
 /// A table of `tess3`.
 fn table(arguments: &[&str]) -> String {
-    String::from_utf8(output("tess3", &[&["-q"], arguments].concat(), &[])).unwrap()
+    let output = run("tess3", &[&["-q"], arguments].concat(), &[]);
+    assert!(output.status.success(), "{arguments:?}: {output:?}");
+    String::from_utf8(output.stdout).unwrap()
 }
 
 const AREAS: [&str; 4] = ["--sasa", "--volumes", "--per", "residue"];

@@ -8,7 +8,7 @@ use std::io::Read;
 use crate::molecules::builder::{Oddity, Record, StructureBuilder, printable};
 use crate::molecules::decimal::Number;
 use crate::text::lines::Lines;
-use crate::twin::tokens::{fields, parse_decimal, parse_integer, parse_signed, unexpected};
+use crate::twin::tokens::{fields, parse_integer, parse_signed, unexpected};
 use spmesh_base::error::{Error, Result};
 
 /// Columns of the residue, of the atom's name and of its number, before the coordinates.
@@ -159,13 +159,17 @@ fn read_atom(
     Ok(serial)
 }
 
-/// Checks the line of the box: the lengths of a right-angled one, or nine components of three vectors.
+/// Checks the line of the box: the lengths of a right-angled one, or nine components of three vectors. Numbers
+/// that fill their columns touch.
 fn check_box(line: &[u8]) -> Result<()> {
-    let numbers: Vec<f64> = fields(line).map(parse_decimal).collect::<Result<_>>()?;
-    match numbers.len() {
-        3 | 9 => Ok(()),
-        _ => Err(unexpected(line, "three or nine numbers of the box")),
+    let points = line.iter().filter(|&&byte| byte == b'.').count();
+    let is_of_number =
+        |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'+' | b'-' | b'e' | b'E' | b' ' | b'\t');
+    let has_numbers = matches!(points, 3 | 9) || matches!(fields(line).count(), 3 | 9);
+    if has_numbers && line.iter().all(is_of_number) {
+        return Ok(());
     }
+    Err(unexpected(line, "three or nine numbers of the box"))
 }
 
 fn truncated(expected: &str) -> Error {

@@ -19,8 +19,9 @@ const CELL: usize = 10;
 const FOUR: usize = 11;
 const VERSION: usize = 19;
 
-/// Longest title, in bytes.
-const TITLE_MAX: u32 = 1 << 24;
+/// Bytes of a line of the title, and most lines.
+const TITLE_LINE_LEN: u64 = 80;
+const TITLE_LINES_MAX: u32 = 1 << 16;
 
 /// Whether an input is DCD.
 pub(crate) fn is_dcd(head: &[u8]) -> bool {
@@ -75,11 +76,12 @@ impl Dcd {
             let message = "the file has fixed atoms, which later frames leave out: write it with all atoms";
             return Err(Error::malformed(message));
         }
-        let title = words.u32()?;
-        if title > TITLE_MAX {
-            return Err(Error::malformed(format!("found {title} as the length of the title")));
+        // Some programs state another length than that of the lines.
+        let [title, lines] = [words.u32()?, words.u32()?];
+        if lines > TITLE_LINES_MAX {
+            return Err(Error::malformed(format!("found {lines} as the number of lines of the title")));
         }
-        words.skip(u64::from(title))?;
+        words.skip(TITLE_LINE_LEN * u64::from(lines))?;
         end(&mut words, title)?;
         start(&mut words, 4)?;
         let count = words.i32()?;
