@@ -199,6 +199,9 @@ fn start_of(format: Format) -> Vec<u8> {
         Format::Pqr => b"ATOM 1 N LYS 1 0.1 0.2 0.3 -0.4 1.85\n",
         Format::Mmtf => b"\xde\0\x27\xabmmtfVersion\xa31.0",
         Format::Gro => b"water\n1\n    1SOL     OW    1   0.560   0.049   0.540\n",
+        Format::Xtc => b"\0\0\x07\xcb\0\0\0\x02",
+        Format::Trr => b"\0\0\x07\xc9\0\0\0\x0d\0\0\0\x0cGMX_trn_file",
+        Format::Dcd => b"\x54\0\0\0CORD\x01\0\0\0",
         Format::Lammps => b"water\n\n2 atoms\n\n0 10 xlo xhi\n",
         Format::Mol2 => b"@<TRIPOS>MOLECULE\nwater\n 1 0\n",
         Format::Sdf => b"water\n\n\n  1  0  0  0  0  0            999 V2000\n",
@@ -289,7 +292,8 @@ fn formats_that_a_tool_does_not_read_are_named_with_those_it_reads() {
         for format in Format::all().filter(|&format| !reader.reads(format)) {
             let bytes = start_of(format);
             // To the tools, the outer layer of compression is not a format.
-            let bytes = if format == Format::Gzip { gzip(&bytes) } else { bytes };
+            let is_outer = matches!(format, Format::Gzip | Format::Zstd);
+            let bytes = if is_outer { gzip(&bytes) } else { bytes };
             let path = folder.write("input", bytes);
             let found = if format == Format::Binary {
                 "zero byte at byte 3".to_string()

@@ -13,7 +13,8 @@ use crate::historical::{read_spa, read_spa::SpaReader, read_spb, read_spb::SpbRe
 use crate::historical::{write_sma::SmaSink, write_smb::SmbSink, write_spa::SpaSink, write_spb::SpbSink};
 use crate::lines::write_geojson::GeoJsonSink;
 use crate::molecules::builder::StructureBuilder;
-use crate::molecules::{atoms, mmcif, pdb, xyz};
+use crate::molecules::frames::{OpenFrames, dcd, texts, trr, xtc};
+use crate::molecules::{atoms, binary_cif, gro, mmcif, pdb, xyz};
 use crate::npy;
 use crate::obj::{read as obj, write::ObjSink};
 use crate::ply::{read as ply, write::PlySink};
@@ -75,6 +76,7 @@ pub(crate) struct Row {
     pub(crate) is_in_parts: bool,
     pub(crate) points: Option<OpenPoints>,
     pub(crate) atoms: Option<ReadAtoms>,
+    pub(crate) frames: Option<OpenFrames>,
     pub(crate) sites: Option<OpenSites>,
     events: Option<OpenEvents>,
     sink: Option<OpenSink>,
@@ -117,6 +119,7 @@ const fn row(
         is_in_parts: false,
         points: None,
         atoms: None,
+        frames: None,
         sites: None,
         events: None,
         sink: None,
@@ -127,6 +130,7 @@ const NO_LIST: &str = "";
 const VALUES: &str = "write its values as NRRD or raw numbers first";
 const TO_POINTS: &str = "make a point stream of its atoms with spfinalize --octree, or use tess3";
 const TO_STRUCTURE: &str = "convert it to PDB or mmCIF first, for example with gemmi or obabel";
+const WITH_TOPOLOGY: &str = "tess3 reads its frames with the structure that names the atoms: --top FILE";
 const TO_STREAM: &str = "convert it first with spconvert";
 const BY_PDAL: &str = "convert it first, for example with pdal translate IN OUT.laz";
 const BY_MESHIO: &str = "convert it first, for example with meshio convert IN OUT.ply";
@@ -136,8 +140,7 @@ const OF_FEATURES: &str =
 const OF_CELLS: &str = "list its cells as lines of x y z, for example with gdal2xyz";
 const TO_PLY: &str = "convert it first with spconvert --to ply";
 
-// Of each: its name with an article, its name in lists, how it is recognized, and a hint for tools that do
-// not read it.
+// Of each: its name with an article and in lists, its test, and a hint for tools that do not read it.
 formats! {
     Las("a LAS, LAZ or COPC file", "LAS, LAZ, COPC", Test::Magic(&[b"LASF"]), "") {
         is_in_parts: true, points: Some(records::open)
@@ -229,16 +232,35 @@ formats! {
         is_in_parts: true, points: Some(|file, _| npy::read::open(file))
     }
     Pdb("a PDB file", "PDB", Test::Lines, TO_POINTS) {
-        points: Some(atoms::open), atoms: Some(|mut lines, builder| pdb::read(&mut lines, builder, false))
+        points: Some(atoms::open), atoms: Some(|mut lines, builder| pdb::read(&mut lines, builder, false)),
+        frames: Some(texts::open_pdb)
     }
     Pqr("a PQR file", "PQR", Test::Lines, TO_POINTS) {
-        points: Some(atoms::open), atoms: Some(|mut lines, builder| pdb::read(&mut lines, builder, true))
+        points: Some(atoms::open), atoms: Some(|mut lines, builder| pdb::read(&mut lines, builder, true)),
+        frames: Some(texts::open_pqr)
     }
     Mmcif("an mmCIF file", "mmCIF", Test::Lines, TO_POINTS) {
         points: Some(atoms::open), atoms: Some(mmcif::read)
     }
+    BinaryCif("a BinaryCIF file", "BinaryCIF", Test::Look(binary::is_binary_cif), TO_POINTS) {
+        points: Some(atoms::open), atoms: Some(binary_cif::read)
+    }
     Xyz("an XYZ file of chemistry", "XYZ of chemistry", Test::Lines, TO_POINTS) {
-        points: Some(atoms::open), atoms: Some(|mut lines, builder| xyz::read(&mut lines, builder))
+        points: Some(atoms::open), atoms: Some(|mut lines, builder| xyz::read(&mut lines, builder)),
+        frames: Some(texts::open_xyz)
+    }
+    Gro("a GRO file of GROMACS", "GRO", Test::Look(gro::is_gro), TO_POINTS) {
+        points: Some(atoms::open), atoms: Some(|mut lines, builder| gro::read(&mut lines, builder)),
+        frames: Some(texts::open_gro)
+    }
+    Xtc("an XTC trajectory of GROMACS", NO_LIST, Test::Magic(&[b"\0\0\x07\xcb", b"\0\0\x07\xe7"]), WITH_TOPOLOGY) {
+        frames: Some(xtc::open)
+    }
+    Trr("a TRR trajectory of GROMACS", NO_LIST, Test::Magic(&[b"\0\0\x07\xc9"]), WITH_TOPOLOGY) {
+        frames: Some(trr::open)
+    }
+    Dcd("a DCD trajectory", NO_LIST, Test::Look(dcd::is_dcd), WITH_TOPOLOGY) {
+        frames: Some(dcd::open)
     }
     Off("an OFF file", "OFF", Test::Lines, "tess3 reads its vertices") {}
     Medit("a Medit mesh", NO_LIST, Test::Magic(&[b"MeshVersionFormatted"]),
@@ -258,9 +280,9 @@ formats! {
         value: "geojson", ending: "geojson",
         sink: Some(|to, header, _| Ok(Box::new(GeoJsonSink::new(to, header)?)))
     }
-    Gzip("gzip data within gzip data", NO_LIST, Test::Magic(&[b"\x1f\x8b"]),
+    Gzip("gzip data within compressed data", NO_LIST, Test::Magic(&[b"\x1f\x8b"]),
         "decompress it first, for example with zcat") {}
-    Zstd("zstd data", NO_LIST, Test::Magic(&[b"\x28\xb5\x2f\xfd"]),
+    Zstd("zstd data within compressed data", NO_LIST, Test::Magic(&[b"\x28\xb5\x2f\xfd"]),
         "decompress it first, for example with zstdcat") {}
     Zip("a zip archive", NO_LIST, Test::Magic(&[b"PK\x03\x04"]),
         "unpack it first, for example with unzip -p") {}
@@ -268,11 +290,7 @@ formats! {
     Xz("xz data", NO_LIST, Test::Magic(&[b"\xfd7zXZ\x00"]), "decompress it first, for example with xzcat") {}
     Compress("data of compress (.Z)", NO_LIST, Test::Magic(&[b"\x1f\x9d"]),
         "decompress it first, for example with uncompress -c FILE.Z") {}
-    BinaryCif("a BinaryCIF file", NO_LIST, Test::Look(binary::is_binary_cif),
-        "download the entry as .cif or .cif.gz, or convert it first, for example with biotite") {}
     Mmtf("an MMTF file", NO_LIST, Test::Look(binary::is_mmtf), TO_STRUCTURE) {}
-    Gro("a GRO file of GROMACS", NO_LIST, Test::Look(structures::is_gro),
-        "convert it to PDB first, for example with gmx editconf -f IN.gro -o OUT.pdb") {}
     Lammps("a data or dump file of LAMMPS", NO_LIST, Test::Look(structures::is_lammps),
         "convert it to XYZ first, for example with ovito or ase") {}
     Mol2("a MOL2 file", NO_LIST, Test::Look(structures::is_mol2), TO_STRUCTURE) {}

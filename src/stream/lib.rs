@@ -101,7 +101,7 @@ pub use ascending::{Ascending, Place};
 pub use cell_words::check_word_count;
 pub use compression::Decompressor;
 #[cfg(feature = "zstd")]
-pub use compression::zstd_frame;
+pub use compression::{ZstdReader, zstd_frame};
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;
 pub use configurations::{check_degree, claim_from_name, claim_name};

@@ -24,7 +24,7 @@ fn wrong_usage_says_what_would_be_right() {
         (&["--out-dir", &out, "--lof", "-", "-"], "stdin"),
         (&["--strict", "--keep-going", "--out-dir", &out, &file], "--keep-going"),
         (&["--table", "--contacts", &file], "--contacts"),
-        (&["--model", "one", &file], "neither the number of a model nor all"),
+        (&["--model", "one", &file], "neither the number of a model, FIRST..LAST, nor all"),
         (&["--hetatm", "maybe", &file], "on"),
         (&["--out-dir", &out, "--threads", "0", &file], "0"),
     ];

@@ -7,6 +7,7 @@ mod classes;
 mod failures;
 mod filtration;
 mod formats;
+mod frames;
 mod identity;
 mod mesh;
 mod meshes;

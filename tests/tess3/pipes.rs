@@ -102,9 +102,11 @@ fn meshes_without_labels_become_points_that_are_counted() {
 fn files_of_other_programs_are_recognized() {
     for (bytes, words) in [
         (&b"\x1f\x9d\x90abc\0"[..], "uncompress -c"),
-        (b"\x83\xa7encoder\xa5mol*\0", "download the entry as .cif"),
-        (b"\x83\xaadataBlocks\x91\0", "BinaryCIF"),
-        (b"water\n1\n    1SOL     OW    1   0.560   0.049   0.540\n   2.0 2.0 2.0\n", "gmx editconf"),
+        (b"\x83\xa7encoder\xa5mol*\0", "byte 15: truncated"),
+        (b"\x81\xaadataBlocks\x90", "found no atom"),
+        (b"\0\0\x07\xcb\0\0\0\x02", "an XTC trajectory of GROMACS"),
+        (b"\x54\0\0\0CORD\x01\0\0\0", "--top FILE"),
+        (b"water\n1\n    1SOL     OW    1   0.560   0.049   0.540\n", "expected the vectors of the box"),
         (b"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\n", "LAMMPS"),
     ] {
         let (code, message) = outcome(&run("tess3", &["-"], bytes));

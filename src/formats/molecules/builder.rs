@@ -85,6 +85,21 @@ pub(crate) struct StructureBuilder {
 }
 
 impl StructureBuilder {
+    /// A structure without atoms for the next frame of a file: what the file states holds on.
+    pub(crate) fn next_frame(&self) -> StructureBuilder {
+        StructureBuilder {
+            annotations: self.annotations.of_next_frame(),
+            assemblies: self.assemblies.clone(),
+            names: self.names.clone(),
+            ..StructureBuilder::default()
+        }
+    }
+
+    /// Whether it has an atom.
+    pub(crate) fn has_atoms(&self) -> bool {
+        self.models.iter().any(|model| !model.points.is_empty())
+    }
+
     /// Starts a model.
     pub(crate) fn start_model(&mut self, number: i64) {
         self.model = self.models.len();

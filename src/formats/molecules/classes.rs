@@ -51,7 +51,7 @@ type Set<K> = HashSet<K, FixedState>;
 type Site = (Name, Option<i32>, Name, Name);
 
 /// What a file states of its molecules, beside the atoms.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Annotations {
     /// mmCIF: the type of each entity.
     pub(crate) entities: Map<Name, Entity>,
@@ -68,6 +68,11 @@ pub(crate) struct Annotations {
 }
 
 impl Annotations {
+    /// The same without what belongs to the atoms of one frame.
+    pub(crate) fn of_next_frame(&self) -> Annotations {
+        Annotations { chain_ends: Vec::new(), model_starts: Vec::new(), ..self.clone() }
+    }
+
     /// Numbers the chains of the residues.
     pub(crate) fn number_chains(&self, residues: &mut [Residue], details: &[Detail], names: &Names) {
         let mut kinds = Kinds::new(names);

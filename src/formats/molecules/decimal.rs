@@ -62,6 +62,16 @@ impl Number {
         number.is_finite().then_some(Number::Float(number))
     }
 
+    /// Ten times the number, such as a length in Å that is stated in nm.
+    pub(crate) fn tenfold(self) -> Number {
+        match self {
+            Number::Decimal { digits, places: places @ 1.. } => {
+                Number::Decimal { digits, places: places - 1 }
+            }
+            whole => Number::Float(10.0 * whole.value()),
+        }
+    }
+
     /// The f64 nearest to the number: the quotient of two exact numbers is rounded once.
     pub(crate) fn value(self) -> f64 {
         match self {

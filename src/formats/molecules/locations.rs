@@ -32,6 +32,7 @@ impl Structure {
         let models = self.models.iter().enumerate().filter(|&(place, model)| match selection.models {
             Models::First => place == 0,
             Models::One(number) => model.number == number,
+            Models::Range(first, last) => (first..=last).contains(&model.number),
             Models::All | Models::Joined => true,
         });
         let there = self.chains();

@@ -13,7 +13,7 @@ use spmesh_base::error::{Error, Result, counted};
 
 /// The items of `_atom_site` that are used, in the order of [`ITEMS`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Item {
+pub(crate) enum Item {
     X,
     Y,
     Z,
@@ -58,7 +58,7 @@ const ITEMS: [(Item, &str); 19] = [
 ];
 
 /// Start of the tags of the category.
-const CATEGORY: &[u8] = b"_atom_site.";
+pub(crate) const CATEGORY: &[u8] = b"_atom_site.";
 
 /// Reads the atoms of the first data block that has any.
 pub(crate) fn read<R: Read>(lines: Lines<R>, builder: &mut StructureBuilder) -> Result<()> {
@@ -80,6 +80,20 @@ struct MmcifReader<'b, R> {
     is_core: bool,
 }
 
+/// Warns of data blocks with atoms, of which there are so many, behind the first.
+pub(crate) fn finish(blocks: u64, builder: &mut StructureBuilder) {
+    if blocks > 1 {
+        let others = counted(blocks - 1, "more data block has", "more data blocks have");
+        builder.warn(format!("{others} atoms; only those of the first are read"));
+    }
+}
+
+/// The item of a name in the category, if it is used.
+pub(crate) fn item_of(name: &[u8]) -> Option<Item> {
+    let item = ITEMS.iter().find(|(_, item)| name.eq_ignore_ascii_case(item.as_bytes()));
+    item.map(|&(item, _)| item)
+}
+
 /// The form of the atoms in the current data block so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Block {
@@ -91,7 +105,7 @@ enum Block {
 
 /// The values stated for an atom.
 #[derive(Debug, Default)]
-struct Row {
+pub(crate) struct Row {
     values: Vec<u8>,
     ranges: [Option<Range<usize>>; ITEMS.len()],
     place: [Option<Number>; 3],
@@ -120,11 +134,7 @@ impl<R: Read> MmcifReader<'_, R> {
             }
         }
         self.builder.end(self.tokens.unended());
-        if self.blocks > 1 {
-            let others = self.blocks - 1;
-            let others = counted(others, "more data block has", "more data blocks have");
-            self.builder.warn(format!("{others} atoms; only those of the first are read"));
-        }
+        finish(self.blocks, self.builder);
         if self.blocks == 0 && self.is_core {
             return Err(Error::malformed(
                 "found atoms in the words of the core dictionary (_atom_site_fract_x), expected mmCIF \
@@ -186,8 +196,7 @@ impl<R: Read> MmcifReader<'_, R> {
             self.is_core |= category.eq_ignore_ascii_case(b"_atom_site_");
             return None;
         }
-        let item = ITEMS.iter().find(|(_, item)| name.eq_ignore_ascii_case(item.as_bytes()));
-        Some(item.map(|&(item, _)| item))
+        Some(item_of(name))
     }
 
     fn read_loop(&mut self) -> Result<()> {
@@ -281,11 +290,9 @@ impl<R: Read> MmcifReader<'_, R> {
                 let expected = format!("a number for {}", ITEMS[item as usize].1);
                 return Err(self.tokens.locate(unexpected(value, &expected)));
             };
-            self.row.place[item as usize] = Some(number);
+            self.row.set_place(item, Some(number));
         } else if is_stated {
-            let start = self.row.values.len();
-            self.row.values.extend_from_slice(value);
-            self.row.ranges[item as usize] = Some(start..self.row.values.len());
+            self.row.set(item, value);
         }
         Ok(())
     }
@@ -299,7 +306,19 @@ impl<R: Read> MmcifReader<'_, R> {
 }
 
 impl Row {
-    fn clear(&mut self) {
+    /// Sets a coordinate.
+    pub(crate) fn set_place(&mut self, item: Item, number: Option<Number>) {
+        self.place[item as usize] = number;
+    }
+
+    /// Sets an item that is no coordinate.
+    pub(crate) fn set(&mut self, item: Item, value: &[u8]) {
+        let start = self.values.len();
+        self.values.extend_from_slice(value);
+        self.ranges[item as usize] = Some(start..self.values.len());
+    }
+
+    pub(crate) fn clear(&mut self) {
         self.values.clear();
         self.ranges = Default::default();
         self.place = [None; 3];
@@ -317,7 +336,8 @@ impl Row {
         }
     }
 
-    fn push_to(&self, builder: &mut StructureBuilder, line: u64) -> Result<()> {
+    /// Makes an atom of the row, which is in this line of the file.
+    pub(crate) fn push_to(&self, builder: &mut StructureBuilder, line: u64) -> Result<()> {
         let [Some(x), Some(y), Some(z)] = self.place else {
             return Err(Error::malformed("the atom has no Cartn_x, Cartn_y or Cartn_z"));
         };

@@ -1,4 +1,4 @@
-//! Molecular structures and files of points in space: PDB, PQR, mmCIF, XYZ, text of points, streams of this
+//! Molecular structures and files of points in space: PDB, PQR, mmCIF, BinaryCIF, GRO, XYZ, text of points, streams of this
 //! project and their text twins, PLY, OBJ, OFF and VTK, each plain or compressed with gzip. The content tells
 //! the format.
 //!
@@ -8,12 +8,16 @@
 pub(crate) mod assemblies;
 pub(crate) mod assembly;
 pub(crate) mod atoms;
+pub(crate) mod binary_cif;
+pub(crate) mod binary_columns;
 pub(crate) mod builder;
 pub(crate) mod cif;
 pub(crate) mod classes;
 pub(crate) mod conformers;
 pub(crate) mod decimal;
 pub(crate) mod elements;
+pub(crate) mod frames;
+pub(crate) mod gro;
 pub(crate) mod guess;
 pub(crate) mod identity;
 pub(crate) mod joined;
@@ -22,6 +26,7 @@ pub(crate) mod mmcif;
 pub(crate) mod mmcif_tables;
 pub(crate) mod model;
 pub(crate) mod motion;
+pub(crate) mod msgpack;
 pub(crate) mod names;
 pub(crate) mod off;
 pub(crate) mod operators;
@@ -41,6 +46,7 @@ use std::path::Path;
 
 pub use assemblies::Assemblies;
 pub use classes::Class;
+pub use frames::{Content, Frame, FrameRange, FrameReader};
 pub use model::{Atom, AtomView, Model, Residue, Structure};
 pub use names::{Name, Names};
 pub use radii::{LoadedRadii, Radii, RadiusCounts, RadiusFinder, RadiusOrigin};
@@ -71,13 +77,19 @@ use spmesh_stream::Coordinates;
 /// If the file cannot be read; [`spmesh_base::error::ErrorKind::Malformed`], with file and line (or byte), if
 /// it is damaged, has no atom, or is of no known format.
 pub fn read_structure(path: &Path, format: Option<Format>) -> Result<Structure> {
+    let (input, name) = opened(path)?;
+    let is_file = path.as_os_str() != "-" && path.is_file();
+    read(input, &name, format, is_file.then_some(path))
+}
+
+/// The input `path`, or stdin, and its name.
+fn opened(path: &Path) -> Result<(AnyInput, String)> {
     if path.as_os_str() == "-" {
-        return read_structure_from(open_stdin()?, "stdin", format);
+        return Ok((Box::new(open_stdin()?), "stdin".to_string()));
     }
     let name = path.display().to_string();
     let file = inputs::open(path).map_err(|e| e.of_input(&name))?;
-    let is_file = inputs::is_regular(&file);
-    read(file, &name, format, is_file.then_some(path))
+    Ok((Box::new(file), name))
 }
 
 /// As [`read_structure`], from any reader. Messages call the input `name`.
@@ -99,18 +111,13 @@ fn read(
     format: Option<Format>,
     path: Option<&Path>,
 ) -> Result<Structure> {
-    let reading = |e| Error::io("reading", e).of_input(name);
-    let mut input = Plain::held(input).map_err(reading)?;
-    let head = read_head(&mut input).map_err(reading)?;
+    let (head, input) = plain_with_head(input, name)?;
     let format = format.map_or_else(|| recognized(&head), |format| check(format, &head));
     let format = format.map_err(|e| e.of_input(name))?;
-    let input: AnyInput = Box::new(Cursor::new(head.clone()).chain(input));
-    let lines = |input| Lines::with_longest(input, name, STRUCTURE_LINE_MAX);
-    if let Some(read) = format.row().atoms {
-        let mut builder = StructureBuilder::default();
-        read(lines(input), &mut builder).map_err(|e| e.of_input(name))?;
-        return builder.finish(name);
+    if format.row().atoms.is_some() {
+        return finished(format, input, name);
     }
+    let lines = |input| Lines::with_longest(input, name, STRUCTURE_LINE_MAX);
     match format {
         Format::Ply => points::read_events(open_ply(input, name, 3)?, name),
         Format::Obj | Format::Sma | Format::VertexLines => points::read_events(open_obj(input, name), name),
@@ -121,6 +128,23 @@ fn read(
             (None, None) => points::read_copy(input, name),
         },
     }
+}
+
+/// The first bytes of the decompressed input, and all of them.
+fn plain_with_head(input: impl Read + Send + 'static, name: &str) -> Result<(Vec<u8>, AnyInput)> {
+    let reading = |e| Error::io("reading", e).of_input(name);
+    let mut input = Plain::held(input).map_err(reading)?;
+    let head = read_head(&mut input).map_err(reading)?;
+    Ok((head.clone(), Box::new(Cursor::new(head).chain(input))))
+}
+
+/// The structure of an input of a format of structures.
+fn finished(format: Format, input: AnyInput, name: &str) -> Result<Structure> {
+    let read = format.row().atoms.expect("a format of structures");
+    let mut builder = StructureBuilder::default();
+    let lines = Lines::with_longest(input, name, STRUCTURE_LINE_MAX);
+    read(lines, &mut builder).map_err(|e| e.of_input(name))?;
+    builder.finish(name)
 }
 
 /// The format that the caller names, unless it is PDB and an input that may be endless starts without a

@@ -27,15 +27,9 @@ pub(crate) const LINE_LEN: usize = 80;
 
 /// Reads all records. Atoms are those of PQR if `is_pqr`.
 pub(crate) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder, is_pqr: bool) -> Result<()> {
-    let (serials, remark) = (Serials::default(), Remark350::default());
-    let mut reader = PdbReader { builder, serials, remark, is_pqr, is_closed: false, number: 0 };
-    while let Some(line) = lines.next_line()? {
-        reader.number += 1;
-        let is_part = is_part_of_name(line);
-        reader.line(line).map_err(|e| lines.locate(e))?;
-        if is_part && !lines.is_ended() {
-            return Err(lines.locate(Error::malformed("truncated: the file ends inside of a record")));
-        }
+    let mut reader = PdbReader::new(is_pqr);
+    while lines.next_line()?.is_some() {
+        reader.read_line(lines, builder)?;
     }
     builder.end(lines.unended());
     Ok(())
@@ -46,8 +40,8 @@ fn is_part_of_name(line: &[u8]) -> bool {
     !line.is_empty() && (b"ATOM".starts_with(line) || b"HETATM".starts_with(line))
 }
 
-struct PdbReader<'b> {
-    builder: &'b mut StructureBuilder,
+/// Reads records line by line.
+pub(crate) struct PdbReader {
     serials: Serials,
     remark: Remark350,
     is_pqr: bool,
@@ -57,93 +51,108 @@ struct PdbReader<'b> {
     number: u64,
 }
 
-impl PdbReader<'_> {
-    fn line(&mut self, line: &[u8]) -> Result<()> {
+impl PdbReader {
+    pub(crate) fn new(is_pqr: bool) -> PdbReader {
+        let (serials, remark) = (Serials::default(), Remark350::default());
+        PdbReader { serials, remark, is_pqr, is_closed: false, number: 0 }
+    }
+
+    /// Whether the last model has ended.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.is_closed
+    }
+
+    /// Begins a model in a structure of its own.
+    pub(crate) fn end_model(&mut self) {
+        (self.is_closed, self.serials) = (false, Serials::default());
+    }
+
+    /// Reads the current line of `lines`.
+    pub(crate) fn read_line(
+        &mut self,
+        lines: &Lines<impl Read>,
+        builder: &mut StructureBuilder,
+    ) -> Result<()> {
+        let line = lines.current();
+        self.number += 1;
+        self.line(line, builder).map_err(|e| lines.locate(e))?;
+        if is_part_of_name(line) && !lines.is_ended() {
+            return Err(lines.locate(Error::malformed("truncated: the file ends inside of a record")));
+        }
+        Ok(())
+    }
+
+    fn line(&mut self, line: &[u8], builder: &mut StructureBuilder) -> Result<()> {
         if line.contains(&b'\r') {
             return Err(Error::malformed(
                 "carriage return inside of a line: lines must end with LF or CR LF",
             ));
         }
         match record_name(line) {
-            b"ATOM" => self.atom(line, false),
-            b"HETATM" => self.atom(line, true),
-            b"MODEL" => {
-                self.start_model(line);
-                Ok(())
-            }
-            b"ENDMDL" | b"END" => {
-                self.is_closed = true;
-                Ok(())
-            }
-            b"TER" => {
-                self.builder.end_chain();
-                Ok(())
-            }
-            b"SEQRES" => {
-                pdb_header::sequence(line, self.builder);
-                Ok(())
-            }
+            b"ATOM" => return self.atom(line, false, builder),
+            b"HETATM" => return self.atom(line, true, builder),
+            b"MODEL" => self.start_model(line, builder),
+            b"ENDMDL" | b"END" => self.is_closed = true,
+            b"TER" => builder.end_chain(),
+            b"SEQRES" => pdb_header::sequence(line, builder),
             b"REMARK" => {
                 if let Some(text) =
                     pdb_header::text(line).and_then(|text| text[6..].trim_start().strip_prefix("350"))
                 {
-                    self.remark.line(text, self.builder);
+                    self.remark.line(text, builder);
                 }
-                Ok(())
             }
-            b"MODRES" => {
-                pdb_header::modified_residue(line, self.builder);
-                Ok(())
-            }
-            _ => Ok(()),
+            b"MODRES" => pdb_header::modified_residue(line, builder),
+            _ => {}
         }
+        Ok(())
     }
 
-    fn start_model(&mut self, line: &[u8]) {
+    fn start_model(&mut self, line: &[u8], builder: &mut StructureBuilder) {
         let number = line.get(5..).and_then(|rest| std::str::from_utf8(rest).ok()?.trim().parse().ok());
         let number = number.unwrap_or_else(|| {
-            self.builder.note(Oddity::Model, self.number);
-            self.builder.next_model_number()
+            builder.note(Oddity::Model, self.number);
+            builder.next_model_number()
         });
-        self.builder.start_model(number);
+        builder.start_model(number);
         (self.is_closed, self.serials) = (false, Serials::default());
     }
 
     /// Starts a model for an atom behind the end of one.
-    fn reopen(&mut self) {
+    fn reopen(&mut self, builder: &mut StructureBuilder) {
         if std::mem::take(&mut self.is_closed) {
-            self.builder.note(Oddity::Model, self.number);
-            let number = self.builder.next_model_number();
-            self.builder.start_model(number);
+            builder.note(Oddity::Model, self.number);
+            let number = builder.next_model_number();
+            builder.start_model(number);
             self.serials = Serials::default();
         }
     }
 
-    fn atom(&mut self, line: &[u8], is_hetatm: bool) -> Result<()> {
+    fn atom(&mut self, line: &[u8], is_hetatm: bool, builder: &mut StructureBuilder) -> Result<()> {
         if self.is_pqr {
-            self.reopen();
-            return self.builder.push(&pqr::atom(line, self.number, is_hetatm)?);
+            self.reopen(builder);
+            return builder.push(&pqr::atom(line, self.number, is_hetatm)?);
         }
         let place = place(line)?;
         let text = ascii(line)?;
-        self.reopen();
+        self.reopen(builder);
         let serial = self.serials.parse(serial_text(text, is_hetatm));
         if serial.is_none() {
-            self.builder.note(Oddity::Serial, self.number);
+            builder.note(Oddity::Serial, self.number);
         }
         let (residue, insertion_code) = residue_texts(text);
         let residue_number = residue_number(residue);
         if residue_number.is_none() && !residue.is_empty() {
-            self.builder.note(Oddity::ResidueNumber, self.number);
+            builder.note(Oddity::ResidueNumber, self.number);
         }
         let occupancy = columns(text, 54, 60);
         let share = occupancy.parse().ok().filter(|share: &f32| share.is_finite());
         if share.is_none() && !occupancy.is_empty() {
-            self.builder.note(Oddity::Occupancy, self.number);
+            builder.note(Oddity::Occupancy, self.number);
         }
         let element = columns(text, 76, 78);
         let (chain, segment) = (columns(text, 21, 22), segment(text));
-        self.builder.push(&Record {
+        builder.push(&Record {
             line: self.number,
             serial,
             name: columns(text, 12, 16),
@@ -165,6 +174,11 @@ impl PdbReader<'_> {
             radius: None,
         })
     }
+}
+
+/// Whether a line begins a model.
+pub(crate) fn is_model(line: &[u8]) -> bool {
+    record_name(line) == b"MODEL"
 }
 
 /// The name of the record if it is used, in upper case; the line may have it in lower case.

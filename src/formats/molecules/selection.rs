@@ -18,10 +18,19 @@ pub enum Models {
     First,
     /// The model with this number.
     One(i64),
+    /// The models with numbers from one to another, which is one of them.
+    Range(i64, i64),
     /// All models, as one set of atoms.
     All,
     /// All models, for a caller that makes one of them first ([`Structure::joined`]).
     Joined,
+}
+
+impl Models {
+    /// Whether several models may be taken one by one.
+    pub fn are_several(self) -> bool {
+        matches!(self, Models::Range(..) | Models::All)
+    }
 }
 
 /// Alternate locations to select. Atoms with a single location are always selected.
@@ -156,12 +165,22 @@ impl Structure {
             Models::All | Models::Joined => Ok((0..self.models.len()).collect()),
             Models::One(number) => {
                 let model = self.models.iter().position(|model| model.number == number);
-                let numbers = self.models.iter().map(|model| model.number.to_string());
-                model
-                    .map(|model| vec![model])
-                    .ok_or_else(|| self.lacks("model", &number.to_string(), numbers))
+                model.map(|model| vec![model]).ok_or_else(|| self.lacks_model(&number.to_string()))
+            }
+            Models::Range(first, last) => {
+                let is_wanted = |&model: &usize| (first..=last).contains(&self.models[model].number);
+                let models: Vec<usize> = (0..self.models.len()).filter(is_wanted).collect();
+                if models.is_empty() {
+                    Err(self.lacks_model(&format!("{first}..{last}")))
+                } else {
+                    Ok(models)
+                }
             }
         }
+    }
+
+    fn lacks_model(&self, wanted: &str) -> Error {
+        self.lacks("model", wanted, self.models.iter().map(|model| model.number.to_string()))
     }
 
     /// The selected chains; empty if all are.

@@ -10,23 +10,9 @@ use spmesh_base::error::{Error, Result};
 
 /// Reads all frames, each as a model. Atoms are numbered from 1 in each frame; their name is their element.
 pub(crate) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<()> {
-    let (mut frame, mut is_periodic) = (0, false);
-    while let Some(atoms) = read_count(lines).map_err(|e| lines.locate(e))? {
-        frame += 1;
-        builder.start_model(frame);
-        let Some(comment) = lines.next_line()? else {
-            return Err(lines.locate(truncated("the comment of the frame")));
-        };
-        is_periodic |= value(comment, b"lattice").is_some();
-        let columns = value(comment, b"properties").map_or(Ok(Columns::USUAL), Columns::parse);
-        let columns = columns.map_err(|e| lines.locate(e))?;
-        let first = lines.number();
-        for serial in 1..=atoms {
-            let Some(line) = lines.next_line()? else {
-                return Err(lines.locate(truncated(&format!("atom {serial} of {atoms}"))));
-            };
-            read_atom(line, columns, [serial, first + serial], builder).map_err(|e| lines.locate(e))?;
-        }
+    let mut is_periodic = false;
+    while let Some(has_cell) = read_next(lines, builder)? {
+        is_periodic |= has_cell;
     }
     if is_periodic {
         builder
@@ -34,6 +20,31 @@ pub(crate) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder)
     }
     builder.end(lines.unended());
     Ok(())
+}
+
+/// Reads a frame as the next model; false at the end of the input.
+pub(crate) fn read_frame(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<bool> {
+    Ok(read_next(lines, builder)?.is_some())
+}
+
+/// Reads a frame; returns whether it states a cell, or `None` if there is no frame.
+fn read_next(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<Option<bool>> {
+    let Some(atoms) = read_count(lines).map_err(|e| lines.locate(e))? else { return Ok(None) };
+    builder.start_model(builder.next_model_number());
+    let Some(comment) = lines.next_line()? else {
+        return Err(lines.locate(truncated("the comment of the frame")));
+    };
+    let has_cell = value(comment, b"lattice").is_some();
+    let columns = value(comment, b"properties").map_or(Ok(Columns::USUAL), Columns::parse);
+    let columns = columns.map_err(|e| lines.locate(e))?;
+    let first = lines.number();
+    for serial in 1..=atoms {
+        let Some(line) = lines.next_line()? else {
+            return Err(lines.locate(truncated(&format!("atom {serial} of {atoms}"))));
+        };
+        read_atom(line, columns, [serial, first + serial], builder).map_err(|e| lines.locate(e))?;
+    }
+    Ok(Some(has_cell))
 }
 
 /// The value of a key in the comment of extended XYZ, `key=value` or `key="value"`, without its quotes.

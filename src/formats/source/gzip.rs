@@ -1,4 +1,4 @@
-//! The one gzip layer: inputs that may be compressed with gzip, which their first bytes tell.
+//! The one layer of compression: inputs that may be compressed with gzip or zstd, which their first bytes tell.
 
 use std::io::{self, BufRead, BufReader, Chain, Cursor, ErrorKind, Read};
 
@@ -6,9 +6,13 @@ use flate2::bufread::GzDecoder;
 
 use spmesh_base::limits::{EXPANSION_FREE, EXPANSION_MAX};
 use spmesh_base::system::expect_inflate_memory;
+use spmesh_stream::ZstdReader;
 
 /// First bytes of gzip data.
 const MAGIC: [u8; 2] = [0x1f, 0x8b];
+
+/// First bytes of zstd data.
+const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
 /// Bytes read at once.
 const BUFFER_LEN: usize = 1 << 17;
@@ -16,20 +20,21 @@ const BUFFER_LEN: usize = 1 << 17;
 /// An input whose first bytes were read to recognize it.
 type Whole<R> = Chain<Cursor<Vec<u8>>, R>;
 
-/// The plain bytes of an input, compressed with gzip or not.
+/// The plain bytes of an input, compressed with gzip, zstd or not.
 ///
-/// Damaged or truncated gzip data is an error of kind [`ErrorKind::InvalidData`] that names the byte.
-pub struct Plain<R> {
+/// Damaged or truncated data is an error of kind [`ErrorKind::InvalidData`] that names the byte.
+pub struct Plain<R: Read> {
     inner: Inner<R>,
 }
 
-enum Inner<R> {
+enum Inner<R: Read> {
     AsIs(Whole<R>),
     Gzip(Box<Gunzip<Whole<R>>>),
+    Zstd(Box<Unzstd<Whole<R>>>),
 }
 
 impl<R: Read> Plain<R> {
-    /// Looks at the first two bytes of `input`.
+    /// Looks at the first bytes of `input`.
     ///
     /// # Errors
     /// If reading fails.
@@ -48,17 +53,20 @@ impl<R: Read> Plain<R> {
 
     pub(crate) fn of_use(mut input: R, purpose: Use) -> io::Result<Self> {
         let mut start = Vec::new();
-        (&mut input).take(MAGIC.len() as u64).read_to_end(&mut start)?;
-        let is_gzip = start == MAGIC;
+        (&mut input).take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
+        let (is_gzip, is_zstd) = (start.starts_with(&MAGIC), start == ZSTD_MAGIC);
         let whole = Cursor::new(start).chain(input);
-        let inner =
-            if is_gzip { Inner::Gzip(Box::new(Gunzip::of_use(whole, purpose))) } else { Inner::AsIs(whole) };
+        let inner = match (is_gzip, is_zstd) {
+            (true, _) => Inner::Gzip(Box::new(Gunzip::of_use(whole, purpose))),
+            (_, true) => Inner::Zstd(Box::new(Unzstd::of_use(whole, purpose)?)),
+            _ => Inner::AsIs(whole),
+        };
         Ok(Plain { inner })
     }
 
     /// Whether the input is compressed.
     pub fn is_compressed(&self) -> bool {
-        matches!(self.inner, Inner::Gzip(_))
+        !matches!(self.inner, Inner::AsIs(_))
     }
 }
 
@@ -68,6 +76,7 @@ impl<R: Read> Read for Plain<R> {
         match &mut self.inner {
             Inner::AsIs(input) => input.read(buffer),
             Inner::Gzip(input) => input.read(buffer),
+            Inner::Zstd(input) => input.read(buffer),
         }
     }
 }
@@ -129,15 +138,7 @@ impl<R: Read> Gunzip<R> {
     /// Checks that what a caller holds may be records that differ.
     fn check_expansion(&mut self) -> io::Result<()> {
         let (expanded, consumed) = (self.expanded, self.consumed());
-        if !is_implausible(expanded, consumed) {
-            return Ok(());
-        }
-        let ratio = expanded / consumed.max(1);
-        let message = format!(
-            "{consumed} bytes of gzip data expand to {expanded}, {ratio} times as many: records that differ \
-             expand at most {EXPANSION_MAX}-fold; if the file is right, decompress it with gunzip first"
-        );
-        Err(io::Error::new(ErrorKind::InvalidData, message))
+        check_expansion(expanded, consumed, ["gzip", "gunzip"])
     }
 
     /// Names the byte of the compressed data where decompression failed, and makes the error
@@ -148,11 +149,65 @@ impl<R: Read> Gunzip<R> {
             return error;
         }
         let byte = self.consumed();
-        let found = match error.kind() {
-            ErrorKind::UnexpectedEof => "ends early: it was cut off, or other bytes follow it,".to_string(),
-            _ => format!("is damaged ({error})"),
-        };
-        io::Error::new(ErrorKind::InvalidData, format!("the gzip data {found} at byte {byte} of the file"))
+        damaged(&error, "gzip", byte)
+    }
+}
+
+/// Checks that what a caller holds may be records that differ. `names` are those of the format and of the program
+/// that decompresses it.
+fn check_expansion(expanded: u64, consumed: u64, names: [&str; 2]) -> io::Result<()> {
+    if !is_implausible(expanded, consumed) {
+        return Ok(());
+    }
+    let (ratio, [format, program]) = (expanded / consumed.max(1), names);
+    let message = format!(
+        "{consumed} bytes of {format} data expand to {expanded}, {ratio} times as many: records that differ \
+         expand at most {EXPANSION_MAX}-fold; if the file is right, decompress it with {program} first"
+    );
+    Err(io::Error::new(ErrorKind::InvalidData, message))
+}
+
+/// An error of decompression at a byte of the compressed data.
+fn damaged(error: &io::Error, format: &str, byte: u64) -> io::Error {
+    let found = match error.kind() {
+        ErrorKind::UnexpectedEof => "ends early: it was cut off, or other bytes follow it,".to_string(),
+        _ => format!("is damaged ({error})"),
+    };
+    io::Error::new(ErrorKind::InvalidData, format!("the {format} data {found} at byte {byte} of the file"))
+}
+
+/// Decompresses zstd data of any number of frames, as [`Gunzip`] does gzip data.
+struct Unzstd<R: Read> {
+    frames: ZstdReader<BufReader<Counted<R>>>,
+    purpose: Use,
+    /// Decompressed bytes so far.
+    expanded: u64,
+}
+
+impl<R: Read> Unzstd<R> {
+    fn of_use(input: R, purpose: Use) -> io::Result<Self> {
+        let input = BufReader::with_capacity(BUFFER_LEN, Counted { input, bytes: 0, failed: false });
+        Ok(Unzstd { frames: ZstdReader::new(input)?, purpose, expanded: 0 })
+    }
+
+    /// Compressed bytes that were used.
+    fn consumed(&self) -> u64 {
+        let input = self.frames.input();
+        input.get_ref().bytes - input.buffer().len() as u64
+    }
+}
+
+impl<R: Read> Read for Unzstd<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.frames.read(buffer).map_err(|error| {
+            let is_own = error.kind() == ErrorKind::Interrupted || self.frames.input().get_ref().failed;
+            if is_own { error } else { damaged(&error, "zstd", self.consumed()) }
+        })?;
+        self.expanded += read as u64;
+        if self.purpose == Use::Held {
+            check_expansion(self.expanded, self.consumed(), ["zstd", "unzstd"])?;
+        }
+        Ok(read)
     }
 }
 

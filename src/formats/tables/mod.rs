@@ -1,5 +1,6 @@
 //! Tables with typed columns, which are given row by row: tab-separated text, JSON Lines or Parquet.
 
+mod held;
 mod number;
 mod parquet;
 mod text;
@@ -8,6 +9,7 @@ use std::fmt::Display;
 use std::io::Write;
 use std::path::Path;
 
+use held::HeldRows;
 use parquet::ParquetRows;
 use text::TextRows;
 
@@ -81,7 +83,8 @@ pub struct Column {
 /// Memory: 64 kB; for Parquet a group of 65,536 rows or 8 MB of text.
 pub struct TableSink {
     rows: Rows,
-    output: Output,
+    /// `None` if the rows are held for another table.
+    output: Option<Output>,
     columns: Vec<Column>,
     /// Fields of the current row.
     fields: usize,
@@ -90,6 +93,7 @@ pub struct TableSink {
 pub(crate) enum Rows {
     Text(TextRows),
     Parquet(Box<ParquetRows>),
+    Held(HeldRows),
 }
 
 impl TableSink {
@@ -100,7 +104,37 @@ impl TableSink {
             TableFormat::JsonLines => Rows::Text(TextRows::json_lines(&columns)),
             TableFormat::Parquet => Rows::Parquet(Box::new(ParquetRows::new(&columns))),
         };
-        TableSink { rows, output, columns, fields: 0 }
+        TableSink { rows, output: Some(output), columns, fields: 0 }
+    }
+
+    /// Rows without a table, which [`TableSink::append`] gives to one of this format and these columns.
+    ///
+    /// Memory: the rows.
+    pub fn held(format: TableFormat, columns: Vec<Column>) -> TableSink {
+        let mut rows = match format {
+            TableFormat::Tsv => Rows::Text(TextRows::tsv(&columns)),
+            TableFormat::JsonLines => Rows::Text(TextRows::json_lines(&columns)),
+            TableFormat::Parquet => Rows::Held(HeldRows::default()),
+        };
+        if let Rows::Text(rows) = &mut rows {
+            rows.bytes.clear();
+        }
+        TableSink { rows, output: None, columns, fields: 0 }
+    }
+
+    /// Adds rows that were held.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn append(&mut self, held: TableSink) -> Result<()> {
+        match (&mut self.rows, held.rows) {
+            (Rows::Text(rows), Rows::Text(held)) => {
+                rows.bytes.extend_from_slice(&held.bytes);
+                if rows.bytes.len() >= BUFFER_LEN { self.flush() } else { Ok(()) }
+            }
+            (_, Rows::Held(held)) => held.give(self.columns.len(), self),
+            _ => unreachable!("rows are held for a table of their format"),
+        }
     }
 
     /// Adds a text to the row.
@@ -109,6 +143,7 @@ impl TableSink {
         match &mut self.rows {
             Rows::Text(rows) => rows.text(column, text),
             Rows::Parquet(rows) => rows.text(column, text),
+            Rows::Held(rows) => rows.text(text),
         }
     }
 
@@ -120,9 +155,10 @@ impl TableSink {
         let column = self.next(ColumnKind::Integer);
         match &mut self.rows {
             Rows::Text(rows) => rows.integer(column, value),
-            Rows::Parquet(rows) => match value.try_into() {
-                Ok(value) => rows.integer(column, value),
-                Err(_) => {
+            rows => match (value.try_into(), rows) {
+                (Ok(value), Rows::Parquet(rows)) => rows.integer(column, value),
+                (Ok(value), Rows::Held(rows)) => rows.integer(value),
+                _ => {
                     let name = &self.columns[column].name;
                     let message =
                         format!("{value} in column {name} exceeds 63 bits: write text (.tsv, .jsonl)");
@@ -139,6 +175,7 @@ impl TableSink {
         match &mut self.rows {
             Rows::Text(rows) => rows.number(column, value),
             Rows::Parquet(rows) => rows.number(column, value),
+            Rows::Held(rows) => rows.number(value),
         }
     }
 
@@ -149,6 +186,7 @@ impl TableSink {
         match &mut self.rows {
             Rows::Text(rows) => rows.nothing(column),
             Rows::Parquet(rows) => rows.nothing(column),
+            Rows::Held(rows) => rows.nothing(),
         }
     }
 
@@ -162,6 +200,7 @@ impl TableSink {
         let is_full = match &mut self.rows {
             Rows::Text(rows) => rows.end() >= BUFFER_LEN,
             Rows::Parquet(rows) => rows.end()?,
+            Rows::Held(_) => false,
         };
         if is_full { self.flush() } else { Ok(()) }
     }
@@ -172,19 +211,22 @@ impl TableSink {
     /// If writing fails.
     pub fn commit(mut self) -> Result<()> {
         self.flush()?;
+        let mut output = self.output.expect("rows are not held");
         if let Rows::Parquet(rows) = self.rows {
-            self.output.write_all(&rows.footer()).map_err(write_error)?;
+            output.write_all(&rows.footer()).map_err(write_error)?;
         }
-        self.output.commit()
+        output.commit()
     }
 
     /// Writes the rows so far.
     fn flush(&mut self) -> Result<()> {
+        let Some(output) = &mut self.output else { return Ok(()) };
         let bytes = match &mut self.rows {
             Rows::Text(rows) => &mut rows.bytes,
             Rows::Parquet(rows) => rows.group()?,
+            Rows::Held(_) => return Ok(()),
         };
-        self.output.write_all(bytes).map_err(write_error)?;
+        output.write_all(bytes).map_err(write_error)?;
         bytes.clear();
         Ok(())
     }

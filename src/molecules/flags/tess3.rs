@@ -1,6 +1,7 @@
 //! `tess3`: flags.
 
 mod balls;
+mod frames;
 mod method;
 mod picture;
 mod report;
@@ -16,17 +17,18 @@ use std::time::Instant;
 use clap::Parser;
 
 use crate::tess3::sweep::{COLUMNS, Sweep, sweep};
-use crate::tess3::{Arithmetic, Options, Product, Radius, Stats};
+use crate::tess3::{Arithmetic, ModelName, Options, Product, Radius, Report, Stats};
 use balls::BallFlags;
+use frames::FrameFlags;
 use method::MethodFlags;
 use picture::PictureFlags;
 use selection::SelectionFlags;
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
 use spmesh_base::parallel::available_threads;
 use spmesh_formats::drivers::Format;
 use spmesh_formats::ledger::Batch;
-use spmesh_formats::molecules::{Structure, read_structure};
+use spmesh_formats::molecules::{FrameReader, Structure, read_structure};
 use spmesh_formats::sink::TableFormat;
 use spmesh_shell::batch::{BatchFlags, BatchMessages, SUMMARY_ENDINGS};
 use spmesh_shell::compression::Compression;
@@ -56,6 +58,8 @@ Examples:
     tess3 1abc.cif.gz --classes polymer --ses --per molecule
     tess3 1abc.cif.gz --classes polymer --contact-areas --between chains -o interface.tsv
     tess3 1abc.cif.gz --classes polymer --pockets -o pockets.tsv
+  Areas of each residue in every tenth frame of a trajectory:
+    tess3 --top 1abc.gro 1abc.xtc --frames ::10 --classes polymer --sasa --per residue -o sasa.parquet
   The same areas for pandas, Polars or DuckDB:
     tess3 1abc.cif.gz --classes polymer --sasa -o sasa.parquet
   Persistent homology, with GUDHI or another program that reads lists of simplices:
@@ -73,10 +77,10 @@ truncated input, 5 not enough memory, 6 input of another version of spmesh, 141 
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
-/// Reads PDB, PQR, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points or tetrahedra, PLY, OBJ, OFF,
-/// VTK and LAS, plain or compressed (.gz), and writes a tetrahedral mesh stream or a table, also of areas,
-/// volumes, contacts and pockets of atoms as balls. The triangulation is exact and canonical: it depends on
-/// the set of points only.
+/// Reads PDB, PQR, PDBx/mmCIF, BinaryCIF, GRO, XYZ, trajectories (XTC, TRR, DCD), lines of x y z, spmesh
+/// streams of points or tetrahedra, PLY, OBJ, OFF, VTK and LAS, plain or compressed (.gz, .zst), and writes
+/// a tetrahedral mesh stream or a table, also of areas, volumes, contacts and pockets of atoms as balls. The
+/// triangulation is exact and canonical: it depends on the set of points only.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 #[command(mut_arg("stats", |stats| stats.help("Print statistics on stderr")))]
@@ -99,6 +103,9 @@ pub struct Flags {
 
     #[command(flatten)]
     selection: SelectionFlags,
+
+    #[command(flatten)]
+    frames: FrameFlags,
 
     /// Write a table of the tetrahedra: atoms, circumradius and volume (Å, Å³), instead of the mesh
     #[arg(long, conflicts_with = "contacts")]
@@ -166,6 +173,11 @@ const FORMATS: Names<Format> = &[
     ("pdb: PDB", Format::Pdb),
     ("pqr: PQR: PDB with charges and radii", Format::Pqr),
     ("mmcif: PDBx/mmCIF", Format::Mmcif),
+    ("bcif: BinaryCIF", Format::BinaryCif),
+    ("gro: GRO of GROMACS", Format::Gro),
+    ("xtc: XTC of GROMACS, with --top", Format::Xtc),
+    ("trr: TRR of GROMACS, with --top", Format::Trr),
+    ("dcd: DCD, with --top", Format::Dcd),
     ("xyz: XYZ of chemistry: number of atoms, comment, and lines of element x y z", Format::Xyz),
     ("points: Points as spfinalize reads them: lines of x y z, streams, LAS, VTK", Format::Text),
     ("ply: Vertices of a PLY file", Format::Ply),
@@ -180,6 +192,7 @@ const FORMATS: Names<Format> = &[
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
     advise_on_memory(TOOL, "take fewer points, or fewer --threads in a sweep");
+    flags.frames.check(&flags.inputs)?;
     let stats = match &flags.batch.out_dir {
         Some(folder) => run_sweep(&flags, folder)?,
         None => run_one(&flags)?,
@@ -223,6 +236,9 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     }
     // Fail before the work if the output cannot be created.
     let mut output = Some(Output::create(&flags.output, is_binary)?);
+    if options.frames.is_some() {
+        return run_frames(flags, input, &options, output);
+    }
     let started = Instant::now();
     let structure = read_structure(input, flags.from)?;
     let notices = structure.notices(&options.selection);
@@ -241,10 +257,43 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     Ok(Finished { stats, failure: None })
 }
 
+/// Measures frames one by one. Notices are those of the first; others are counted.
+fn run_frames(
+    flags: &Flags,
+    input: &Path,
+    options: &Options,
+    mut output: Option<Output>,
+) -> Result<Finished> {
+    let topology = flags.frames.topology(|text| flags.notice(text))?;
+    let frames =
+        FrameReader::open(input, flags.from, options.frames.unwrap_or_default(), topology.as_deref())?;
+    if options.is_per_model() && !frames.is_single() {
+        let message =
+            "several frames need a folder for their meshes: --out-dir FOLDER, or choose one, --frames N";
+        return Err(Error::usage(message).of_input(frames.name()));
+    }
+    let (mut stats, mut others) = (Stats::default(), 0u64);
+    let mut hear = |report: Report| {
+        let texts = report.warnings();
+        if stats.models == 0 {
+            texts.iter().for_each(|text| flags.notice(&format!("frame {}: {text}", report.model)));
+        } else {
+            others += u64::from(!texts.is_empty());
+        }
+        stats.add(&report);
+    };
+    let mut open = |_: Option<ModelName>| output.take().ok_or_else(|| Error::usage("frames have one output"));
+    crate::tess3::run_frames(frames, options, &mut open, &mut hear)?;
+    if others > 0 {
+        flags.notice(&format!("{} such notices, too", counted(others, "more frame has", "more frames have")));
+    }
+    Ok(Finished { stats, failure: None })
+}
+
 /// Refuses runs that need several outputs.
 fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Result<()> {
     let models = structure.models.len();
-    if options.is_per_model() && flags.selection.wants_all_models() && models > 1 {
+    if options.is_per_model() && flags.selection.wants_several_models() && models > 1 {
         let has_picture = options.balls.as_ref().is_some_and(|balls| balls.picture.is_some());
         let remedy = if has_picture { "choose one with --model N" } else { "--out-dir FOLDER" };
         let message = format!("{models} models need a folder for their meshes: {remedy}");
@@ -262,7 +311,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
         version: env!("CARGO_PKG_VERSION").to_string(),
         files: flags.batch.files(&flags.inputs)?,
         list: flags.batch.lof.clone(),
-        shared: None,
+        shared: flags.frames.shared(),
         options: flags.options_text(&options),
         folder: folder.to_path_buf(),
         summary: paths.summary,
@@ -271,7 +320,8 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
         resume: flags.batch.resume,
         strict: flags.strict,
     };
-    let wanted = Sweep { batch, format: flags.from, options, threads: flags.threads().get() };
+    let topology = flags.frames.topology(|text| flags.notice(text))?;
+    let wanted = Sweep { batch, format: flags.from, topology, options, threads: flags.threads().get() };
     let mut messages = BatchMessages::new(TOOL, "triangulating", &flags.common);
     let (outcome, stats) = sweep(&wanted, &mut |news| messages.hear(news))?;
     Ok(Finished { stats, failure: messages.conclude(&outcome, &paths.shown) })
@@ -299,6 +349,7 @@ impl Flags {
         }
         Ok(Options {
             selection: self.selection.selection(),
+            frames: self.frames.range(),
             assembly: self.selection.assembly().map(str::to_string),
             alpha: self.alpha.clone(),
             method,
@@ -320,7 +371,7 @@ impl Flags {
 
     /// The options that determine the content of the outputs, as text.
     fn options_text(&self, options: &Options) -> String {
-        let mut text = self.selection.to_string();
+        let mut text = format!("{}{}", self.selection, self.frames);
         if let Some(format) = self.from {
             text += &format!(" --from {}", value_name(FORMATS, &format));
         }

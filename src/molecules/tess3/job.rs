@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::alpha::AlphaComplex;
 use super::balls::{BallOptions, Molecule};
 use super::filtration::Filtration;
+use super::frames::run_models;
 use super::labels::Labels;
 use super::mesh::write_mesh;
 use super::tables::{CONTACTS, ModelTables, TETRAHEDRA, columns};
@@ -28,17 +29,16 @@ use spmesh_stream::{Coordinates, Header, Kind, StreamWriter, Weighted};
 ///
 /// # Errors
 /// Usage, if the structure lacks what is selected, or the selection is empty; those of writing and of `open`.
-pub fn run(
-    structure: Structure,
-    options: &Options,
-    open: &mut dyn FnMut(Option<ModelName>) -> Result<Output>,
-) -> Result<Vec<Report>> {
+pub fn run(structure: Structure, options: &Options, open: &mut Open<'_>) -> Result<Vec<Report>> {
     let name = structure.name.clone();
     let structure = match &options.assembly {
         Some(assembly) => structure.assembled(assembly)?,
         None => structure,
     };
-    let mut job = Job { options: options.clone(), open, table: None };
+    if options.is_by_models(structure.models.len()) {
+        return run_models(structure, options, open).map_err(|e| e.of_input(name));
+    }
+    let mut job = Job { options: options.clone(), open: Some(open), table: None };
     let structure = if options.selection.models == Models::Joined {
         job.options.selection.models = Models::First;
         structure.joined()?
@@ -52,6 +52,9 @@ pub fn run(
     Ok(reports)
 }
 
+/// Creates the output of a model, or the one of all.
+pub type Open<'o> = dyn FnMut(Option<ModelName>) -> Result<Output> + Send + 'o;
+
 /// The place and the number of a model in its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModelName {
@@ -61,21 +64,28 @@ pub struct ModelName {
     pub number: i64,
 }
 
-struct Job<'o> {
-    options: Options,
-    open: &'o mut dyn FnMut(Option<ModelName>) -> Result<Output>,
+/// Measures models one by one.
+pub(super) struct Job<'o, 'f> {
+    pub(super) options: Options,
+    /// Without it, the rows of a table are held.
+    pub(super) open: Option<&'o mut Open<'f>>,
     /// The table of all models.
-    table: Option<TableSink>,
+    pub(super) table: Option<TableSink>,
 }
 
-impl Job<'_> {
+impl Job<'_, '_> {
     fn all_models(&mut self, mut structure: Structure) -> Result<Vec<Report>> {
-        if self.options.selection.models != Models::All {
+        if !self.options.selection.models.are_several() {
             return Ok(vec![self.model(&mut structure, 1)?]);
         }
+        let wanted = structure.models_of(&self.options.selection)?;
         self.options.selection.models = Models::First;
         let mut reports = Vec::new();
-        for (place, model) in (1..).zip(std::mem::take(&mut structure.models)) {
+        for (place, model) in std::mem::take(&mut structure.models).into_iter().enumerate() {
+            if !wanted.contains(&place) {
+                continue;
+            }
+            let place = place + 1;
             structure.models = vec![model];
             reports.push(self.model(&mut structure, place)?);
         }
@@ -83,7 +93,7 @@ impl Job<'_> {
     }
 
     /// Triangulates the selected atoms of one model.
-    fn model(&mut self, structure: &mut Structure, place: usize) -> Result<Report> {
+    pub(super) fn model(&mut self, structure: &mut Structure, place: usize) -> Result<Report> {
         let started = Instant::now();
         let at = structure.models_of(&self.options.selection)?[0];
         let name = ModelName { place, number: structure.models[at].number };
@@ -125,7 +135,7 @@ impl Job<'_> {
             }
             (Some(selected), Product::Filtration) => {
                 // Atoms count as points.
-                let mut output = (self.open)(Some(model.name))?;
+                let mut output = self.open(Some(model.name))?;
                 Filtration::new(selected.points(), weights.as_deref(), &mesh)?
                     .write(&mut output, model.scale())?;
                 output.commit()?;
@@ -176,7 +186,7 @@ impl Job<'_> {
         report.labels = Labels::of(molecule.selected, &self.options);
         let product = self.options.product;
         if let Some(picture) = balls.picture {
-            let mut output = (self.open)(None)?;
+            let mut output = self.open(None)?;
             molecule.draw(product, picture, balls, &mut report, &mut output)?;
             output.commit()?;
         } else {
@@ -186,8 +196,18 @@ impl Job<'_> {
         Ok(report)
     }
 
+    fn open(&mut self, model: Option<ModelName>) -> Result<Output> {
+        self.open.as_mut().expect("rows alone are held")(model)
+    }
+
     /// The line with the names of the columns.
     fn columns(&self) -> String {
+        let columns = self.columns_of_models();
+        // Frames are the models of a trajectory.
+        if self.options.frames.is_some() { columns.replacen("model", "frame", 1) } else { columns }
+    }
+
+    fn columns_of_models(&self) -> String {
         match (self.options.product, &self.options.balls) {
             (product, Some(balls)) => balls.columns(product),
             (Product::Contacts, None) => CONTACTS.to_string(),
@@ -196,10 +216,13 @@ impl Job<'_> {
     }
 
     /// The table, which is created when it gets its first rows.
-    fn table(&mut self) -> Result<&mut TableSink> {
+    pub(super) fn table(&mut self) -> Result<&mut TableSink> {
         if self.table.is_none() {
             let columns = columns(&self.columns());
-            self.table = Some(TableSink::create(self.options.format, columns, (self.open)(None)?));
+            self.table = Some(match &mut self.open {
+                Some(open) => TableSink::create(self.options.format, columns, open(None)?),
+                None => TableSink::held(self.options.format, columns),
+            });
         }
         Ok(self.table.as_mut().expect("there is one now"))
     }
@@ -220,7 +243,7 @@ impl Job<'_> {
             header.weighted = Some(Weighted { greatest });
             header.attributes = Attributes::new(vec![Weighted::attribute()]).map_err(Error::usage)?;
         }
-        let mut writer = StreamWriter::new((self.open)(Some(model.name))?, header)?;
+        let mut writer = StreamWriter::new(self.open(Some(model.name))?, header)?;
         let is_kept = |t: usize| kept.as_ref().is_none_or(|bits| bits[t / 64] >> (t % 64) & 1 == 1);
         let mut corners =
             mesh.into_corners(is_kept, self.options.method.threads).map_err(Error::of_computation)?;

@@ -7,6 +7,7 @@ mod alpha;
 mod balls;
 mod exact;
 pub mod filtration;
+mod frames;
 pub mod heap;
 mod job;
 mod labels;
@@ -19,7 +20,8 @@ mod tables;
 
 pub use alpha::{AlphaComplex, Radius};
 pub use balls::{BallOptions, ColourBy, ContactFilter, Level, NamedRadii, PictureForm, PictureOptions};
-pub use job::{ModelName, run};
+pub use frames::run_frames;
+pub use job::{ModelName, Open, run};
 pub use labels::Labels;
 pub use mesh::write_mesh;
 pub use method::{Arithmetic, Method, NO_EXPERIMENTS};
@@ -29,7 +31,7 @@ use std::time::Duration;
 
 use spmesh_base::error::{counted, counted_of};
 use spmesh_delaunay::predicates::PredicateCounts;
-use spmesh_formats::molecules::{RadiusCounts, Selection};
+use spmesh_formats::molecules::{FrameRange, RadiusCounts, Selection};
 use spmesh_formats::sink::TableFormat;
 
 /// The output made of a triangulation.
@@ -70,6 +72,8 @@ impl Product {
 pub struct Options {
     /// Which atoms; all models are triangulated one by one.
     pub selection: Selection,
+    /// The frames of each file that are taken one by one, in place of models.
+    pub frames: Option<FrameRange>,
     /// The biological assembly to make of each file first, if one is wanted.
     pub assembly: Option<String>,
     /// What is written.
@@ -87,6 +91,16 @@ pub struct Options {
 }
 
 impl Options {
+    /// Whether a file may have several models or frames.
+    fn are_models_several(&self) -> bool {
+        self.frames.is_some() || self.selection.models.are_several()
+    }
+
+    /// Whether models, of which a file has so many, are measured on several threads at the same time.
+    fn is_by_models(&self, models: usize) -> bool {
+        !self.is_per_model() && self.selection.models.are_several() && models >= self.method.threads.get()
+    }
+
     /// Whether each model has an output of its own.
     pub fn is_per_model(&self) -> bool {
         self.product.is_per_model() || self.balls.as_ref().is_some_and(|balls| balls.picture.is_some())

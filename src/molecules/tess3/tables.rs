@@ -187,9 +187,8 @@ pub(super) fn columns(names: &str) -> Vec<Column> {
 /// The type of the column of a name; numbers unless it is listed.
 fn kind(name: &str) -> ColumnKind {
     match name.trim_end_matches(|c: char| c.is_ascii_digit()) {
-        "model" | "serial" | "tetrahedra" | "atoms" | "contacts" | "pocket" | "mouth" | "mouths" => {
-            ColumnKind::Integer
-        }
+        "model" | "frame" | "serial" | "tetrahedra" | "atoms" | "contacts" | "pocket" | "mouth"
+        | "mouths" => ColumnKind::Integer,
         "kind" | "atom" | "residue" | "chain" | "molecule" => ColumnKind::Text,
         _ => ColumnKind::Number,
     }

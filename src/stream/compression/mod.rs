@@ -53,6 +53,33 @@ impl Method {
     }
 }
 
+/// Decompresses zstd frames (RFC 8878), one behind the other. Memory: 128 MB for the largest window.
+#[cfg(feature = "zstd")]
+pub struct ZstdReader<R: std::io::BufRead>(zstd::stream::read::Decoder<'static, R>);
+
+#[cfg(feature = "zstd")]
+impl<R: std::io::BufRead> ZstdReader<R> {
+    /// The frames of `input`.
+    ///
+    /// # Errors
+    /// If zstd gets no memory.
+    pub fn new(input: R) -> std::io::Result<ZstdReader<R>> {
+        zstd::stream::read::Decoder::with_buffer(input).map(ZstdReader)
+    }
+
+    /// The input.
+    pub fn input(&self) -> &R {
+        self.0.get_ref()
+    }
+}
+
+#[cfg(feature = "zstd")]
+impl<R: std::io::BufRead> std::io::Read for ZstdReader<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        self.0.read(buffer)
+    }
+}
+
 /// A zstd frame (RFC 8878) of any bytes, for formats that hold such frames.
 #[cfg(feature = "zstd")]
 pub fn zstd_frame(bytes: &[u8]) -> Vec<u8> {

@@ -10,9 +10,9 @@ use spmesh_shell::{Names, named, value_name};
 /// Which atoms are triangulated.
 #[derive(Debug, Clone, Args)]
 pub(super) struct SelectionFlags {
-    /// The model of this number; all models one by one; or all joined, as files of assemblies have copies of
-    /// chains as models: chain A of the second model is named A-2 [default: the first model]
-    #[arg(long, value_name = "N|all|joined", allow_hyphen_values = true, value_parser = parse_models)]
+    /// The model of this number; those of N to M, or all, one by one; or all joined, as files of assemblies
+    /// have copies of chains as models: chain A of the second model is named A-2 [default: the first model]
+    #[arg(long, value_name = "N|N..M|all|joined", allow_hyphen_values = true, value_parser = parse_models)]
     model: Option<Models>,
 
     /// The biological assembly of this name: copies of chains moved by operators. Copies of chain A are named
@@ -71,8 +71,8 @@ impl SelectionFlags {
         self.assembly.as_deref()
     }
 
-    pub(super) fn wants_all_models(&self) -> bool {
-        self.model == Some(Models::All)
+    pub(super) fn wants_several_models(&self) -> bool {
+        self.model.is_some_and(Models::are_several)
     }
 }
 
@@ -82,6 +82,7 @@ impl fmt::Display for SelectionFlags {
         match self.model.unwrap_or_default() {
             Models::First => {}
             Models::One(number) => write!(f, "--model {number} ")?,
+            Models::Range(first, last) => write!(f, "--model {first}..{last} ")?,
             Models::All => write!(f, "--model all ")?,
             Models::Joined => write!(f, "--model joined ")?,
         }
@@ -112,8 +113,15 @@ fn parse_models(text: &str) -> Result<Models, String> {
         "all" => Ok(Models::All),
         "joined" => Ok(Models::Joined),
         _ => {
-            let expected = || format!("{text:?} is neither the number of a model nor all or joined");
-            text.parse().map(Models::One).map_err(|_| expected())
+            let expected =
+                || format!("{text:?} is neither the number of a model, FIRST..LAST, nor all or joined");
+            let Some((first, last)) = text.split_once("..") else {
+                return text.parse().map(Models::One).map_err(|_| expected());
+            };
+            match (first.parse(), last.parse()) {
+                (Ok(first), Ok(last)) if first <= last => Ok(Models::Range(first, last)),
+                _ => Err(expected()),
+            }
         }
     }
 }

@@ -8,12 +8,12 @@ use std::time::Instant;
 
 use super::Sweep;
 use crate::tess3::heap::peak_during;
-use crate::tess3::{ModelName, Options, Product, Report, job};
+use crate::tess3::{ModelName, Options, Product, Report, job, run_frames};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::Inputs;
 use spmesh_formats::ledger::{self, Attempt, DoneFile, check_free, contained};
-use spmesh_formats::molecules::{Models, Structure, read_structure};
+use spmesh_formats::molecules::{FrameReader, Structure, read_structure};
 use spmesh_stream::ends_with_end;
 
 /// A file to triangulate.
@@ -51,7 +51,7 @@ pub(super) fn stem_of(known: &DoneFile, sweep: &Sweep) -> Option<PathBuf> {
     known.outputs().find_map(|output| {
         let name = output.to_str()?.strip_suffix(&ending)?;
         let plain = name.rsplit_once(".model").filter(|(_, number)| number.parse::<i64>().is_ok());
-        let is_numbered = sweep.options.selection.models == Models::All && sweep.options.is_per_model();
+        let is_numbered = sweep.options.are_models_several() && sweep.options.is_per_model();
         Some(PathBuf::from(plain.filter(|_| is_numbered).map_or(name, |(plain, _)| plain)))
     })
 }
@@ -78,13 +78,19 @@ pub(super) fn run(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> End {
 
 fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model>> {
     let started = Instant::now();
-    let structure = read_structure(job.file, sweep.format)?;
+    let input = match sweep.options.frames {
+        Some(range) => {
+            let topology = sweep.topology.as_deref();
+            Input::Frames(FrameReader::open(job.file, sweep.format, range, topology)?)
+        }
+        None => Input::Structure(read_structure(job.file, sweep.format)?),
+    };
     let read = started.elapsed();
-    let has_distinct_numbers = has_distinct_numbers(&structure);
-    let mut of_file = structure.notices(&sweep.options.selection);
+    let has_distinct_numbers = input.has_distinct_numbers();
+    let mut of_file = input.notices(sweep);
     let mut outputs: Vec<PathBuf> = Vec::new();
     let mut open = |model: Option<ModelName>| {
-        let model = model.filter(|_| sweep.options.selection.models == Models::All);
+        let model = model.filter(|_| sweep.options.are_models_several());
         let model = model.map(|name| if has_distinct_numbers { name.number } else { name.place as i64 });
         let output = output_name(&job.stem, &sweep.options, model);
         let path = sweep.batch.folder.join(&output);
@@ -93,8 +99,14 @@ fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model
         outputs.push(output);
         Output::create(&path, true)
     };
-    let mut reports = job::run(structure, &sweep.options, &mut open)?;
-    reports.iter_mut().take(1).for_each(|report| report.times.read = read);
+    let mut reports = Vec::new();
+    match input {
+        Input::Frames(frames) => {
+            run_frames(frames, &sweep.options, &mut open, &mut |report| reports.push(report))?
+        }
+        Input::Structure(structure) => reports = job::run(structure, &sweep.options, &mut open)?,
+    }
+    reports.iter_mut().take(1).for_each(|report| report.times.read += read);
     let mut models = Vec::new();
     for (i, report) in reports.into_iter().enumerate() {
         // All models share one table.
@@ -111,10 +123,28 @@ fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model
     Ok(models)
 }
 
-fn has_distinct_numbers(structure: &Structure) -> bool {
-    let mut numbers: Vec<i64> = structure.models.iter().map(|model| model.number).collect();
-    numbers.sort_unstable();
-    numbers.windows(2).all(|pair| pair[0] < pair[1])
+/// What is read of a file.
+enum Input {
+    Structure(Structure),
+    Frames(FrameReader),
+}
+
+impl Input {
+    /// Whether the numbers of models tell them apart.
+    fn has_distinct_numbers(&self) -> bool {
+        let Input::Structure(structure) = self else { return true };
+        let mut numbers: Vec<i64> = structure.models.iter().map(|model| model.number).collect();
+        numbers.sort_unstable();
+        numbers.windows(2).all(|pair| pair[0] < pair[1])
+    }
+
+    /// What a user may not expect of the file.
+    fn notices(&self, sweep: &Sweep) -> Vec<String> {
+        match self {
+            Input::Structure(structure) => structure.notices(&sweep.options.selection),
+            Input::Frames(_) => Vec::new(),
+        }
+    }
 }
 
 /// Stem, model and the extension of the product.
@@ -146,8 +176,10 @@ fn create_folder_of(path: &Path) -> Result<()> {
 }
 
 /// Extensions of inputs that denote a format only.
-const FORMATS: [&str; 13] =
-    ["pdb", "ent", "pqr", "cif", "mmcif", "xyz", "txt", "csv", "dat", "asc", "spm", "ply", "obj"];
+const FORMATS: [&str; 17] = [
+    "pdb", "ent", "pqr", "cif", "mmcif", "gro", "xtc", "trr", "dcd", "xyz", "txt", "csv", "dat", "asc",
+    "spm", "ply", "obj",
+];
 
 /// The name of the output of each input, without its extension: relative to the folder of outputs, and none
 /// of `taken`.

@@ -8,6 +8,7 @@ mod rows;
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::{Options, Stats};
 use file::Job;
@@ -15,6 +16,7 @@ pub use rows::COLUMNS;
 use spmesh_base::error::Result;
 use spmesh_formats::drivers::Format;
 use spmesh_formats::ledger::{Batch, Ledger, Left, News, Outcome};
+use spmesh_formats::molecules::Structure;
 
 /// A batch of files, and what to do with each of them.
 #[derive(Debug, Clone)]
@@ -23,6 +25,8 @@ pub struct Sweep {
     pub batch: Batch,
     /// The format of the files; detected from the content if `None`.
     pub format: Option<Format>,
+    /// What names the atoms of frames, if they do not.
+    pub topology: Option<Arc<Structure>>,
     /// What to do with each of them.
     pub options: Options,
     /// Number of files in parallel.

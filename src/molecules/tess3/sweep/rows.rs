@@ -28,6 +28,9 @@ pub const COLUMNS: Columns = &[
     ("input_modified", Text),
     ("input_sha256", Text),
     ("violations", Integer),
+    ("topology_bytes", Integer),
+    ("topology_modified", Text),
+    ("topology_sha256", Text),
 ];
 
 /// The rows of a file: one per model, or one for the failure.
