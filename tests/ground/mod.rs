@@ -145,6 +145,34 @@ fn cuttings_and_order_do_not_matter() {
     }
 }
 
+/// Text gets a column, and its mesh comes from a pipe, too.
+#[test]
+fn text_has_classes() {
+    let folder = Folder::new();
+    let points = scene(&mut Random::new(5), 1200, 24, 0.1);
+    let line =
+        |[x, y, z]: &[i32; 3]| [x, y, z].map(|value| format!("{:.2}", f64::from(*value) / 100.0)).join(",");
+    let lines: Vec<String> = points.iter().map(line).collect();
+    let text = format!("x,y,z\n{}\n", lines.join("\n"));
+    let (input, output, mesh) =
+        (folder.write("in.csv", &text), folder.path("out.csv"), folder.path("out.spm"));
+    let done = run("spground", &[&input, "-o", &output], &[]);
+    assert!(done.status.success(), "{:?}", outcome(&done));
+    let classes = found(&folder, &unclassified(&points), &[]);
+    let expected = lines.iter().zip(&classes).map(|(line, class)| format!("{line},{class}\n"));
+    let written = std::fs::read_to_string(&output).unwrap();
+    assert!(written == format!("x,y,z,class\n{}", expected.collect::<String>()), "{written}");
+    let done = run("spground", &["-", "-o", &mesh], text.as_bytes());
+    assert!(done.status.success(), "{:?}", outcome(&done));
+    let of_pipe = std::fs::read(&mesh).unwrap();
+    let done = run("spground", &[&input, "-o", &mesh], &[]);
+    assert!(done.status.success(), "{:?}", outcome(&done));
+    assert!(of_pipe == std::fs::read(&mesh).unwrap());
+    // Files that get classes are read twice.
+    let done = run("spground", &["-", "-o", &output], text.as_bytes());
+    assert_eq!(outcome(&done).0, Some(2));
+}
+
 /// Jobs that see no more than the halo of their tiles.
 #[test]
 fn tiles_of_a_plan_have_the_classes_of_all() {

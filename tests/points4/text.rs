@@ -108,7 +108,11 @@ fn other_formats_are_told_apart() {
     for (content, part) in cases {
         assert_fails(read(content), ErrorKind::Malformed, &[part]);
     }
-    assert_fails(read(gzip(&gzip(b"1 2 3 4\n"))), ErrorKind::Malformed, &["gzip data within gzip data"]);
+    assert_fails(
+        read(gzip(&gzip(b"1 2 3 4\n"))),
+        ErrorKind::Malformed,
+        &["gzip data within compressed data"],
+    );
 }
 
 #[test]

@@ -21,6 +21,8 @@ pub struct Filters {
     pub keep_class: Vec<u8>,
     /// Drop points of these classes.
     pub drop_class: Vec<u8>,
+    /// Drop points of the classes of noise, low points and high noise, where files have classes.
+    pub drop_noise: bool,
     /// Keep only first returns.
     pub first_only: bool,
     /// Keep only last returns.
@@ -38,6 +40,9 @@ pub struct Filters {
     /// Keep only points whose z in the world is in this interval.
     pub z: Option<Interval>,
 }
+
+/// The classes of noise: low points, and high noise.
+pub(crate) const NOISE: [u8; 2] = [7, 18];
 
 impl Filters {
     /// What a filter needs that only points of LAS and LAZ files have.

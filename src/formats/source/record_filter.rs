@@ -4,7 +4,7 @@
 
 use laz::DecompressionSelection;
 
-use crate::source::filters::{DropReason, Filters, Interval};
+use crate::source::filters::{DropReason, Filters, Interval, NOISE};
 
 /// Place of the class in formats 0 to 5, and of the flags in all formats.
 const FLAGS: usize = 15;
@@ -63,7 +63,8 @@ impl RecordFilter {
         let is_extended = format >= 6;
         let mut keep = [filters.keep_class.is_empty(); 256];
         filters.keep_class.iter().for_each(|&class| keep[usize::from(class)] = true);
-        filters.drop_class.iter().for_each(|&class| keep[usize::from(class)] = false);
+        let noise = NOISE.iter().filter(|_| filters.drop_noise);
+        filters.drop_class.iter().chain(noise).for_each(|&class| keep[usize::from(class)] = false);
         RecordFilter {
             is_extended,
             withheld: bit(!filters.keep_withheld, is_extended, 2),
@@ -76,7 +77,7 @@ impl RecordFilter {
             last_only: filters.last_only,
             keep_return: filters.keep_return.clone(),
             ranges: ranges(filters, is_extended),
-            keeps_others: filters.needs().is_none(),
+            keeps_others: filters.needs().is_none() && !filters.drop_noise,
         }
     }
 

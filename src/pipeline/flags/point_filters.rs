@@ -94,6 +94,7 @@ impl PointFilters {
             keep_keypoint: self.keep_keypoint,
             keep_class: self.keep_class.clone(),
             drop_class: self.drop_class.clone(),
+            drop_noise: false,
             first_only: self.first_only,
             last_only: self.last_only,
             keep_return: self.keep_return.clone(),

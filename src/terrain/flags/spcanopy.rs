@@ -30,9 +30,6 @@ use spmesh_stream::model::bounds::Bounds;
 
 const TOOL: &str = "spcanopy";
 
-/// Classes of noise: low points, and high noise.
-const NOISE: [u8; 2] = [7, 18];
-
 /// The longest edge of upper layers, in cells.
 const EDGE_CELLS: f64 = 4.0;
 
@@ -246,7 +243,8 @@ impl Flags {
             keep_withheld: self.keep_withheld,
             first_only: !self.all_returns,
             keep_class: self.keep_class.clone(),
-            drop_class: if is_default { NOISE.to_vec() } else { self.drop_class.clone() },
+            drop_class: self.drop_class.clone(),
+            drop_noise: is_default,
             ..Filters::default()
         };
         Ok(SourceOptions {

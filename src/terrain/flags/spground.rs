@@ -139,8 +139,8 @@ pub struct Flags {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Which points")]
 struct PointFlags {
-    /// Points of these classes keep them, and do not count for the ground
-    #[arg(long, value_name = "CLASS", value_delimiter = ',', default_value = "7,18")]
+    /// Points of these classes keep them, and do not count for the ground [default: 7,18]
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
     keep_class_of: Vec<u8>,
 
     /// Only last returns count for the ground and get classes; others keep theirs
@@ -277,6 +277,7 @@ impl Flags {
         let PointFlags { keep_class_of, last_only, drop_overlap, keep_withheld } = &self.points;
         Filters {
             drop_class: keep_class_of.clone(),
+            drop_noise: keep_class_of.is_empty(),
             last_only: *last_only,
             drop_overlap: *drop_overlap,
             keep_withheld: *keep_withheld,
