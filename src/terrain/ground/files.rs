@@ -42,7 +42,7 @@ const COLUMN: &str = "class";
 pub struct ClassCounts {
     /// Points of the file.
     pub points: u64,
-    /// Those of each class, in the order of [`Class::ALL`].
+    /// Those of each class, in the order of [`super::Class::ALL`].
     pub classes: [u64; 4],
     /// Those that kept the class that they had.
     pub kept: u64,
