@@ -159,8 +159,8 @@ fn read_atom(
     Ok(serial)
 }
 
-/// Checks the line of the box: the lengths of a right-angled one, or nine components of three vectors. Numbers
-/// that fill their columns touch.
+/// Checks the line of the box: the lengths of a right-angled one, or nine components of three vectors.
+/// Numbers that fill their columns touch.
 fn check_box(line: &[u8]) -> Result<()> {
     let points = line.iter().filter(|&&byte| byte == b'.').count();
     let is_of_number =

@@ -1,6 +1,6 @@
-//! Molecular structures and files of points in space: PDB, PQR, mmCIF, BinaryCIF, GRO, XYZ, text of points, streams of this
-//! project and their text twins, PLY, OBJ, OFF and VTK, each plain or compressed with gzip. The content tells
-//! the format.
+//! Molecular structures and files of points in space: PDB, PQR, mmCIF, BinaryCIF, GRO, XYZ, text of points,
+//! streams of this project and their text twins, PLY, OBJ, OFF and VTK, each plain or compressed with gzip.
+//! The content tells the format.
 //!
 //! The readers are this project's own. The crate `pdbtbx` panics on some files of the test data, rejects
 //! others whose atoms are all intact, and takes longer than the triangulation.

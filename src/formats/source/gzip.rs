@@ -1,4 +1,5 @@
-//! The one layer of compression: inputs that may be compressed with gzip or zstd, which their first bytes tell.
+//! The one layer of compression: inputs that may be compressed with gzip or zstd, which their first bytes
+//! tell.
 
 use std::io::{self, BufRead, BufReader, Chain, Cursor, ErrorKind, Read};
 
@@ -153,8 +154,8 @@ impl<R: Read> Gunzip<R> {
     }
 }
 
-/// Checks that what a caller holds may be records that differ. `names` are those of the format and of the program
-/// that decompresses it.
+/// Checks that what a caller holds may be records that differ. `names` are those of the format and of the
+/// program that decompresses it.
 fn check_expansion(expanded: u64, consumed: u64, names: [&str; 2]) -> io::Result<()> {
     if !is_implausible(expanded, consumed) {
         return Ok(());

@@ -50,7 +50,7 @@ pub use crate::obj::read::open_obj;
 pub use crate::ply::read::open_ply;
 pub use crate::ply::surface::{Surface, read_ply_surface};
 pub use crate::raw::number::RawType;
-pub use crate::text::copy::{TextBatch, TextFile, TextLines};
+pub use crate::text::copy::TextFile;
 pub use crate::text::lines::quote;
 pub use crate::text::options::{Column, Separator, TextOptions};
 pub use crate::text::values::{Values, read_values};

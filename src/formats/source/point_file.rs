@@ -20,8 +20,8 @@ pub enum PointFile {
 }
 
 impl PointFile {
-    /// Opens the file at `path` ("-" is stdin) and reads its header, or the first lines of a text. `reader` is the
-    /// program, for messages, and takes no other formats.
+    /// Opens the file at `path` ("-" is stdin) and reads its header, or the first lines of a text. `reader`
+    /// is the program, for messages, and takes no other formats.
     ///
     /// Cost: the header. Stdin, and LAS files within gzip, are copied to an unlinked temporary file in
     /// `temp_dir`, or in the system's folder for temporary files.

@@ -10,6 +10,9 @@ use crate::text::read::{Delimiter, delimiter_of, fields, parse};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 
+/// Bytes of a line, about.
+const LINE_LEN: usize = 64;
+
 /// Fewest decimals of values, and most.
 const DECIMALS: [usize; 2] = [3, 9];
 
@@ -50,18 +53,42 @@ impl TextFile {
         &self.notices
     }
 
+    /// Writes the lines again, each point with a value in the column `name`: `values` replaces those of a
+    /// batch of up to `most` points, NaN where one is unknown. They have so many decimals, if `None` as many
+    /// as the elevation of the first point has, but from 3 to 9.
+    ///
+    /// # Errors
+    /// Malformed, if the file is; if reading, writing or `values` fails.
+    pub fn write_with(
+        &self,
+        (name, decimals): (&str, Option<usize>),
+        most: usize,
+        output: &mut impl Write,
+        mut values: impl FnMut(&[Point], &mut Vec<f64>) -> Result<()>,
+    ) -> Result<()> {
+        let (mut lines, mut batch, mut found) = (self.lines()?, TextBatch::default(), Vec::new());
+        loop {
+            lines.next(&mut batch, most, most * LINE_LEN)?;
+            if batch.lines.is_empty() {
+                return Ok(());
+            }
+            values(&batch.points, &mut found).map_err(|e| e.of_input(&self.name))?;
+            batch.write(name, &found, decimals, output)?;
+        }
+    }
+
     /// Starts a pass over all lines.
     ///
     /// # Errors
     /// If the file cannot be opened.
-    pub fn lines(&self) -> Result<TextLines<'_>> {
+    fn lines(&self) -> Result<TextLines<'_>> {
         let bytes = self.origin.plain().map_err(|e| e.of_input(&self.name))?;
         Ok(TextLines { file: self, lines: Lines::new(bytes, &self.name[..]), decimals: None, comment: None })
     }
 }
 
 /// The lines of a text, in their order.
-pub struct TextLines<'f> {
+struct TextLines<'f> {
     file: &'f TextFile,
     lines: Lines<Bytes>,
     /// Decimals of the elevation of the first point, once it was read.
@@ -72,7 +99,7 @@ pub struct TextLines<'f> {
 
 /// Lines, with the points of those that are points.
 #[derive(Debug, Default)]
-pub struct TextBatch {
+struct TextBatch {
     text: Vec<u8>,
     lines: Vec<CopiedLine>,
     points: Vec<Point>,
@@ -101,7 +128,7 @@ impl TextLines<'_> {
     ///
     /// # Errors
     /// If reading fails, or a line is no point with finite coordinates; file and line are named.
-    pub fn next(&mut self, batch: &mut TextBatch, most: usize, most_bytes: usize) -> Result<()> {
+    fn next(&mut self, batch: &mut TextBatch, most: usize, most_bytes: usize) -> Result<()> {
         batch.text.clear();
         batch.lines.clear();
         batch.points.clear();
@@ -185,23 +212,11 @@ impl TextLines<'_> {
 }
 
 impl TextBatch {
-    /// The points of its lines.
-    pub fn points(&self) -> &[Point] {
-        &self.points
-    }
-
-    /// Whether it has no line.
-    pub fn is_empty(&self) -> bool {
-        self.lines.is_empty()
-    }
-
-    /// Writes its lines. Those of points get one of the `values`, NaN where it is unknown, with so many
-    /// decimals, if `None` as many as the elevation of the first point has, but from 3 to 9; a line of names
-    /// gets `name`.
+    /// Writes its lines. Those of points get one of the `values`; a line of names gets `name`.
     ///
     /// # Errors
     /// If writing fails.
-    pub fn write(
+    fn write(
         &self,
         name: &str,
         values: &[f64],

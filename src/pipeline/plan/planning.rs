@@ -1,6 +1,6 @@
 //! The plan as a file.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use data_encoding::HEXLOWER;
@@ -364,14 +364,20 @@ impl Plan {
         node.files.iter().filter_map(|&file| self.files.get(file as usize)).collect()
     }
 
-    /// The file of the plan at a path, whether or not it is as it was; `None` if the plan has none.
+    /// The file of the plan at each path, whether or not it is as it was; `None` if the plan has none.
     ///
     /// # Errors
-    /// I/O, if the path leads through a folder that is not there.
-    pub fn file_at(&self, path: &Path) -> Result<Option<&PlannedFile>> {
-        let place =
-            settled(path).map_err(|e| Error::io("finding", e).of_input(path.display().to_string()))?;
-        Ok(self.files.iter().find(|file| file.path(&self.roots) == place))
+    /// I/O, if a path leads through a folder that is not there.
+    pub fn files_at(&self, paths: &[PathBuf]) -> Result<Vec<Option<&PlannedFile>>> {
+        let place = |path: &PathBuf| {
+            settled(path).map_err(|e| Error::io("finding", e).of_input(path.display().to_string()))
+        };
+        let places = paths.iter().map(place).collect::<Result<Vec<_>>>()?;
+        // A plan may have a million files.
+        let wanted: HashSet<&PathBuf> = places.iter().collect();
+        let files = self.files.iter().map(|file| (file.path(&self.roots), file));
+        let found: HashMap<PathBuf, &PlannedFile> = files.filter(|(path, _)| wanted.contains(path)).collect();
+        Ok(places.iter().map(|place| found.get(place).copied()).collect())
     }
 
     /// The files whose boxes begin in a leaf: each file with points begins in one leaf.

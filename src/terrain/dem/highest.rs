@@ -45,8 +45,8 @@ impl Highest {
         run.draw(reader, self, options.memory / 2, |_| {})
     }
 
-    /// Writes the raster, whose values are elevations or heights above something. Returns the number of cells with
-    /// a value, and notices for the user.
+    /// Writes the raster, whose values are elevations or heights above something. Returns the number of cells
+    /// with a value, and notices for the user.
     ///
     /// # Errors
     /// If writing fails.

@@ -74,8 +74,8 @@ memory, 6 input of another version of spmesh.";
 
 /// Find which points are on the ground.
 ///
-/// Reads LAS, LAZ or COPC files, or text of points, and writes them again with classes; or reads points of any
-/// format, and writes the triangulation of the ground.
+/// Reads LAS, LAZ or COPC files, or text of points, and writes them again with classes; or reads points of
+/// any format, and writes the triangulation of the ground.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {

@@ -7,7 +7,7 @@ use super::Found;
 use crate::height::{rewrite, stored_point};
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::las::{Changes, LasFile};
-use spmesh_formats::source::{Filters, TextBatch, TextFile};
+use spmesh_formats::source::{Filters, TextFile};
 use spmesh_stream::Coordinates;
 
 /// How files are written.
@@ -29,10 +29,10 @@ impl RewriteOptions {
     }
 }
 
-/// Bytes of a line of text and of what is found for it, about.
-const LINE_LEN: u64 = 200;
+/// Bytes of a point of a text, its line and what is found for it, about.
+const TEXT_POINT_LEN: u64 = 200;
 /// Most points of a text whose classes are found together.
-const POINTS_MAX: u64 = 1 << 18;
+const TEXT_POINTS_MAX: u64 = 1 << 18;
 
 /// The name of the column of classes.
 const COLUMN: &str = "class";
@@ -71,26 +71,19 @@ pub fn write_text_classes<W: Write>(
     options: &RewriteOptions,
     mut progress: impl FnMut(u64),
 ) -> Result<(W, ClassCounts)> {
-    let of_file = |e: Error| e.of_input(file.name());
     let mut classifier = found.classifier(&Coordinates::F64, options.threads());
-    let (mut lines, mut batch) = (file.lines()?, TextBatch::default());
-    let most = (options.memory / LINE_LEN).clamp(1, POINTS_MAX) as usize;
-    let (mut counts, mut classes, mut values) = (ClassCounts::default(), Vec::new(), Vec::new());
-    loop {
-        lines.next(&mut batch, most, most * LINE_LEN as usize)?;
-        if batch.is_empty() {
-            return Ok((output, counts));
-        }
-        classifier.of(batch.points(), &mut classes).map_err(of_file)?;
-        values.clear();
-        for &class in &classes {
-            counts.classes[class.number()] += 1;
-            values.push(f64::from(class as u8));
-        }
+    let most = (options.memory / TEXT_POINT_LEN).clamp(1, TEXT_POINTS_MAX) as usize;
+    let (mut counts, mut classes) = (ClassCounts::default(), Vec::new());
+    file.write_with((COLUMN, Some(0)), most, &mut output, |points, values| {
+        classifier.of(points, &mut classes)?;
+        classes.iter().for_each(|class| counts.classes[class.number()] += 1);
         counts.points += classes.len() as u64;
-        batch.write(COLUMN, &values, Some(0), &mut output)?;
+        values.clear();
+        values.extend(classes.iter().map(|&class| f64::from(class as u8)));
         progress(counts.points);
-    }
+        Ok(())
+    })?;
+    Ok((output, counts))
 }
 
 /// Writes `file` again with the classes of its points; calls `progress` with the number of points written.

@@ -18,7 +18,8 @@ pub struct Parameters {
     pub residual_slope: f64,
     /// How far the ground may rise above the first surface at once.
     pub step: f64,
-    /// Radius of the largest circle of a triangle of a surface, and how far from its triangles a surface is known.
+    /// Radius of the largest circle of a triangle of a surface, and how far from its triangles a surface is
+    /// known.
     pub reach: f64,
     /// How far points of the ground lie from the surface where it is level.
     pub threshold: f64,

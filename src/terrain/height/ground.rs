@@ -47,7 +47,8 @@ impl Ground {
         Ground::read_where(reader, temp_dir, memory, |_| true, progress)
     }
 
-    /// [`Ground::read`], of the triangles that `keeps` holds for alone; their corners are in stored coordinates.
+    /// [`Ground::read`], of the triangles that `keeps` holds for alone; their corners are in stored
+    /// coordinates.
     ///
     /// # Errors
     /// As [`Ground::read`].

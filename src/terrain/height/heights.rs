@@ -57,8 +57,8 @@ struct Wanted {
 pub enum Outside {
     /// None.
     NoData,
-    /// Those above the nearest place of the mesh, if it is no further away than this. Units: stored ones of the
-    /// ground.
+    /// Those above the nearest place of the mesh, if it is no further away than this. Units: stored ones of
+    /// the ground.
     Within(f64),
 }
 

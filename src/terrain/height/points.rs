@@ -19,6 +19,9 @@ const BATCH_LEN: usize = 1 << 19;
 /// Points read back at once.
 const READ_LEN: usize = 1 << 14;
 
+/// Roundings of limits in steps: a height that is meant to be a limit is neither below nor above it.
+const NUDGE: f64 = 1e-6;
+
 /// A point of the layers, and its stored height above the ground, not below zero.
 type Record = [f64; 4];
 
@@ -124,7 +127,7 @@ impl HeightPoints {
 
     /// Writes points with heights in units of the ground.
     fn add(&mut self, batch: &[Point], heights: &[f64], per_unit: f64) -> Result<()> {
-        let highest = self.stored(self.surface.highest).floor();
+        let highest = self.stored_below(self.surface.highest);
         let mut records = Vec::with_capacity(batch.len());
         for (&[x, y, z], height) in batch.iter().zip(heights).filter(|(_, height)| !height.is_nan()) {
             self.counts.below += u64::from(*height < 0.0);
@@ -140,11 +143,11 @@ impl HeightPoints {
         self.file.append("writing points", bytemuck::cast_slice(&records))
     }
 
-    /// What a height of the world is among stored ones, but for roundings not below it.
-    fn stored(&self, height: f64) -> f64 {
+    /// The greatest stored height that is meant to be at most `height` in the world.
+    fn stored_below(&self, height: f64) -> f64 {
         match self.heights {
             Coordinates::F64 => height,
-            Coordinates::I32 { scale, .. } => height / scale[2] + 1e-6,
+            Coordinates::I32 { scale, .. } => (height / scale[2] + NUDGE).floor(),
         }
     }
 
@@ -167,8 +170,7 @@ impl HeightPoints {
     pub fn layer(&self, threshold: f64) -> LayerReader<'_> {
         let least = match self.heights {
             Coordinates::F64 => threshold,
-            // A height that is meant to be the threshold is not below it.
-            Coordinates::I32 { scale, .. } => (threshold / scale[2] - 1e-6).ceil(),
+            Coordinates::I32 { scale, .. } => (threshold / scale[2] - NUDGE).ceil(),
         };
         LayerReader { points: self, least, read: 0, bytes: Vec::new() }
     }

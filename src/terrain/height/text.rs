@@ -8,7 +8,7 @@ use super::ground::Ground;
 use super::heights::{Heights, Unit};
 use super::points::unit_of;
 use spmesh_base::error::{Error, Result};
-use spmesh_formats::source::{Alignment, TextBatch, TextFile};
+use spmesh_formats::source::{Alignment, TextFile};
 use spmesh_stream::{Coordinates, Crs};
 
 /// Bytes of a line, about.
@@ -47,23 +47,19 @@ pub fn write_text_heights<W: Write>(
     let threads = NonZeroUsize::new(options.threads).unwrap_or(NonZeroUsize::MIN);
     let mut heights_above = Heights::new(ground, Unit::Stored, options.outside, threads);
     let most = (options.memory / (POINT_LEN + 3 * LINE_LEN)).clamp(1, BATCH_MAX);
-    let (mut counts, mut lines) = (Counts::default(), file.lines()?);
-    let (mut batch, mut points, mut heights) = (TextBatch::default(), Vec::new(), Vec::new());
-    loop {
-        lines.next(&mut batch, most as usize, (most * LINE_LEN) as usize)?;
-        if batch.is_empty() {
-            return Ok((output, counts));
-        }
-        points.clear();
-        points.extend(batch.points().iter().map(|&point| alignment.place(point)));
-        counts.outside += heights_above.of(&points, &mut heights).map_err(of_file)?;
-        for height in &mut heights {
+    let (mut counts, mut placed) = (Counts::default(), Vec::new());
+    file.write_with((name, None), most as usize, &mut output, |points, heights| {
+        placed.clear();
+        placed.extend(points.iter().map(|&point| alignment.place(point)));
+        counts.outside += heights_above.of(&placed, heights)?;
+        for height in heights {
             *height *= per_unit;
             counts.without += u64::from(height.is_nan());
             counts.below += u64::from(*height < 0.0);
         }
         counts.points += points.len() as u64;
-        batch.write(name, &heights, None, &mut output)?;
         progress(counts.points);
-    }
+        Ok(())
+    })?;
+    Ok((output, counts))
 }

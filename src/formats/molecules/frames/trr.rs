@@ -39,12 +39,8 @@ struct Head {
 
 impl Trr {
     fn head(&mut self) -> Result<Option<Head>> {
-        if self.words.is_ended()? {
+        if self.words.start(&[MAGIC])?.is_none() {
             return Ok(None);
-        }
-        let magic = self.words.u32()?;
-        if magic != MAGIC {
-            return Err(Error::malformed(format!("found {magic}, expected {MAGIC}, the start of a frame")));
         }
         // The length of the text with a zero, and without.
         let lens = [self.words.u32()?, self.words.u32()?];

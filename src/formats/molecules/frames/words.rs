@@ -39,6 +39,18 @@ impl Words {
         }
     }
 
+    /// The number that starts a frame, one of some; `None` at the end of the input.
+    pub(crate) fn start(&mut self, known: &[u32]) -> Result<Option<u32>> {
+        if self.is_ended()? {
+            return Ok(None);
+        }
+        let (found, usual) = (self.u32()?, known[0]);
+        if known.contains(&found) {
+            return Ok(Some(found));
+        }
+        Err(Error::malformed(format!("found {found}, expected {usual}, the start of a frame")))
+    }
+
     pub(crate) fn array<const N: usize>(&mut self) -> Result<[u8; N]> {
         let mut bytes = [0; N];
         self.input.read_exact(&mut bytes).map_err(|e| match e.kind() {

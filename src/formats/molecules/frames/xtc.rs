@@ -55,13 +55,7 @@ struct Head {
 
 impl Xtc {
     fn head(&mut self) -> Result<Option<Head>> {
-        if self.words.is_ended()? {
-            return Ok(None);
-        }
-        let magic = self.words.u32()?;
-        if !matches!(magic, MAGIC | MAGIC_LARGE) {
-            return Err(Error::malformed(format!("found {magic}, expected {MAGIC}, the start of a frame")));
-        }
+        let Some(magic) = self.words.start(&[MAGIC, MAGIC_LARGE])? else { return Ok(None) };
         let atoms = self.words.i32()?;
         self.words.skip(4 + BOX_LEN)?;
         let again = self.words.i32()?;

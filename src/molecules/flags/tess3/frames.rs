@@ -18,8 +18,8 @@ pub(super) struct FrameFlags {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["model", "assembly"])]
     top: Option<PathBuf>,
 
-    /// Frames of a trajectory, or of a file of several structures, one by one: from A on, before B, each S-th,
-    /// as Python counts them from 0; or the one of this number [default with --top: all]
+    /// Frames of a trajectory, or of a file of several structures, one by one: from A on, before B, each
+    /// S-th, as Python counts them from 0; or the one of this number [default with --top: all]
     #[arg(long, value_name = "A:B:S", conflicts_with_all = ["model", "assembly"])]
     frames: Option<FrameRange>,
 }

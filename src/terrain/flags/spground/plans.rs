@@ -1,6 +1,6 @@
 //! A part of the tiles of a plan, with all around that decides about them.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
@@ -19,8 +19,8 @@ const OF_ALL_POINTS: [&str; 3] = ["--crs", "--scale", "--offset"];
 /// The plan, and which of its tiles are wanted.
 #[derive(Debug, Args)]
 pub(super) struct PlanFlags {
-    /// Plan of all tiles, by spfinalize --plan: FILEs are some of them, and get the classes that a run over all of
-    /// them would give. Reads what is near these files alone
+    /// Plan of all tiles, by spfinalize --plan: FILEs are some of them, and get the classes that a run over
+    /// all of them would give. Reads what is near these files alone
     #[arg(long, value_name = "PLAN", conflicts_with = "lof")]
     plan: Option<PathBuf>,
 
@@ -68,7 +68,7 @@ impl PlanFlags {
         check(&plan).map_err(of_plan)?;
         let wanted = match self.leaf {
             Some(leaf) => of_leaf(&plan, leaf)?,
-            None => flags.inputs()?.iter().map(|file| planned(&plan, file)).collect::<Result<Vec<_>>>()?,
+            None => planned(&plan, &flags.inputs()?)?,
         };
         let crs = plan.header(Kind::Points)?.crs;
         let halo = flags.parameters.parameters().halo(&System::of(&crs)).map_err(of_plan)?;
@@ -93,12 +93,7 @@ fn surroundings<'p>(
     for axis in 0..2 {
         (reach.min[axis], reach.max[axis]) = (window.min[axis] - halo, window.max[axis] + halo);
     }
-    let is_near = |file: &&PlannedFile| {
-        let bounds = plan.in_world(file);
-        bounds.is_some_and(|it| {
-            (0..2).all(|axis| it.min[axis] <= reach.max[axis] && reach.min[axis] <= it.max[axis])
-        })
-    };
+    let is_near = |file: &&PlannedFile| plan.in_world(file).is_some_and(|bounds| bounds.meets(&reach));
     let mut near: Vec<&PlannedFile> = plan.files.iter().filter(is_near).collect();
     // Those without points are in no box.
     near.extend(wanted.iter().filter(|file| file.points == 0));
@@ -114,11 +109,13 @@ fn of_leaf(plan: &Plan, number: u32) -> Result<Vec<&PlannedFile>> {
     Ok(plan.files_from(node).collect())
 }
 
-/// The file of a plan at a path.
-fn planned<'p>(plan: &'p Plan, path: &Path) -> Result<&'p PlannedFile> {
-    plan.file_at(path)?.ok_or_else(|| {
-        Error::usage("is no file of the plan: plan again with all tiles").of_input(path.display().to_string())
-    })
+/// The files of a plan at these paths.
+fn planned<'p>(plan: &'p Plan, paths: &[PathBuf]) -> Result<Vec<&'p PlannedFile>> {
+    let is_in_plan = |(path, found): (&PathBuf, Option<&'p PlannedFile>)| {
+        let strange = || Error::usage("is no file of the plan: plan again with all tiles");
+        found.ok_or_else(|| strange().of_input(path.display().to_string()))
+    };
+    paths.iter().zip(plan.files_at(paths)?).map(is_in_plan).collect()
 }
 
 /// Refuses a plan of space, or of some of the points.
@@ -154,12 +151,8 @@ impl Around {
     /// # Errors
     /// Usage.
     pub(super) fn check_outputs(&self, outputs: &[PathBuf]) -> Result<()> {
-        for output in outputs {
-            if let Some(file) = self.plan.file_at(output)? {
-                let text = "is a tile of the plan, and would be replaced: give another --out-dir";
-                return Err(Error::usage(text).of_input(file.name()));
-            }
-        }
-        Ok(())
+        let Some(file) = self.plan.files_at(outputs)?.into_iter().flatten().next() else { return Ok(()) };
+        let text = "is a tile of the plan, and would be replaced: give another --out-dir";
+        Err(Error::usage(text).of_input(file.name()))
     }
 }
