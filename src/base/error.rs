@@ -139,6 +139,11 @@ impl Error {
             })
     }
 
+    /// The name of the input or output that it concerns, if it has one.
+    pub fn input(&self) -> Option<&str> {
+        self.input.as_deref()
+    }
+
     /// Kind of the failure.
     pub fn kind(&self) -> ErrorKind {
         self.kind

@@ -61,6 +61,12 @@ impl BatchFlags {
         listed(inputs, self.lof.as_deref())
     }
 
+    /// The folder of outputs, if a summary is wanted, or is needed for what is.
+    pub fn with_summary(&self) -> Option<&Path> {
+        let is_wanted = self.keep_going || self.resume || self.summary.is_some();
+        self.out_dir.as_deref().filter(|_| is_wanted)
+    }
+
     /// Where the summary goes: by default, to `name` in the folder of outputs.
     ///
     /// # Errors

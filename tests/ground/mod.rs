@@ -1,6 +1,7 @@
 //! `spground`: classes against the definition on small inputs, for any cutting, and all other bytes of the
 //! files.
 
+mod batches;
 mod definition;
 mod failures;
 

@@ -15,7 +15,7 @@ use crate::programs::{Folder, outcome, run, start};
 use crate::sources::las_file::LasFile;
 
 /// The rows of a summary by the names of their files, which have one each.
-fn rows(folder: &Folder, path: &str) -> BTreeMap<String, Value> {
+pub(crate) fn rows(folder: &Folder, path: &str) -> BTreeMap<String, Value> {
     let text = fs::read_to_string(folder.path(path)).unwrap();
     // After a kill, the last line may be incomplete.
     let complete = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
@@ -56,7 +56,7 @@ fn heights(folder: &Folder, flags: &[&str], files: &[String]) -> (Option<i32>, S
 }
 
 /// The identity of a file: another one has another inode or time.
-fn identity(path: &str) -> (u64, i64, i64) {
+pub(crate) fn identity(path: &str) -> (u64, i64, i64) {
     let found = fs::metadata(path).unwrap();
     (found.ino(), found.mtime(), found.mtime_nsec())
 }

@@ -1,6 +1,6 @@
 //! `spheight`: heights against exact arithmetic on all triangles, and all other bytes of the files.
 
-mod batches;
+pub(crate) mod batches;
 mod failures;
 mod files;
 mod heights;

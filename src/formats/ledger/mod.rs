@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 pub use done::DoneFile;
 pub use row::{Columns, Row};
 pub use run::{Attempt, News, Outcome, Running, attempt, contained};
-pub use state::{FileState, digest_of, modified_of};
+pub use state::{FileState, digest_of, digest_of_times, modified_of};
 
 use done::Done;
 use lock::Lock;

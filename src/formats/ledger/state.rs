@@ -92,3 +92,13 @@ pub fn digest_of(path: &Path) -> io::Result<([u8; 32], u64)> {
 pub fn modified_of(metadata: &Metadata) -> String {
     format!("{}.{:09}", metadata.mtime(), metadata.mtime_nsec())
 }
+
+/// A digest of the sizes and times of files, in any order; a file that is missing has none of them.
+pub fn digest_of_times<'p>(paths: impl IntoIterator<Item = &'p Path>) -> String {
+    let state = |path| {
+        fs::metadata(path).map_or(String::new(), |found| format!("{} {}\n", found.len(), modified_of(&found)))
+    };
+    let mut states: Vec<String> = paths.into_iter().map(state).collect();
+    states.sort_unstable();
+    HEXLOWER.encode(&Sha256::digest(states.concat()))
+}

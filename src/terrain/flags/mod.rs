@@ -1,6 +1,7 @@
 //! Command lines of `spdem`, `spground`, `spheight`, `spcanopy`, `spconstrain` and `spreport`.
 
 mod names;
+mod rewrite;
 mod sheets;
 pub mod spcanopy;
 pub mod spconstrain;

@@ -1,7 +1,9 @@
-//! `spground`: flags, and its report.
+//! `spground`: flags.
 
+mod batch;
 mod parameters;
 mod plans;
+mod report;
 
 use std::io::Write;
 use std::num::NonZeroUsize;
@@ -9,15 +11,16 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Parser;
-use serde_json::json;
 
 use parameters::ParameterFlags;
-use plans::PlanFlags;
+use plans::{Around, PlanFlags};
+use report::rows;
 
 use super::names::{FormatFlag, OutputNames};
+use super::rewrite::Written;
 use crate::ground::{
-    Class, ClassCounts, Found, FoundCounts, GroundPoints, Parameters, RewriteOptions, Settings, Step,
-    write_classes, write_text_classes,
+    ClassCounts, Found, FoundCounts, GroundPoints, RewriteOptions, Settings, Step, write_classes,
+    write_text_classes,
 };
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::{Output, create_folder};
@@ -26,14 +29,10 @@ use spmesh_base::temporary::TemporaryFile;
 use spmesh_formats::detect::{SPGROUND, SPGROUND_MESH};
 use spmesh_formats::ledger::check_distinct;
 use spmesh_formats::source::{Filters, Input, PointFile, SourceOptions};
-use spmesh_shell::batch::listed;
+use spmesh_shell::batch::BatchFlags;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::stats::Row;
 use spmesh_shell::text_flags::TextFlags;
-use spmesh_shell::{
-    Common, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, peak_memory, threads,
-};
-use spmesh_stream::model::bounds::Bounds;
+use spmesh_shell::{Common, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, threads};
 
 const TOOL: &str = "spground";
 
@@ -46,6 +45,8 @@ Examples:
     spdem --step 1 ground.spm -o terrain.tif
   A town with large halls, whose buildings and water are classified already:
     spground tiles/*.laz --preset urban --keep-class-of 6,7,9,18 --out-dir classified
+  A night's work: bad files are left out, and what is done is skipped when it runs again:
+    find tiles -name '*.laz' | spground --lof - --out-dir classified --keep-going --skip-existing
   One tile of a country, in a job of its own:
     spfinalize --plan plan.json tiles/*.laz
     spground --plan plan.json tiles/17.laz --out-dir classified
@@ -65,12 +66,16 @@ to 3 points with nothing for --noise-gap below them, 1 for all others. Records k
 the set of points alone: not on how it is cut into files, on their order, on threads or on memory. Each output gets its name \
 when it is complete; after a failure, only the outputs of earlier files exist.
 
+With --keep-going, --skip-existing or --summary, a summary has a line for each file as soon as it is done: its output, \
+whether it failed and why, points of each class, seconds, and what the output depends on. A file that is found to be \
+damaged while it is read counts no more, and the others are read again without it.
+
 Lengths are in metres, whatever the unit of the points, if their coordinate reference system states it. Points in degrees \
 are refused. Files are read twice, so they cannot come from a pipe. All tiles are needed together: a tile alone lacks what \
 is around it.
 
-Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
-memory, 6 input of another version of spmesh.";
+Exit codes: 0 success, 1 I/O or runtime failure, or a file failed with --keep-going, 2 usage, 3 malformed or truncated \
+input, 5 not enough memory, 6 input of another version of spmesh.";
 
 /// Find which points are on the ground.
 ///
@@ -78,22 +83,26 @@ memory, 6 input of another version of spmesh.";
 /// any format, and writes the triangulation of the ground.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+#[command(mut_arg("out_dir", |folder| folder.help("Folder for the files with classes, which keep their names; it is \
+    made if necessary")))]
+#[command(mut_arg("summary", |summary| summary.help("Where the summary goes, a line per file: JSON Lines, a table if \
+    the name ends in .tsv, or Parquet if it ends in .parquet; - is stdout [default: summary.jsonl in the folder, with \
+    --keep-going or --skip-existing]")))]
+#[command(mut_arg("resume", |resume| resume.help("Skip the files that an earlier run to the same folder has done with \
+    the same flags, if all files are the same still by size and time")))]
+#[command(mut_arg("keep_going", |keep_going| keep_going.help("Leave files that are damaged out, as if they had not \
+    been given")))]
 pub struct Flags {
     /// Files of points: one set
     #[arg(value_name = "FILE")]
     inputs: Vec<PathBuf>,
 
-    /// File with names of input files, one per line; - is stdin
-    #[arg(long, value_name = "FILE")]
-    lof: Option<PathBuf>,
-
     /// File for the points of a single input (.las, .laz), or for the mesh of the ground of all (.spm)
     #[arg(short, long, value_name = "FILE", required_unless_present = "out_dir", conflicts_with = "out_dir")]
     output: Option<PathBuf>,
 
-    /// Folder for the files with classes, which keep their names; it is made if necessary
-    #[arg(long, value_name = "FOLDER")]
-    out_dir: Option<PathBuf>,
+    #[command(flatten)]
+    batch: BatchFlags,
 
     /// File for counts and parameters, as JSON
     #[arg(long, value_name = "FILE")]
@@ -182,51 +191,71 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         around.check_outputs(&outputs)?;
     }
     // Before the check, which needs the folder to tell its files.
-    if let Some(folder) = &flags.out_dir {
+    if let Some(folder) = &flags.batch.out_dir {
         create_folder(folder)?;
     }
     let flag = if flags.output.is_some() { "--output" } else { "--out-dir" };
     let named = outputs.iter().map(|output| (flag, output.as_path()));
     let others = mesh.map(|path| ("--output", path)).into_iter();
+    let summary = flags.batch.summary.as_deref().map(|path| ("--summary", path));
     let report = flags.report.as_deref().map(|path| ("--report", path));
-    check_apart([], &named.chain(others).chain(report).collect::<Vec<_>>())?;
-    let input = match &around {
-        Some(around) => Input::open(&around.inputs, &around.options(flags.source_options()))?,
-        None => Input::open(&paths, &flags.source_options())?,
-    };
-    input.notices().iter().for_each(|text| flags.notice(text));
-    // All headers are looked at before the work begins.
-    let files = if mesh.is_some() { Vec::new() } else { flags.files(&paths, &outputs)? };
-    let mesh = mesh.map(|path| Output::create(path, false)).transpose()?;
+    check_apart([], &named.chain(others).chain(summary).chain(report).collect::<Vec<_>>())?;
     let report = flags.report.as_deref().map(|path| Output::create(path, false)).transpose()?;
+    let finished = match flags.batch.with_summary() {
+        Some(folder) => batch::run(&flags, around.as_ref(), folder, paths, outputs)?,
+        None => run_plain(&flags, around.as_ref(), &paths, &outputs)?,
+    };
+    if let Some(mut output) = report {
+        let text = format!("{:#}\n", flags.report_of(&finished));
+        output.write_all(text.as_bytes()).map_err(|e| Error::io("writing the report", e))?;
+        output.commit()?;
+    }
+    flags.stats.print(|| Report::of(started.elapsed()).counts(rows(&finished)));
+    finished.failure.map_or(Ok(()), |failure| Err(failure.into()))
+}
+
+/// All of a run.
+#[derive(Default)]
+struct Finished {
+    /// `None` if all files had been done before.
+    found: Option<FoundCounts>,
+    counts: ClassCounts,
+    /// Files with classes.
+    files: u64,
+    failure: Option<Error>,
+}
+
+/// Writes the mesh, or file by file until one fails.
+fn run_plain(
+    flags: &Flags,
+    around: Option<&Around>,
+    paths: &[PathBuf],
+    outputs: &[PathBuf],
+) -> Result<Finished> {
+    // All headers are looked at before the work begins.
+    let mesh = flags.mesh();
+    let files = if mesh.is_some() { Vec::new() } else { flags.files(paths, outputs)? };
+    let mesh = mesh.map(|path| Output::create(path, false)).transpose()?;
 
     // What cannot be written is better known before the work than after it.
     TemporaryFile::create(flags.temp_dir.as_deref())?;
     outputs.iter().try_for_each(|output| Output::create(output, true).map(drop))?;
 
-    let found = flags.find(&input, around.as_ref().and_then(|around| around.window.as_ref()))?;
-    if found.counts().triangles == 0 {
-        flags.notice(
-            "there is no ground: it takes three cells with points that are no objects, not on a line",
-        );
-    }
+    let inputs = around.map_or(paths, |around| &around.inputs);
+    let (input, found) = flags.found(around, inputs)?;
     let mut counts = ClassCounts::default();
     if let Some(mut mesh) = mesh {
         let points = GroundPoints::new(&found, &input, flags.threads(), flags.memory / 4);
         flags.settings().meshing().write(&points, &mut mesh)?;
         mesh.commit()?;
+        input.withheld_notice().iter().for_each(|text| flags.notice(text));
     }
-    for (file, output) in files.iter().zip(&outputs) {
-        flags.write(&found, file, output, &mut counts)?;
+    for (file, output) in files.iter().zip(outputs) {
+        let written = flags.rewrite(&found, file, output)?;
+        written.notices.iter().for_each(|text| flags.notice(&format!("{}: {text}", file.name())));
+        counts.add(&written.counts);
     }
-    if let Some(mut output) = report {
-        let text = format!("{:#}\n", flags.report_of(found.counts(), &counts, files.len()));
-        output.write_all(text.as_bytes()).map_err(|e| Error::io("writing the report", e))?;
-        output.commit()?;
-    }
-    input.withheld_notice().iter().filter(|_| files.is_empty()).for_each(|text| flags.notice(text));
-    flags.stats.print(|| Report::of(started.elapsed()).counts(rows(found.counts(), &counts)));
-    Ok(())
+    Ok(Finished { found: Some(found.counts().clone()), counts, files: files.len() as u64, failure: None })
 }
 
 impl Flags {
@@ -246,7 +275,7 @@ impl Flags {
     }
 
     fn inputs(&self) -> Result<Vec<PathBuf>> {
-        let files = listed(&self.inputs, self.lof.as_deref())?;
+        let files = self.batch.files(&self.inputs)?;
         for file in files.iter().filter(|_| self.mesh().is_none()) {
             let is_pipe = std::fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir());
             if is_pipe || file.as_os_str() == "-" {
@@ -267,7 +296,7 @@ impl Flags {
     fn names(&self) -> OutputNames<'_> {
         OutputNames {
             output: self.output.as_deref(),
-            folder: self.out_dir.as_deref(),
+            folder: self.batch.out_dir.as_deref(),
             format: self.format,
             others: &["spm"],
         }
@@ -310,7 +339,22 @@ impl Flags {
         Settings { memory: self.memory, threads: self.threads().get(), temp_dir: self.temp_dir.clone() }
     }
 
-    fn find(&self, input: &Input, window: Option<&Bounds>) -> Result<Found> {
+    /// What is ground of all points.
+    fn found(&self, around: Option<&Around>, inputs: &[PathBuf]) -> Result<(Input, Found)> {
+        let options = self.source_options();
+        let input =
+            Input::open(inputs, &around.map_or_else(|| options.clone(), |it| it.options(options.clone())))?;
+        input.notices().iter().for_each(|text| self.notice(text));
+        let found = self.find(&input, around)?;
+        if found.counts().triangles == 0 {
+            self.notice(
+                "there is no ground: it takes three cells with points that are no objects, not on a line",
+            );
+        }
+        Ok((input, found))
+    }
+
+    fn find(&self, input: &Input, around: Option<&Around>) -> Result<Found> {
         let total = input.description().stated_points;
         let mut reading = Progress::new(&self.common, "reading points", total);
         let mut opening = None;
@@ -322,11 +366,12 @@ impl Flags {
             }
             Step::Surface => opening = None,
         };
+        let window = around.and_then(|around| around.window.as_ref());
         Found::find(input, &self.parameters.parameters(), &self.settings(), window, &mut show)
     }
 
     /// Writes one file.
-    fn write(&self, found: &Found, file: &PointFile, output: &Path, counts: &mut ClassCounts) -> Result<()> {
+    fn rewrite(&self, found: &Found, file: &PointFile, output: &Path) -> Result<Written<ClassCounts>> {
         let options = RewriteOptions {
             filters: self.filters(),
             is_compressed: self.names().is_compressed(output),
@@ -348,66 +393,6 @@ impl Flags {
         };
         written.commit()?;
         drop(progress);
-        notices.iter().for_each(|text| self.notice(&format!("{}: {text}", file.name())));
-        counts.add(&of_file);
-        Ok(())
+        Written::at(output, of_file, notices)
     }
-
-    /// The report. A mesh has no points of each class.
-    fn report_of(&self, found: &FoundCounts, counts: &ClassCounts, files: usize) -> serde_json::Value {
-        let Parameters {
-            cell,
-            window,
-            slope,
-            residual_slope,
-            step,
-            reach,
-            threshold,
-            scaling,
-            pit,
-            highest,
-            gap,
-        } = self.parameters.parameters();
-        let mut report = json!({
-            "parameters": {
-                "cell": cell, "window": window, "slope": slope, "residual_slope": residual_slope, "rise": step,
-                "reach": reach, "threshold": threshold, "scaling": scaling, "pit": pit, "max_height": highest, "noise_gap": gap,
-            },
-            "points": found.points,
-            "cells": found.cells,
-            "noise_cells": found.noise,
-            "object_cells": found.objects,
-            "triangles": found.triangles,
-        });
-        if files > 0 {
-            let classes = Class::ALL.iter().zip(counts.classes);
-            report["files"] = json!(files);
-            report["points_written"] = json!(counts.points);
-            report["kept"] = json!(counts.kept);
-            report["classes"] =
-                classes.map(|(class, count)| ((*class as u8).to_string(), json!(count))).collect();
-        }
-        report
-    }
-}
-
-fn rows(found: &FoundCounts, counts: &ClassCounts) -> Vec<Row<u64>> {
-    let mut rows = vec![
-        ("points", "points", found.points),
-        ("cells", "cells", found.cells),
-        ("cells of noise", "noise_cells", found.noise),
-        ("triangles of the surface", "triangles", found.triangles),
-    ];
-    if counts.points > 0 {
-        let [other, ground, low, high] = counts.classes;
-        rows.extend([
-            ("points of the ground (2)", "ground", ground),
-            ("low noise (7)", "low_noise", low),
-            ("high noise (18)", "high_noise", high),
-            ("other points (1)", "other", other),
-            ("points that kept their class", "kept", counts.kept),
-        ]);
-    }
-    rows.push(("peak memory (bytes)", "peak_memory_bytes", peak_memory()));
-    rows
 }

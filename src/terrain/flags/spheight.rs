@@ -2,7 +2,6 @@
 
 mod batch;
 
-use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -10,7 +9,7 @@ use std::time::Instant;
 use clap::Parser;
 
 use super::names::{ENDINGS, FormatFlag, OutputNames};
-
+use super::rewrite::{Rewriter, Stated, Written};
 use crate::height::{
     Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights, write_text_heights,
 };
@@ -18,8 +17,7 @@ use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
 use spmesh_base::output::{Output, create_folder};
 use spmesh_base::places::check_apart;
-use spmesh_formats::detect::SPHEIGHT;
-use spmesh_formats::ledger::{Outcome, modified_of};
+use spmesh_formats::ledger::Outcome;
 use spmesh_formats::source::PointFile;
 use spmesh_shell::batch::BatchFlags;
 use spmesh_shell::crs::CrsFlag;
@@ -165,7 +163,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, written: &Written) {
+    fn add(&mut self, written: &Written<Counts>) {
         let Written { counts, bytes, .. } = written;
         self.files += 1;
         self.points += counts.points;
@@ -173,31 +171,6 @@ impl Sums {
         self.without += counts.without;
         self.output_bytes += bytes;
     }
-}
-
-/// What a header states of its points.
-struct Stated {
-    points: u64,
-    bounds: Option<Bounds>,
-}
-
-impl Stated {
-    /// A text states nothing.
-    fn by(file: &PointFile) -> Stated {
-        match file {
-            PointFile::Las(file) => Stated { points: file.points(), bounds: file.stated_bounds() },
-            PointFile::Text(_) => Stated { points: u64::MAX, bounds: None },
-        }
-    }
-}
-
-/// A file with heights.
-struct Written {
-    counts: Counts,
-    bytes: u64,
-    /// When it was last changed: see [`modified_of`].
-    modified: String,
-    notices: Vec<String>,
 }
 
 /// All of a run.
@@ -221,13 +194,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let paths = flags.inputs()?;
     let outputs = flags.names().of(&paths)?;
     outputs.iter().take(1).try_for_each(|output| flags.options(output).map(drop))?;
-    let finished = match &flags.batch {
-        BatchFlags { out_dir: Some(folder), summary, resume, keep_going, .. }
-            if *keep_going || *resume || summary.is_some() =>
-        {
-            batch::run(&flags, folder, paths, outputs)?
-        }
-        _ => run_plain(&flags, &paths, &outputs)?,
+    let finished = match flags.batch.with_summary() {
+        Some(folder) => batch::run(&flags, folder, paths, outputs)?,
+        None => run_plain(&flags, &paths, &outputs)?,
     };
     if finished.sums.outside > 0 {
         flags.notice(&flags.about_outside(&finished.sums, finished.triangles > 0));
@@ -249,7 +218,8 @@ fn run_plain(flags: &Flags, paths: &[PathBuf], outputs: &[PathBuf]) -> Result<Fi
     let files: Vec<PointFile> =
         paths.iter().zip(outputs).map(|(path, output)| flags.open(path, output)).collect::<Result<_>>()?;
     files.iter().flat_map(PointFile::notices).for_each(|text| flags.notice(text));
-    let (ground, ground_bytes) = flags.ground(flags.window(files.iter().map(Stated::by)), outputs)?;
+    let (ground, ground_bytes) =
+        flags.ground(flags.window(&files.iter().map(Stated::by).collect::<Vec<_>>()), outputs)?;
     let points = |file: &PointFile| match file {
         PointFile::Las(file) => Some(file.points()),
         PointFile::Text(_) => None,
@@ -259,7 +229,7 @@ fn run_plain(flags: &Flags, paths: &[PathBuf], outputs: &[PathBuf]) -> Result<Fi
     let mut sums = Sums::default();
     for (file, output) in files.iter().zip(outputs) {
         let before = sums.points;
-        let written = flags.write(&ground, file, output, |points| progress.set(before + points))?;
+        let written = flags.rewrite(&ground, file, output, |points| progress.set(before + points))?;
         written.notices.iter().for_each(|text| flags.notice(&format!("{}: {text}", file.name())));
         sums.add(&written);
     }
@@ -290,12 +260,6 @@ impl Flags {
         Ok(files)
     }
 
-    fn open(&self, input: &Path, output: &Path) -> Result<PointFile> {
-        let file = PointFile::open(input, &SPHEIGHT, self.temp_dir.as_deref(), &self.text.options())?;
-        self.names().check(&file, output)?;
-        Ok(file)
-    }
-
     /// Reads the ground in a window, or all of it; also returns the number of bytes that were read.
     fn ground(&self, window: Option<Bounds>, outputs: &[PathBuf]) -> Result<(Ground, u64)> {
         let needs = Needs { window, beyond: Some("a height above the ground") };
@@ -309,24 +273,24 @@ impl Flags {
 
     /// The box that the headers of the files state; `None` if the ground is needed beyond it: the place
     /// nearest to a point may be anywhere.
-    fn window(&self, files: impl IntoIterator<Item = Stated>) -> Option<Bounds> {
+    fn window(&self, files: &[Stated]) -> Option<Bounds> {
         if self.outside() == Outside::NEAREST {
             return None;
         }
-        let stated = files.into_iter().filter(|file| file.points > 0).map(|file| file.bounds);
+        let stated = files.iter().filter(|file| file.points > 0).map(|file| file.bounds);
         let Bounds { min: [x, y, _], max: [max_x, max_y, _] } =
             stated.collect::<Option<Vec<Bounds>>>()?.into_iter().reduce(Bounds::union)?;
         Some(Bounds::over([x, y], [max_x, max_y]))
     }
 
     /// Writes one file.
-    fn write(
+    fn rewrite(
         &self,
         ground: &Ground,
         file: &PointFile,
         output: &Path,
         progress: impl FnMut(u64),
-    ) -> Result<Written> {
+    ) -> Result<Written<Counts>> {
         let options = self.options(output)?;
         let created = Output::create(output, true)?;
         let (written, counts) = match file {
@@ -337,12 +301,9 @@ impl Flags {
             }
         };
         written.commit()?;
-        // Fewer than were written: the header is written twice.
-        let failed = |e| Error::io("looking at the output", e).of_input(output.display().to_string());
-        let found = fs::metadata(output).map_err(failed)?;
         let notices = counts.notices.iter().cloned().chain(about_below(counts.below, counts.points));
-        let (bytes, modified) = (found.len(), modified_of(&found));
-        Ok(Written { bytes, modified, notices: notices.collect(), counts })
+        let notices = notices.collect();
+        Written::at(output, counts, notices)
     }
 
     fn options(&self, output: &Path) -> Result<FileOptions> {
