@@ -5,7 +5,10 @@ mod batches;
 mod definition;
 mod failures;
 
+use std::collections::BTreeMap;
+
 use spmesh_base::random::Random;
+use spmesh_stream::{Event, StreamReader};
 
 use crate::height::Parts;
 use crate::programs::{Folder, outcome, run, sample};
@@ -172,6 +175,66 @@ fn text_has_classes() {
     // Files that get classes are read twice.
     let done = run("spground", &["-", "-o", &output], text.as_bytes());
     assert_eq!(outcome(&done).0, Some(2));
+}
+
+/// A stream keeps its attributes and tags, and gets one more attribute.
+#[test]
+fn streams_have_classes() {
+    let folder = Folder::new();
+    let points = scene(&mut Random::new(6), 3000, 30, 0.1);
+    let mut file = unclassified(&points);
+    let intensity = |point: &[i32; 3]| point[2].unsigned_abs() as u16;
+    file.records.iter_mut().zip(&points).for_each(|(record, point)| record.intensity = intensity(point));
+    let classes = found(&folder, &file, &[]);
+    let expected: BTreeMap<[i32; 3], u8> = points.iter().copied().zip(classes).collect();
+    let (input, out, mesh) = (folder.path("in.las"), folder.path("out"), folder.path("ground.spm"));
+    for flags in [&["--attributes", "intensity"][..], &["--leaf-points", "100"]] {
+        let stream = run("spfinalize", &[&["-q", &input][..], flags].concat(), &[]).stdout;
+        let points_file = folder.write("points.spm", &stream);
+        let done = run("spground", &[&points_file, "--out-dir", &out], &[]);
+        assert!(done.status.success(), "{:?}", outcome(&done));
+        let classified = std::fs::read(folder.path("out/points.spm")).unwrap();
+        let [mut before, mut after] =
+            [&stream, &classified].map(|bytes| StreamReader::new(&bytes[..], "it").unwrap());
+        let names: Vec<&str> = after.header().attributes.iter().map(|one| &one.name[..]).collect();
+        assert_eq!(names.last(), Some(&"classification"));
+        let row_len = names.len() * 2 - 1;
+        let mut counts = [0; 2];
+        loop {
+            let [old, new] = [&mut before, &mut after].map(|reader| reader.next_event().unwrap());
+            if let (Some(Event::Points(old)), Some(Event::Points(new))) = (&old, &new) {
+                assert_eq!(old, new);
+                counts[0] += new.len();
+                for (point, row) in new.iter().zip(after.rows().chunks_exact(row_len)) {
+                    let stored = point.map(|value| value as i32);
+                    assert_eq!(row.last(), Some(&expected[&stored]));
+                    assert!(row_len == 1 || row[..2] == intensity(&stored).to_le_bytes());
+                }
+            } else {
+                counts[1] += usize::from(matches!(old, Some(Event::Cells(_))));
+                assert_eq!(old, new);
+            }
+            if new.is_none() {
+                break;
+            }
+        }
+        assert!(counts[0] == 3000 && counts[1] > 0, "{counts:?}");
+        // Twice the same attribute, and other endings.
+        let again =
+            run("spground", &[&folder.path("out/points.spm"), "--out-dir", &folder.path("again")], &[]);
+        let (code, message) = outcome(&again);
+        assert!(code == Some(2) && message.contains("attribute classification already"), "{message}");
+        let (code, message) = outcome(&run("spground", &[&points_file, "-o", &folder.path("out.laz")], &[]));
+        assert!(code == Some(2) && message.contains("streams stay streams"), "{message}");
+        let cut = folder.write("cut.spm", &stream[..stream.len() - 30]);
+        let (code, message) = outcome(&run("spground", &[&cut, "--out-dir", &folder.path("cut")], &[]));
+        assert!(code == Some(3) && message.contains("cut.spm"), "{message}");
+        assert!(folder.names("cut").is_empty());
+    }
+    let (code, message) = outcome(&run("spground", &[&input, "-o", &mesh], &[]));
+    assert_eq!(code, Some(0), "{message}");
+    let (code, message) = outcome(&run("spground", &[&mesh, "--out-dir", &out], &[]));
+    assert!(code == Some(2) && message.contains("expected points"), "{message}");
 }
 
 /// Jobs that see no more than the halo of their tiles.

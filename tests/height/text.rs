@@ -1,4 +1,8 @@
-//! Lines of text with heights.
+//! Lines of text, and streams, with heights.
+
+use std::collections::HashMap;
+
+use spmesh_stream::{Event, StreamReader};
 
 use super::{Parts, heights_in, mesh_of, scattered};
 use crate::programs::{Folder, outcome, run};
@@ -33,6 +37,39 @@ fn heights_are_those_of_las_files() {
         assert!(found.is_nan() || (found - 0.01 * f64::from(height)).abs() < 0.0056, "{after}: {height}");
     }
     assert!(without > 0 && found.lines().count() == 500);
+}
+
+/// A stream gets one more attribute of the same heights.
+#[test]
+fn heights_of_streams_are_those_of_text() {
+    let folder = Folder::new();
+    let (ground, points) = (scattered(300, 1000, 4), scattered(500, 1100, 5));
+    let expected = Parts::of(&heights_in(&folder, &mesh_of(&ground.bytes()), &points.bytes(), "h.las", &[]));
+    let expected: HashMap<[i32; 3], i32> = expected.points().into_iter().zip(expected.heights()).collect();
+    let stream = folder.write("points.spm", run("spfinalize", &["-q", "-"], &points.bytes()).stdout);
+    let (ground, out) = (folder.path("ground.spm"), folder.path("heights.spm"));
+    let done = run("spheight", &["--ground", &ground, &stream, "-o", &out], &[]);
+    assert!(done.status.success(), "{:?}", outcome(&done));
+    let bytes = std::fs::read(&out).unwrap();
+    let mut reader = StreamReader::new(&bytes[..], "heights").unwrap();
+    let attribute = reader.header().attributes.iter().next().unwrap().clone();
+    assert_eq!(attribute.name, "HeightAboveGround");
+    let [mut found, mut without] = [0, 0];
+    while let Some(event) = reader.next_event().unwrap() {
+        let Event::Points(points) = event else { continue };
+        for (point, row) in points.iter().zip(reader.rows().chunks_exact(8)) {
+            let height = expected[&point.map(|value| value as i32)];
+            let stored = attribute.value(row);
+            assert_eq!(stored.is_none(), height == i32::MIN);
+            assert!(stored.is_none_or(|value| (value - 0.01 * f64::from(height)).abs() < 0.0051));
+            without += u32::from(stored.is_none());
+            found += 1;
+        }
+    }
+    assert!(found == 500 && without > 0);
+    let (code, message) =
+        outcome(&run("spheight", &["--ground", &ground, &stream, "-o", &out, "--replace-z"], &[]));
+    assert!(code == Some(2) && message.contains("--replace-z"), "{message}");
 }
 
 #[test]

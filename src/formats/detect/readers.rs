@@ -28,6 +28,11 @@ fn structures() -> Vec<Format> {
     formats_with(|row| row.atoms.is_some())
 }
 
+/// The formats whose points are written again: see [`crate::source::PointFile`].
+fn rewritten() -> Vec<Format> {
+    vec![Format::Las, Format::Stream, Format::Text, Format::OtherText]
+}
+
 const fn reader(tool: &'static str, formats: fn() -> Vec<Format>) -> Reader {
     Reader { tool, formats, has_raw: false, axes: 3 }
 }
@@ -58,13 +63,13 @@ pub const TESS3: Reader = reader("tess3", || [structures(), vec![Format::Off], p
 pub const SPCANOPY: Reader = reader("spcanopy", || vec![Format::Las]);
 
 /// `spground`, for the files whose points get classes.
-pub const SPGROUND: Reader = reader("spground", || vec![Format::Las, Format::Text, Format::OtherText]);
+pub const SPGROUND: Reader = reader("spground", rewritten);
 
 /// `spground`, for points whose ground is triangulated.
 pub const SPGROUND_MESH: Reader = reader("spground", points);
 
 /// `spheight`, for the files whose points get heights.
-pub const SPHEIGHT: Reader = reader("spheight", || vec![Format::Las, Format::Text, Format::OtherText]);
+pub const SPHEIGHT: Reader = reader("spheight", rewritten);
 
 /// `spreport`.
 pub const SPREPORT: Reader = reader("spreport", points);

@@ -32,6 +32,7 @@ pub(crate) mod record_reader;
 pub(crate) mod records;
 pub(crate) mod row_plan;
 pub(crate) mod stream;
+mod stream_file;
 pub(crate) mod survey;
 pub(crate) mod vertices;
 
@@ -71,4 +72,5 @@ pub use point_events::PointEvents;
 pub use point_file::PointFile;
 pub use reader::{Description, PointReader};
 pub use row_plan::AttributeChoice;
+pub use stream_file::StreamFile;
 pub use survey::{Extent, Survey};

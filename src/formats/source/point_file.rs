@@ -7,6 +7,7 @@ use crate::las::LasFile;
 use crate::source::TextOptions;
 use crate::source::input::check_text_options;
 use crate::source::origin::{Admitted, Origin, name_of};
+use crate::source::stream_file::StreamFile;
 use crate::text::copy::TextFile;
 use spmesh_base::error::{Error, Result};
 
@@ -17,6 +18,8 @@ pub enum PointFile {
     Las(Box<LasFile>),
     /// Lines of text.
     Text(Box<TextFile>),
+    /// A stream of points.
+    Stream(Box<StreamFile>),
 }
 
 impl PointFile {
@@ -46,6 +49,9 @@ impl PointFile {
             Ok((format, plain.is_compressed()))
         };
         let (format, is_compressed) = detect().map_err(|e| e.of_input(&name))?;
+        if format == Format::Stream {
+            return Ok(PointFile::Stream(Box::new(StreamFile::new(name, origin, notices)?)));
+        }
         if format != Format::Las {
             return Ok(PointFile::Text(Box::new(TextFile::new(name, origin, text, notices)?)));
         }
@@ -59,6 +65,16 @@ impl PointFile {
         match self {
             PointFile::Las(file) => file.name(),
             PointFile::Text(file) => file.name(),
+            PointFile::Stream(file) => file.name(),
+        }
+    }
+
+    /// How many points it has, if that is stated.
+    pub fn stated_points(&self) -> Option<u64> {
+        match self {
+            PointFile::Las(file) => Some(file.points()),
+            PointFile::Text(_) => None,
+            PointFile::Stream(file) => file.header().points,
         }
     }
 
@@ -67,6 +83,7 @@ impl PointFile {
         match self {
             PointFile::Las(file) => file.notices(),
             PointFile::Text(file) => file.notices(),
+            PointFile::Stream(file) => file.notices(),
         }
     }
 }

@@ -20,8 +20,8 @@ pub(super) enum FormatFlag {
 /// The formats that endings of names stand for.
 pub(super) const ENDINGS: Names<FormatFlag> = &[("las", FormatFlag::Las), ("laz", FormatFlag::Laz)];
 
-/// Endings of points: LAS files, and text.
-const OF_POINTS: &[&str] = &["las", "laz", "xyz", "csv", "tsv", "txt", "asc", "dat"];
+/// Endings of points: LAS files, streams, and text.
+const OF_POINTS: &[&str] = &["las", "laz", "spm", "xyz", "csv", "tsv", "txt", "asc", "dat"];
 
 /// Where outputs go.
 #[derive(Debug, Clone, Copy)]
@@ -31,8 +31,6 @@ pub(super) struct OutputNames<'f> {
     /// The folder of many.
     pub(super) folder: Option<&'f Path>,
     pub(super) format: Option<FormatFlag>,
-    /// Endings that the name of a single output may have, beside those of points.
-    pub(super) others: &'static [&'static str],
 }
 
 impl OutputNames<'_> {
@@ -48,7 +46,7 @@ impl OutputNames<'_> {
                 return Err(Error::usage(what).of_input(name));
             }
             if self.format.is_none() {
-                endings::check(output, &[OF_POINTS, self.others])?;
+                endings::check(output, &[OF_POINTS])?;
             }
             return Ok(vec![output.to_path_buf()]);
         }
@@ -73,12 +71,19 @@ impl OutputNames<'_> {
     /// Usage, if it does not.
     pub(super) fn check(&self, file: &PointFile, output: &Path) -> Result<()> {
         let is_las = of_ending(ENDINGS, output).is_some();
+        let is_stream = output.extension().is_some_and(|end| end.eq_ignore_ascii_case("spm"));
         let what = match file {
             PointFile::Las(_) if self.output.is_some() && self.format.is_none() && !is_las => {
                 "points are written to NAME.las or NAME.laz, or choose with --format"
             }
             PointFile::Text(_) if self.format.is_some() => "--format is for LAS files: text stays text",
-            PointFile::Text(_) if self.output.is_some() && is_las => {
+            PointFile::Stream(_) if self.format.is_some() => {
+                "--format is for LAS files: streams stay streams"
+            }
+            PointFile::Stream(_) if self.output.is_some() && !is_stream => {
+                "streams stay streams: give a name that ends in .spm, or --out-dir"
+            }
+            PointFile::Text(_) if self.output.is_some() && (is_las || is_stream) => {
                 "text stays text: give a name such as points.csv"
             }
             _ => return Ok(()),

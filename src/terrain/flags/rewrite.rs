@@ -59,11 +59,11 @@ pub(super) struct Stated {
 }
 
 impl Stated {
-    /// A text states nothing.
+    /// Texts state nothing, and streams need not.
     pub(super) fn by(file: &PointFile) -> Stated {
         match file {
             PointFile::Las(file) => Stated { points: file.points(), bounds: file.stated_bounds() },
-            PointFile::Text(_) => Stated { points: u64::MAX, bounds: None },
+            _ => Stated { points: u64::MAX, bounds: None },
         }
     }
 }

@@ -20,7 +20,7 @@ use super::names::{FormatFlag, OutputNames};
 use super::rewrite::Written;
 use crate::ground::{
     ClassCounts, Found, FoundCounts, GroundPoints, RewriteOptions, Settings, Step, write_classes,
-    write_text_classes,
+    write_stream_classes, write_text_classes,
 };
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::{Output, create_folder};
@@ -79,8 +79,8 @@ input, 5 not enough memory, 6 input of another version of spmesh.";
 
 /// Find which points are on the ground.
 ///
-/// Reads LAS, LAZ or COPC files, or text of points, and writes them again with classes; or reads points of
-/// any format, and writes the triangulation of the ground.
+/// Reads LAS, LAZ or COPC files, text, or streams of points, and writes them again with classes; or reads
+/// points of any format, and writes the triangulation of the ground.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 #[command(mut_arg("out_dir", |folder| folder.help("Folder for the files with classes, which keep their names; it is \
@@ -298,7 +298,6 @@ impl Flags {
             output: self.output.as_deref(),
             folder: self.batch.out_dir.as_deref(),
             format: self.format,
-            others: &["spm"],
         }
     }
 
@@ -378,16 +377,16 @@ impl Flags {
             memory: self.memory / 4,
             threads: self.threads().get(),
         };
-        let total = match file {
-            PointFile::Las(file) => Some(file.points()),
-            PointFile::Text(_) => None,
-        };
-        let mut progress = Progress::new(&self.common, "writing points", total);
+        let mut progress = Progress::new(&self.common, "writing points", file.stated_points());
         let (created, mut show) = (Output::create(output, true)?, |points| progress.set(points));
         let (written, of_file, notices) = match file {
             PointFile::Las(file) => write_classes(found, file, created, &options, show)?,
             PointFile::Text(file) => {
                 let (written, counts) = write_text_classes(found, file, created, &options, &mut show)?;
+                (written, counts, Vec::new())
+            }
+            PointFile::Stream(file) => {
+                let (written, counts) = write_stream_classes(found, file, created, &options, &mut show)?;
                 (written, counts, Vec::new())
             }
         };

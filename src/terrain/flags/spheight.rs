@@ -11,7 +11,8 @@ use clap::Parser;
 use super::names::{ENDINGS, FormatFlag, OutputNames};
 use super::rewrite::{Rewriter, Stated, Written};
 use crate::height::{
-    Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights, write_text_heights,
+    Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights, write_stream_heights,
+    write_text_heights,
 };
 use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
@@ -61,7 +62,8 @@ integers with the scale of z. Points outside of the mesh of the ground have no h
 integer stands for that. With --replace-z they get the height above the nearest place of the mesh.
 
 Lines of text are written again with one more column of heights, which have as many decimals as the elevation of the \
-first point, from 3 to 9; NaN stands for no height. A line of names gets --name.
+first point, from 3 to 9; NaN stands for no height. A line of names gets --name. \
+Streams get an attribute of 64-bit numbers.
 
 COPC files are written as LAZ: their index does not fit the new records. The ground may be larger than memory: its \
 triangles wait in a temporary file (13 bytes each, 19 if coordinates are no integers), and each file is read and written once, in batches. Each output \
@@ -75,9 +77,10 @@ fails leaves no output of an earlier run.
 Exit codes: 0 success, 1 I/O or runtime failure, or a file failed with --keep-going, 2 usage, 3 malformed or truncated input, 5 not enough \
 memory, 6 input of another version of spmesh.";
 
-/// Write LAS, LAZ and text files again with the heights of their points above the ground.
+/// Write LAS, LAZ, text and streams of points again with the heights of their points above the ground.
 ///
-/// Reads a triangle mesh of the ground, as spdelaunay2d writes it, and LAS, LAZ or COPC files, or text.
+/// Reads a triangle mesh of the ground, as spdelaunay2d writes it, and LAS, LAZ or COPC files, text,
+/// or streams of points.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 #[command(mut_arg("crs", |crs| crs.help("The coordinate reference system of text, which states none: EPSG:CODE, \
@@ -88,7 +91,7 @@ memory, 6 input of another version of spmesh.";
     the name ends in .tsv, or Parquet if it ends in .parquet; - is stdout [default: summary.jsonl in the folder, with \
     --keep-going or --skip-existing]")))]
 pub struct Flags {
-    /// LAS, LAZ, COPC or text files; several only with --out-dir
+    /// LAS, LAZ, COPC or text files, or streams of points; several only with --out-dir
     #[arg(value_name = "FILE")]
     inputs: Vec<PathBuf>,
 
@@ -97,7 +100,7 @@ pub struct Flags {
     #[arg(long, value_name = "STREAM")]
     ground: PathBuf,
 
-    /// File for the points with heights: .las or .laz, or another ending for text
+    /// File for the points with heights: .las or .laz, .spm for a stream, or another ending for text
     #[arg(short, long, value_name = "FILE", required_unless_present = "out_dir", conflicts_with = "out_dir")]
     output: Option<PathBuf>,
 
@@ -220,11 +223,7 @@ fn run_plain(flags: &Flags, paths: &[PathBuf], outputs: &[PathBuf]) -> Result<Fi
     files.iter().flat_map(PointFile::notices).for_each(|text| flags.notice(text));
     let (ground, ground_bytes) =
         flags.ground(flags.window(&files.iter().map(Stated::by).collect::<Vec<_>>()), outputs)?;
-    let points = |file: &PointFile| match file {
-        PointFile::Las(file) => Some(file.points()),
-        PointFile::Text(_) => None,
-    };
-    let total = files.iter().map(points).sum();
+    let total = files.iter().map(PointFile::stated_points).sum();
     let mut progress = Progress::new(&flags.common, "finding heights", total);
     let mut sums = Sums::default();
     for (file, output) in files.iter().zip(outputs) {
@@ -299,6 +298,7 @@ impl Flags {
                 let crs = self.crs.system()?.unwrap_or(Crs::Unknown);
                 write_text_heights(ground, file, &crs, created, &options, progress)?
             }
+            PointFile::Stream(file) => write_stream_heights(ground, file, created, &options, progress)?,
         };
         written.commit()?;
         let notices = counts.notices.iter().cloned().chain(about_below(counts.below, counts.points));
@@ -330,7 +330,6 @@ impl Flags {
             output: self.output.as_deref(),
             folder: self.batch.out_dir.as_deref(),
             format: self.format,
-            others: &[],
         }
     }
 

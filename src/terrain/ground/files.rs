@@ -7,8 +7,9 @@ use super::Found;
 use crate::height::{rewrite, stored_point};
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::las::{Changes, LasFile};
-use spmesh_formats::source::{Filters, TextFile};
+use spmesh_formats::source::{Filters, StreamFile, TextFile};
 use spmesh_stream::Coordinates;
+use spmesh_stream::model::attributes::{Attribute, NumberType};
 
 /// How files are written.
 #[derive(Debug, Clone)]
@@ -29,13 +30,15 @@ impl RewriteOptions {
     }
 }
 
-/// Bytes of a point of a text, its line and what is found for it, about.
+/// Bytes of a point of a text or stream, its line and what is found for it, about.
 const TEXT_POINT_LEN: u64 = 200;
-/// Most points of a text whose classes are found together.
+/// Most points of these whose classes are found together.
 const TEXT_POINTS_MAX: u64 = 1 << 18;
 
 /// The name of the column of classes.
 const COLUMN: &str = "class";
+/// The name of the attribute of classes, which is that of LAS files.
+const ATTRIBUTE: &str = "classification";
 
 /// Counts of a file, or of several.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -80,6 +83,38 @@ pub fn write_text_classes<W: Write>(
         counts.points += classes.len() as u64;
         values.clear();
         values.extend(classes.iter().map(|&class| f64::from(class as u8)));
+        progress(counts.points);
+        Ok(())
+    })?;
+    Ok((output, counts))
+}
+
+/// Writes the stream `file` again, each point with its class as one more attribute; calls `progress` with the
+/// number of points written.
+///
+/// Memory: `options.memory`.
+///
+/// # Errors
+/// Usage, if points have such an attribute; malformed, if the stream is; if reading or writing fails.
+pub fn write_stream_classes<W: Write>(
+    found: &Found,
+    file: &StreamFile,
+    output: W,
+    options: &RewriteOptions,
+    mut progress: impl FnMut(u64),
+) -> Result<(W, ClassCounts)> {
+    let header = file.header();
+    let mut classifier = found.classifier(&header.coordinates, options.threads());
+    let point_len = TEXT_POINT_LEN + 3 * header.attributes.row_len() as u64;
+    let most = (options.memory / point_len).clamp(1, TEXT_POINTS_MAX) as usize;
+    let (mut counts, mut classes) = (ClassCounts::default(), Vec::new());
+    let attribute = Attribute::new(ATTRIBUTE, NumberType::U8);
+    let output = file.write_with(attribute, most, output, |points, numbers| {
+        classifier.of(points, &mut classes)?;
+        classes.iter().for_each(|class| counts.classes[class.number()] += 1);
+        counts.points += classes.len() as u64;
+        numbers.clear();
+        numbers.extend(classes.iter().map(|&class| class as u8));
         progress(counts.points);
         Ok(())
     })?;

@@ -20,7 +20,7 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 pub use classify::{Class, Classifier};
-pub use files::{ClassCounts, RewriteOptions, write_classes, write_text_classes};
+pub use files::{ClassCounts, RewriteOptions, write_classes, write_stream_classes, write_text_classes};
 pub use parameters::Parameters;
 pub use points::GroundPoints;
 

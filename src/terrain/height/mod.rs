@@ -4,7 +4,7 @@
 //! For a batch of points, `heights` reads the blocks around them one by one (`blocks`), and each triangle
 //! meets the points near it (`point_grid`). `surface` has the elevation at a place of a triangle; `nearest`
 //! finds the place nearest to a point outside of the mesh. `files` reads and writes LAS and LAZ files, `text`
-//! text; `points` holds heights for `spcanopy`.
+//! text and streams; `points` holds heights for `spcanopy`.
 
 mod block_writer;
 mod blocks;
@@ -24,7 +24,7 @@ pub use ground::Ground;
 pub use heights::{Heights, Outside, Slopes, Unit};
 pub(crate) use points::unit_of;
 pub use points::{HeightCounts, HeightPoints, LayerReader, Surface};
-pub use text::write_text_heights;
+pub use text::{write_stream_heights, write_text_heights};
 
 /// A warning if most of some points are `below` the ground, which happens when z is not the elevation that it
 /// is taken for.
