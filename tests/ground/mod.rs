@@ -188,7 +188,7 @@ fn streams_have_classes() {
     let classes = found(&folder, &file, &[]);
     let expected: BTreeMap<[i32; 3], u8> = points.iter().copied().zip(classes).collect();
     let (input, out, mesh) = (folder.path("in.las"), folder.path("out"), folder.path("ground.spm"));
-    for flags in [&["--attributes", "intensity"][..], &["--leaf-points", "100"]] {
+    for flags in [&["--attributes", "intensity"][..], &[]] {
         let stream = run("spfinalize", &[&["-q", &input][..], flags].concat(), &[]).stdout;
         let points_file = folder.write("points.spm", &stream);
         let done = run("spground", &[&points_file, "--out-dir", &out], &[]);
