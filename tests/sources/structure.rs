@@ -183,7 +183,10 @@ fn extended_xyz_states_its_columns() {
     }
     let periodic =
         frame("Lattice=\"9 0 0 0 9 0 0 0 9\" Properties=species:S:1:pos:R:3", "C 1.5 2 3").unwrap();
-    assert!(periodic.warnings[0].contains("(Lattice)"));
+    assert!(periodic.models[0].periodic_box.is_some());
+    let notices = |is_periodic| periodic.notices(&Selection::default(), is_periodic);
+    assert!(notices(false)[0].contains("--periodic"));
+    assert!(notices(true).is_empty());
     for list in [
         "species:S:1:pos:R",
         "species:S:1:pos:R:2",

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::molecules::Rows;
 use crate::programs::{Folder, outcome, run};
 
-fn sample(name: &str) -> String {
+pub fn sample(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name).to_str().unwrap().to_string()
 }
 

@@ -14,6 +14,7 @@ mod meshes;
 mod molecules;
 mod parquet_reader;
 mod parquet_values;
+mod periodic;
 mod pictures;
 mod pipes;
 mod selections;

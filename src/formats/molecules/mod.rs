@@ -33,6 +33,7 @@ pub(crate) mod operators;
 pub(crate) mod pdb;
 pub(crate) mod pdb_assemblies;
 pub(crate) mod pdb_header;
+pub(crate) mod periodic_box;
 pub(crate) mod points;
 pub(crate) mod pqr;
 pub(crate) mod radii;
@@ -49,6 +50,7 @@ pub use classes::Class;
 pub use frames::{Content, Frame, FrameRange, FrameReader};
 pub use model::{Atom, AtomView, Model, Residue, Structure};
 pub use names::{Name, Names};
+pub use periodic_box::{PeriodicBox, StatedBox};
 pub use radii::{LoadedRadii, Radii, RadiusCounts, RadiusFinder, RadiusOrigin};
 pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
 

@@ -5,6 +5,7 @@ use std::num::NonZeroU16;
 use crate::molecules::assemblies::Assemblies;
 use crate::molecules::classes::Class;
 use crate::molecules::names::{Name, Names};
+use crate::molecules::periodic_box::StatedBox;
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::points::Point3;
 
@@ -25,6 +26,9 @@ pub struct Structure {
     pub names: Names,
     /// The biological assemblies that the file states.
     pub assemblies: Assemblies,
+    /// The space group of a crystal, if the file states one beside P 1: its atoms are then only a part of what
+    /// is in the box.
+    pub space_group: Option<String>,
     /// Oddities of the input, as sentences.
     pub warnings: Vec<String>,
 }
@@ -40,6 +44,15 @@ pub struct Model {
     pub atoms: Vec<Atom>,
     /// Labels of points without names, if the input has any.
     pub labels: Vec<u64>,
+    /// The periodic box.
+    pub periodic_box: StatedBox,
+}
+
+impl Model {
+    /// The number and the box.
+    pub(crate) fn without_atoms(&self) -> Model {
+        Model { number: self.number, periodic_box: self.periodic_box.clone(), ..Model::default() }
+    }
 }
 
 /// The data of an atom, in 32 bytes. Its position is the point with the same index.

@@ -16,9 +16,10 @@
 //! Source: the cells are those of Edelsbrunner, "The union of balls and its dual shape", 1995; his inclusion
 //! and exclusion gives the same sums, of which the faces are the parts that users ask for.
 
-mod dual;
-mod face;
+pub(crate) mod dual;
+pub(crate) mod face;
 mod molecular;
+mod periodic;
 mod pockets;
 mod shares;
 mod surface;
@@ -26,6 +27,7 @@ mod tile;
 mod tiles;
 
 pub use molecular::{molecular_surface, molecular_surface_in_tiles};
+pub use periodic::{PeriodicCells, measure_in_box};
 pub use pockets::{Mouth, Pocket, pockets};
 pub use surface::{FINEST, Faces, Surface, faces, linings, surface};
 pub use tiles::Contacts;
@@ -109,8 +111,14 @@ pub fn measure(balls: Balls<'_>, contacts_above: Option<f64>, threads: NonZeroUs
 const GREATEST: f64 = 1e60;
 
 fn check(balls: Balls<'_>) -> Result<()> {
-    let numbers = balls.centres.iter().flatten().chain(balls.radii);
-    match numbers.into_iter().find(|number| number.abs() > GREATEST) {
+    check_numbers(balls.centres, balls.radii)
+}
+
+/// Refuses numbers that are too large, or none.
+pub(crate) fn check_numbers(points: &[Point3], radii: &[f64]) -> Result<()> {
+    let is_fit = |number: &&f64| number.abs() <= GREATEST;
+    match points.as_flattened().iter().chain(radii).find(|number| !is_fit(number)) {
+        Some(number) if number.is_nan() => Err(Error::usage("a coordinate or radius is NaN, not a number")),
         Some(number) => {
             Err(Error::usage(format!("{number:e} is too large: balls are measured up to {GREATEST:e}")))
         }
@@ -129,12 +137,23 @@ pub fn measure_in_tiles(
     threads: NonZeroUsize,
     tile_max: usize,
 ) -> Result<Cells> {
-    let tiles = tiles::cut(balls, tile_max);
+    measure_first(balls, balls.centres.len(), contacts_above, threads, tile_max)
+}
+
+/// The cells of the first `count` balls among all, and their contacts.
+fn measure_first(
+    balls: Balls<'_>,
+    count: usize,
+    contacts_above: Option<f64>,
+    threads: NonZeroUsize,
+    tile_max: usize,
+) -> Result<Cells> {
+    let tiles = tiles::cut_first(balls, count, tile_max);
     let measured = parallel::map(threads, tiles.iter(), |members| {
         let tile = Tile::new(balls, members)?;
         Ok(tile.measure(contacts_above, |_, _, _| ()))
     })?;
-    let mut cells = vec![Cell::default(); balls.centres.len()];
+    let mut cells = vec![Cell::default(); count];
     let mut parts = Vec::with_capacity(tiles.len());
     for (members, part) in tiles.iter().zip(measured) {
         for (&ball, cell) in members.core.iter().zip(part.cells) {
@@ -142,5 +161,5 @@ pub fn measure_in_tiles(
         }
         parts.push(part.contacts);
     }
-    Ok(Cells { cells, contacts: Contacts::of_tiles(balls.centres.len(), &tiles, parts) })
+    Ok(Cells { cells, contacts: Contacts::of_tiles(count, &tiles, parts) })
 }

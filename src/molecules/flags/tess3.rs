@@ -3,6 +3,7 @@
 mod balls;
 mod frames;
 mod method;
+mod periodic;
 mod picture;
 mod report;
 mod selection;
@@ -21,6 +22,7 @@ use crate::tess3::{Arithmetic, ModelName, Options, Product, Radius, Report, Stat
 use balls::BallFlags;
 use frames::FrameFlags;
 use method::MethodFlags;
+use periodic::PeriodicFlags;
 use picture::PictureFlags;
 use selection::SelectionFlags;
 use spmesh_base::error::{Error, Result, counted};
@@ -163,6 +165,9 @@ pub struct Flags {
     #[command(flatten)]
     picture: PictureFlags,
 
+    #[command(flatten)]
+    periodic: PeriodicFlags,
+
     // The last, as its heading holds for all flags after it.
     #[command(flatten)]
     method: MethodFlags,
@@ -221,6 +226,9 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     }
     let mut options = flags.options()?;
     let picture = flags.picture.of_output(&flags.output, options.product, &flags.balls)?;
+    if picture.is_some() && options.periodic.is_some() {
+        return Err(Error::usage("a periodic box has no mesh: give a name that ends in .tsv"));
+    }
     if let Some(balls) = &mut options.balls {
         balls.picture = picture;
     }
@@ -241,7 +249,7 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     }
     let started = Instant::now();
     let structure = read_structure(input, flags.from)?;
-    let notices = structure.notices(&options.selection);
+    let notices = structure.notices(&options.selection, options.periodic.is_some());
     notices.iter().for_each(|text| flags.notice(&format!("{}: {text}", structure.name)));
     check_models(&structure, &options, flags)?;
     let read = started.elapsed();
@@ -329,7 +337,8 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
 
 impl Flags {
     fn options(&self) -> Result<Options> {
-        let product = match (self.balls.product(), self.table, self.contacts, self.filtration) {
+        let cells = self.periodic.product(&self.balls)?;
+        let product = match (self.balls.product().or(cells), self.table, self.contacts, self.filtration) {
             (Some(product), ..) => product,
             (_, true, ..) => Product::Tetrahedra,
             (_, _, true, _) => Product::Contacts,
@@ -355,6 +364,7 @@ impl Flags {
             method,
             compress: self.compression.of_output(product == Product::Mesh)?,
             format: tables::format(self.format, self.output_file(), product)?,
+            periodic: self.periodic.source(product)?,
             product,
             balls,
         })
@@ -392,6 +402,7 @@ impl Flags {
         if options.format != TableFormat::default() {
             text += &format!(" --format {}", options.format.ending());
         }
+        text += &self.periodic.text();
         text + options.balls.as_ref().map_or("", |balls| &balls.text)
     }
 

@@ -10,10 +10,11 @@ use super::frames::run_models;
 use super::labels::Labels;
 use super::mesh::write_mesh;
 use super::tables::{CONTACTS, ModelTables, TETRAHEDRA, columns};
-use super::{Arithmetic, Options, Product, Report, selection};
+use super::{Arithmetic, Options, PeriodicFrom, Product, Report, selection, sites};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_delaunay::delaunay3::Tetrahedralization;
+use spmesh_delaunay::predicates::Point3;
 use spmesh_formats::molecules::{Models, Selected, Structure};
 use spmesh_formats::sink::TableSink;
 use spmesh_stream::model::attributes::Attributes;
@@ -112,8 +113,18 @@ impl Job<'_, '_> {
         let selected = selected.as_ref();
         let mut report = Report::new(name.number, selected.map_or(0, |selected| selected.points().len()));
         let mut weights = None;
-        if let (Some(balls), Some(selected)) = (self.options.balls.clone(), selected) {
-            let molecule = Molecule { number: name.number, selected, scale: scale(structure.coordinates) };
+        let periodic_box = self.periodic_box(structure, at)?;
+        let molecule = selected.map(|selected| {
+            let scale = scale(structure.coordinates);
+            let periodic_box = periodic_box.map(|vectors| vectors.map(|vector| vector.map(|c| c / scale)));
+            Molecule { number: name.number, selected, scale, periodic_box }
+        });
+        if let (Some(molecule), Product::SiteCells(_) | Product::SiteFaces) =
+            (&molecule, self.options.product)
+        {
+            return self.write_sites(molecule, started);
+        }
+        if let (Some(balls), Some(molecule)) = (self.options.balls.clone(), molecule) {
             if !matches!(self.options.product, Product::Filtration | Product::Mesh) {
                 return self.write_balls(&balls, &molecule, started);
             }
@@ -143,6 +154,34 @@ impl Job<'_, '_> {
             _ => self.write_mesh(&model, mesh, weights.as_deref(), &mut report)?,
         }
         report.times.write = measured.elapsed();
+        Ok(report)
+    }
+
+    /// The vectors of the box of a model, in Å, if atoms repeat.
+    fn periodic_box(&self, structure: &Structure, at: usize) -> Result<Option<[Point3; 3]>> {
+        let model = &structure.models[at];
+        let reason = match (self.options.periodic, &model.periodic_box) {
+            (None, _) => return Ok(None),
+            (Some(PeriodicFrom::Stated(found)), _) => return Ok(Some(found.vectors())),
+            (_, Some(Ok(found))) => return Ok(Some(found.vectors())),
+            (_, Some(Err(fault))) => format!("states no periodic box that can be used ({fault})"),
+            (_, None) => "states no periodic box".to_string(),
+        };
+        let of =
+            if self.options.frames.is_some() { format!("frame {} ", model.number) } else { String::new() };
+        Err(Error::usage(format!("{of}{reason}: give one with --box a,b,c,alpha,beta,gamma")))
+    }
+
+    /// Measures Voronoi or Laguerre cells, and writes rows of them or of their faces.
+    fn write_sites(&mut self, molecule: &Molecule<'_>, started: Instant) -> Result<Report> {
+        let mut report = Report::new(molecule.number, molecule.selected.points().len());
+        report.labels = Labels::of(molecule.selected, &self.options);
+        report.is_of_cells = true;
+        let balls = self.options.balls.as_ref();
+        let radii = balls.map_or(Ok(Vec::new()), |balls| molecule.radii(balls, &mut report))?;
+        let (product, threads) = (self.options.product, self.options.method.threads);
+        sites::write(product, molecule, &radii, threads, &mut report, || self.table())?;
+        report.times.triangulate = started.elapsed();
         Ok(report)
     }
 
@@ -208,8 +247,12 @@ impl Job<'_, '_> {
     }
 
     fn columns_of_models(&self) -> String {
+        let is_periodic = self.options.periodic.is_some();
         match (self.options.product, &self.options.balls) {
-            (product, Some(balls)) => balls.columns(product),
+            (product @ (Product::SiteCells(_) | Product::SiteFaces), balls) => {
+                sites::columns(product, balls.is_some(), is_periodic)
+            }
+            (product, Some(balls)) => balls.columns(product, is_periodic),
             (Product::Contacts, None) => CONTACTS.to_string(),
             (_, None) => TETRAHEDRA.to_string(),
         }

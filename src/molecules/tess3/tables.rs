@@ -188,8 +188,8 @@ pub(super) fn columns(names: &str) -> Vec<Column> {
 fn kind(name: &str) -> ColumnKind {
     match name.trim_end_matches(|c: char| c.is_ascii_digit()) {
         "model" | "frame" | "serial" | "tetrahedra" | "atoms" | "contacts" | "pocket" | "mouth"
-        | "mouths" => ColumnKind::Integer,
-        "kind" | "atom" | "residue" | "chain" | "molecule" => ColumnKind::Text,
+        | "mouths" | "faces" | "shift_a" | "shift_b" | "shift_c" => ColumnKind::Integer,
+        "kind" | "cell" | "face" | "atom" | "residue" | "chain" | "molecule" => ColumnKind::Text,
         _ => ColumnKind::Number,
     }
 }

@@ -100,13 +100,14 @@ impl BallFlags {
 
     /// The options.
     pub(super) fn options(&self, product: Product, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
-        let takes_weights = matches!(product, Product::Filtration | Product::Mesh);
+        let is_of_cells = matches!(product, Product::SiteCells(_) | Product::SiteFaces);
+        let takes_weights = is_of_cells || matches!(product, Product::Filtration | Product::Mesh);
         let has_weights = takes_weights && self.radii.is_some();
         self.check_contacts_only()?;
         if self.mouths && !self.pockets {
             return Err(Error::usage("--mouths goes with --pockets"));
         }
-        if self.per.is_some() && (product == Product::Filtration || has_weights) {
+        if self.per.is_some() && !is_of_cells && (product == Product::Filtration || has_weights) {
             let what = if product == Product::Filtration { "--filtration" } else { "a mesh" };
             return Err(Error::usage(format!("--per does not go with {what}")));
         }
@@ -142,6 +143,11 @@ impl BallFlags {
         Ok(Some(options))
     }
 
+    /// The level that is asked for.
+    pub(super) fn stated_level(&self) -> Option<Level> {
+        self.per
+    }
+
     /// Refuses flags of tables for a mesh.
     pub(super) fn check_for_mesh(&self) -> Result<()> {
         match (self.per, self.volumes) {
@@ -158,11 +164,13 @@ impl BallFlags {
 
     /// Refuses flags of balls where there are none.
     fn check_idle(&self, product: Product) -> Result<()> {
+        let is_of_cells = matches!(product, Product::SiteCells(_) | Product::SiteFaces);
         let message = if self.radii.is_some() {
-            "--radii goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or --filtration"
+            "--radii goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets, --cells or \
+             --filtration"
         } else if self.probe.is_some() {
             match product {
-                Product::Filtration => "--probe needs --radii",
+                Product::Filtration | Product::SiteCells(_) | Product::SiteFaces => "--probe needs --radii",
                 Product::Mesh => {
                     "--probe needs --radii, or one of --sasa, --volumes, --ses, --contact-areas and --pockets"
                 }
@@ -171,8 +179,8 @@ impl BallFlags {
                      --filtration"
                 }
             }
-        } else if self.per.is_some() {
-            "--per goes with --sasa, --volumes, --ses, --contact-areas or --pockets"
+        } else if self.per.is_some() && !is_of_cells {
+            "--per goes with --sasa, --volumes, --ses, --contact-areas, --pockets or --cells"
         } else {
             return Ok(());
         };

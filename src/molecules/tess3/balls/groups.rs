@@ -11,11 +11,11 @@ use spmesh_base::error::Result;
 use spmesh_formats::molecules::{AtomView, Radii, Selected};
 
 /// The groups of the selected atoms, numbered as they first appear.
-pub(super) struct Groups {
+pub(in crate::tess3) struct Groups {
     /// For each atom its group; empty if each atom is one.
     of_atoms: Vec<u32>,
     /// Number of atoms of each group; empty if each atom is one.
-    pub(super) sizes: Vec<u32>,
+    pub(in crate::tess3) sizes: Vec<u32>,
     names: Names,
 }
 
@@ -25,7 +25,7 @@ enum Names {
 }
 
 impl Groups {
-    pub(super) fn new(selected: &Selected<'_>, level: Level) -> Groups {
+    pub(in crate::tess3) fn new(selected: &Selected<'_>, level: Level) -> Groups {
         if level == Level::Atom {
             let names = Names::Atoms(AtomNames::new(selected));
             return Groups { of_atoms: Vec::new(), sizes: Vec::new(), names };
@@ -47,11 +47,11 @@ impl Groups {
         groups
     }
 
-    pub(super) fn of(&self, atom: u32) -> u32 {
+    pub(in crate::tess3) fn of(&self, atom: u32) -> u32 {
         self.of_atoms.get(atom as usize).copied().unwrap_or(atom)
     }
 
-    pub(super) fn name(&self, group: u32) -> &str {
+    pub(in crate::tess3) fn name(&self, group: u32) -> &str {
         match &self.names {
             Names::Atoms(names) => names.name(group as usize),
             Names::Texts(texts) => &texts[group as usize],

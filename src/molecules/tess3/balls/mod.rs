@@ -15,9 +15,10 @@ use std::sync::Arc;
 use self::pictures::Picture;
 use self::pockets::PocketTable;
 use super::{Product, Report};
-use crate::balls::{Balls, Cells, measure, molecular_surface, pockets};
-use groups::Groups;
+use crate::balls::{Balls, Contacts, measure, measure_in_box, molecular_surface, pockets};
+pub(super) use groups::Groups;
 use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point3;
 use spmesh_formats::molecules::{AtomView, Radii, RadiusOrigin, Selected};
 use spmesh_formats::sink::TableSink;
 use tables::{CellTable, ContactTable};
@@ -96,11 +97,13 @@ pub(super) struct Molecule<'s> {
     pub(super) selected: &'s Selected<'s>,
     /// World units per stored unit.
     pub(super) scale: f64,
+    /// The vectors of the periodic box that repeats them, if there is one, in stored units.
+    pub(super) periodic_box: Option<[Point3; 3]>,
 }
 
 impl Molecule<'_> {
     /// Radii of all atoms with the probe, in stored units: integers where coordinates are.
-    fn radii(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
+    pub(super) fn radii(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
         let Some(atoms) = options.radii.of_atoms(self.selected) else {
             let message = "points have no elements, and so no radii: give a structure (PDB, mmCIF, XYZ)";
             return Err(Error::usage(message));
@@ -172,16 +175,24 @@ impl Molecule<'_> {
             .write(&found, open()?);
         }
         let is_contacts = product == Product::ContactAreas;
-        let Cells { cells, contacts } = if product == Product::Surface {
-            let cells = molecular_surface(balls, self.length(options.probe), options.threads)?;
-            Cells { cells, ..Cells::default() }
+        let least = is_contacts.then_some(0.0);
+        let (mut contacts, mut faces) = (Contacts::default(), Vec::new());
+        let cells = if product == Product::Surface {
+            molecular_surface(balls, self.length(options.probe), options.threads)?
+        } else if let Some(vectors) = self.periodic_box {
+            let found = measure_in_box(balls, vectors, least, options.threads)?;
+            faces = found.contacts;
+            found.cells
         } else {
-            measure(balls, is_contacts.then_some(0.0), options.threads)?
+            let found = measure(balls, least, options.threads)?;
+            contacts = found.contacts;
+            found.cells
         };
         report.without_cell = cells.iter().filter(|cell| cell.volume == 0.0).count() as u64;
         let groups = Groups::new(self.selected, options.level);
         if is_contacts {
-            ContactTable { molecule: self, options, groups: &groups }.write(&contacts, open()?)
+            let table = ContactTable { molecule: self, options, groups: &groups };
+            table.write(table.faces(&contacts).chain(faces), open()?)
         } else {
             CellTable { molecule: self, options, groups: &groups }.write(&cells, open()?)
         }
@@ -190,10 +201,10 @@ impl Molecule<'_> {
 
 impl BallOptions {
     /// The line with the names of the columns of a table.
-    pub(super) fn columns(&self, product: Product) -> String {
+    pub(super) fn columns(&self, product: Product, is_periodic: bool) -> String {
         match product {
             Product::Pockets => self::pockets::columns(self),
-            Product::ContactAreas => tables::contact_columns(self),
+            Product::ContactAreas => tables::contact_columns(self, is_periodic),
             _ => tables::cell_columns(self),
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::io::Write;
 
-use super::tables::is_wanted;
+use super::tables::{distance_of, is_wanted};
 use super::{BallOptions, Molecule};
 use crate::balls::{Balls, Cell, FINEST, faces, linings, measure, pockets, surface};
 use crate::tess3::Product;
@@ -127,7 +127,8 @@ impl Picture<'_> {
     /// The faces between atoms.
     fn contacts(&self, output: &mut impl Write) -> Result<()> {
         let faces = faces(self.balls, self.step(), |contact| {
-            is_wanted(self.molecule, &self.options.contacts, contact)
+            let distance = distance_of(self.molecule, contact.balls) * self.molecule.scale;
+            is_wanted(self.molecule, &self.options.contacts, contact.balls, distance)
                 && contact.area * self.molecule.scale.powi(2) >= self.options.contacts.min_area
         })?;
         let atoms = Atoms::new(self);

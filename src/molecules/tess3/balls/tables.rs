@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use super::groups::{Groups, Key, key};
 use super::{BallOptions, ContactFilter, Level, Molecule};
-use crate::balls::{Cell, Contact, Contacts};
+use crate::balls::{Cell, Contacts};
+use crate::cells::SiteFace;
 use crate::tess3::tables::distance;
 use spmesh_base::error::Result;
 use spmesh_formats::sink::TableSink;
@@ -17,9 +18,13 @@ pub(super) fn cell_columns(options: &BallOptions) -> String {
     columns.join(" ")
 }
 
-pub(super) fn contact_columns(options: &BallOptions) -> String {
+pub(super) fn contact_columns(options: &BallOptions, is_periodic: bool) -> String {
     let name = options.level.name();
-    let rest = if options.level == Level::Atom { "serial1 serial2 distance area" } else { "contacts area" };
+    let rest = match (options.level, is_periodic) {
+        (Level::Atom, false) => "serial1 serial2 distance area",
+        (Level::Atom, true) => "serial1 serial2 shift_a shift_b shift_c distance area",
+        _ => "contacts area",
+    };
     format!("model {name}1 {name}2 {rest}")
 }
 
@@ -72,27 +77,41 @@ pub(super) struct ContactTable<'t> {
 }
 
 impl ContactTable<'_> {
-    pub(super) fn write(&self, contacts: &Contacts, rows: &mut TableSink) -> Result<()> {
-        let wanted =
-            contacts.iter().filter(|contact| is_wanted(self.molecule, &self.options.contacts, contact));
-        if self.options.level == Level::Atom {
-            for contact in wanted.filter(|contact| self.area(contact) >= self.options.contacts.min_area) {
-                self.row_of_atoms(contact, rows)?;
-            }
-            return Ok(());
-        }
+    /// Contacts without a box as faces.
+    pub(super) fn faces(&self, contacts: &Contacts) -> impl Iterator<Item = SiteFace> {
+        contacts.iter().map(|contact| SiteFace {
+            sites: contact.balls,
+            shift: [0; 3],
+            distance: distance_of(self.molecule, contact.balls),
+            area: contact.area,
+        })
+    }
+
+    pub(super) fn write(&self, faces: impl Iterator<Item = SiteFace>, rows: &mut TableSink) -> Result<()> {
+        let filter = &self.options.contacts;
         let mut sums: BTreeMap<[u32; 2], (u64, f64)> = BTreeMap::new();
-        for contact in wanted {
-            let mut pair = contact.balls.map(|ball| self.groups.of(ball));
+        for face in faces {
+            let area = face.area * self.molecule.scale.powi(2);
+            let distance = face.distance * self.molecule.scale;
+            if !is_wanted(self.molecule, filter, face.sites, distance) {
+                continue;
+            }
+            if self.options.level == Level::Atom {
+                if area >= filter.min_area {
+                    self.row_of_atoms(&face, [distance, area], rows)?;
+                }
+                continue;
+            }
+            let mut pair = face.sites.map(|ball| self.groups.of(ball));
             pair.sort_unstable();
             if pair[0] != pair[1] {
-                let (count, area) = sums.entry(pair).or_default();
+                let (count, sum) = sums.entry(pair).or_default();
                 *count += 1;
-                *area += self.area(contact);
+                *sum += area;
             }
         }
         for (pair, (count, area)) in sums {
-            if area >= self.options.contacts.min_area {
+            if area >= filter.min_area {
                 self.start_row(pair, rows)?;
                 rows.integer(count)?;
                 rows.number(area);
@@ -102,22 +121,15 @@ impl ContactTable<'_> {
         Ok(())
     }
 
-    fn area(&self, contact: &Contact) -> f64 {
-        contact.area * self.molecule.scale.powi(2)
-    }
-
-    /// Distance of the centres, in Å.
-    fn distance(&self, contact: &Contact) -> f64 {
-        distance_of(self.molecule, contact)
-    }
-
-    fn row_of_atoms(&self, contact: &Contact, rows: &mut TableSink) -> Result<()> {
-        self.start_row(contact.balls, rows)?;
-        for ball in contact.balls {
+    fn row_of_atoms(&self, face: &SiteFace, numbers: [f64; 2], rows: &mut TableSink) -> Result<()> {
+        self.start_row(face.sites, rows)?;
+        for ball in face.sites {
             rows.integer(self.molecule.selected.label(ball as usize))?;
         }
-        rows.number(self.distance(contact));
-        rows.number(self.area(contact));
+        if self.molecule.periodic_box.is_some() {
+            face.shift.iter().try_for_each(|&boxes| rows.integer(boxes))?;
+        }
+        numbers.iter().for_each(|&number| rows.number(number));
         rows.end()
     }
 
@@ -128,18 +140,22 @@ impl ContactTable<'_> {
     }
 }
 
-/// Whether a contact passes a filter, up to its area.
-pub(super) fn is_wanted(molecule: &Molecule<'_>, filter: &ContactFilter, contact: &Contact) -> bool {
+/// Whether a contact of two atoms at a distance in Å passes a filter, up to its area.
+pub(super) fn is_wanted(
+    molecule: &Molecule<'_>,
+    filter: &ContactFilter,
+    atoms: [u32; 2],
+    distance: f64,
+) -> bool {
     let differ = |level| {
         let [p, q]: [Option<Key>; 2] =
-            contact.balls.map(|ball| Some(key(&molecule.selected.atom(ball as usize)?, level)));
+            atoms.map(|atom| Some(key(&molecule.selected.atom(atom as usize)?, level)));
         p != q
     };
-    filter.within.is_none_or(|most| distance_of(molecule, contact) <= most)
-        && filter.between.is_none_or(differ)
+    filter.within.is_none_or(|most| distance <= most) && filter.between.is_none_or(differ)
 }
 
-/// Distance of the centres of two atoms, in Å.
-fn distance_of(molecule: &Molecule<'_>, contact: &Contact) -> f64 {
-    distance(contact.balls.map(|ball| molecule.selected.points()[ball as usize])) * molecule.scale
+/// Distance of the centres of two atoms, in stored units.
+pub(super) fn distance_of(molecule: &Molecule<'_>, atoms: [u32; 2]) -> f64 {
+    distance(atoms.map(|atom| molecule.selected.points()[atom as usize]))
 }
