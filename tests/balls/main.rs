@@ -5,6 +5,8 @@ mod balls;
 mod float;
 #[cfg(feature = "experiments")]
 mod float_parts;
+mod molecular_mesh;
+mod parts;
 mod pockets;
 mod surface;
 mod surfaces;

@@ -18,8 +18,11 @@ Table = dict[str, np.ndarray]
 
 # Columns of the tables of `tess3`, without the number of an atom in a pair; all others are numbers of 64-bit
 # floating point.
-INTEGERS = {"model", "serial", "tetrahedra", "atoms", "contacts", "pocket", "mouth", "mouths"}
-TEXTS = {"kind", "atom", "residue", "chain", "molecule"}
+INTEGERS = {"model", "frame", "serial", "tetrahedra", "atoms", "contacts", "pocket", "mouth", "mouths"}
+TEXTS = {
+    *("file", "kind", "atom", "chain", "label_chain", "segment", "insertion_code", "residue_name", "class"),
+    *("atom_name", "element", "altloc"),
+}
 
 
 def molecule(structure: Any, **options: Any) -> Molecule:
@@ -63,7 +66,7 @@ class Molecule(Owner):
     """Atoms in a file, and the flags of `tess3` that select some of them.
 
     Tables are dictionaries of arrays, one for each column: lengths in Å, areas in Å², volumes in Å³. Integers
-    are int64, names are text: atoms are named chain/residue/number/atom. With `as_frame=True` they are
+    are int64, names are text. A residue_number that the file does not state is NaN. With `as_frame=True` they are
     DataFrames of pandas. All methods raise ProgramError, and pass further options to `tess3`, such as
     `radii="bondi"`.
     """
@@ -81,11 +84,12 @@ class Molecule(Owner):
         """Areas of the surface that a probe of this radius (Å) reaches, of each "atom", "residue", "chain" or
         the "molecule".
 
-        Columns: model, atom and serial (or residue and atoms, their number), area. `volumes=True` adds
-        volume.
+        Columns: file, model, what identifies the atom, residue or chain (chain, label_chain, segment,
+        residue_number, insertion_code, residue_name, class; of atoms atom_name, element, altloc and serial,
+        of others atoms, their number), area. `volumes=True` adds volume.
 
             areas = molecule.sasa(per="residue")
-            exposed = areas["residue"][areas["area"] > 60]
+            exposed = areas["residue_number"][areas["area"] > 60]
         """
         return self._table("sasa", as_frame, {"per": per, "probe": probe, **options})
 
@@ -97,9 +101,9 @@ class Molecule(Owner):
     def contacts(self, per: str = "atom", probe: float = 1.4, as_frame: bool = False, **options: Any) -> Any:
         """Areas of contact between atoms, residues or chains: those of the faces between their cells.
 
-        Columns: model, atom1, atom2, serial1, serial2, distance, area; of residues model, residue1, residue2,
-        contacts, area. `between="chains"` leaves out contacts within a chain; `min_area` and `within` (Å)
-        those that are small or far.
+        Columns: file, model, what identifies both, as of `sasa` (chain1, ..., chain2, ...), distance, area; of
+        residues and chains contacts, their number, for distance. `between="chains"` leaves out contacts within
+        a chain; `min_area` and `within` (Å) those that are small or far.
 
             interface = molecule.contacts(per="residue", between="chains")
         """
@@ -114,7 +118,7 @@ class Molecule(Owner):
         """Edges of the Delaunay tetrahedralization of the centres, or of the alpha complex of the radius
         `alpha` (Å).
 
-        Columns: model, atom1, atom2, serial1, serial2, distance, tetrahedra.
+        Columns: as of `contacts`, but tetrahedra for area.
 
             edges = molecule.neighbours(alpha=4)
         """
@@ -128,7 +132,7 @@ class Molecule(Owner):
     def pockets(self, probe: float = 1.4, as_frame: bool = False, **options: Any) -> Any:
         """Pockets and voids, the largest first.
 
-        Columns: model, pocket, kind ("pocket" or "void"), volume, area, mouths, mouth_area, depth, atoms,
+        Columns: file, model, pocket, kind ("pocket" or "void"), volume, area, mouths, mouth_area, depth, atoms,
         tetrahedra. With `per="atom"` or "residue" those around each, with `mouths=True` the mouths.
 
             largest = molecule.pockets()["volume"][:1]
@@ -160,7 +164,11 @@ def _columns(text: str) -> Table:
     fields = list(zip(*(line.split("\t") for line in lines))) or [()] * len(names)
     table: Table = {}
     for name, values in zip(names, fields):
-        kind = name.rstrip("0123456789")
+        kind = name.removeprefix("partner_").rstrip("0123456789")
+        if kind == "residue_number":
+            # What is not stated is no integer.
+            table[name] = np.array([value or "nan" for value in values], np.float64 if "" in values else np.int64)
+            continue
         dtype = str if kind in TEXTS else np.int64 if kind in INTEGERS else np.float64
         table[name] = np.array(values, dtype)
     return table

@@ -166,6 +166,7 @@ fn ending(options: &Options) -> String {
         Product::Cells => "cells",
         Product::Surface => "surface",
         Product::ContactAreas => "contact-areas",
+        Product::BuriedAreas => "buried-areas",
         Product::Pockets => "pockets",
     };
     format!(".{table}.{}", options.format.ending())
