@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Literal, overload
@@ -18,7 +19,9 @@ Table = dict[str, np.ndarray]
 
 # Columns of the tables of `tess3`, without the number of an atom in a pair; all others are numbers of 64-bit
 # floating point.
-INTEGERS = {"model", "frame", "serial", "tetrahedra", "atoms", "contacts", "pocket", "mouth", "mouths"}
+INTEGERS = {
+    *("model", "frame", "serial", "residue_number", "tetrahedra", "atoms", "contacts", "pocket", "mouth", "mouths"),
+}
 TEXTS = {
     *("file", "kind", "atom", "chain", "label_chain", "segment", "insertion_code", "residue_name", "class"),
     *("atom_name", "element", "altloc"),
@@ -66,7 +69,7 @@ class Molecule(Owner):
     """Atoms in a file, and the flags of `tess3` that select some of them.
 
     Tables are dictionaries of arrays, one for each column: lengths in Å, areas in Å², volumes in Å³. Integers
-    are int64, names are text. A residue_number that the file does not state is NaN. With `as_frame=True` they are
+    are int64, names are text. Numbers that do not apply are NaN. With `as_frame=True` they are
     DataFrames of pandas. All methods raise ProgramError, and pass further options to `tess3`, such as
     `radii="bondi"`.
     """
@@ -157,18 +160,24 @@ class Molecule(Owner):
         return import_module("pandas").DataFrame(table) if as_frame else table
 
 
+def _plain(field: str) -> str:
+    """A text without the escapes of tables."""
+    escapes = {"t": "\t", "n": "\n", "r": "\r"}
+    return re.sub(r"\\(.)", lambda found: escapes.get(found[1], found[1]), field) if "\\" in field else field
+
+
 def _columns(text: str) -> Table:
     """The columns of a table with tabs between fields."""
-    head, *lines = text.splitlines()
+    head, *lines = text.removesuffix("\n").split("\n")
     names = head.split("\t")
     fields = list(zip(*(line.split("\t") for line in lines))) or [()] * len(names)
     table: Table = {}
     for name, values in zip(names, fields):
         kind = name.removeprefix("partner_").rstrip("0123456789")
-        if kind == "residue_number":
-            # What is not stated is no integer.
-            table[name] = np.array([value or "nan" for value in values], np.float64 if "" in values else np.int64)
+        if kind in TEXTS:
+            table[name] = np.array([_plain(value) for value in values], str)
             continue
-        dtype = str if kind in TEXTS else np.int64 if kind in INTEGERS else np.float64
-        table[name] = np.array(values, dtype)
+        # What is not stated is no integer.
+        dtype = np.int64 if kind in INTEGERS and "" not in values else np.float64
+        table[name] = np.array([value or "nan" for value in values], dtype)
     return table
