@@ -7,6 +7,8 @@ mod float;
 #[cfg(feature = "experiments")]
 mod float_parts;
 mod in_box;
+mod molecular_mesh;
+mod parts;
 mod pockets;
 mod polyhedron;
 mod surface;

@@ -31,7 +31,7 @@ fn texts(rows: &Rows, columns: &[&str]) -> Vec<Vec<String>> {
 
 #[test]
 fn volumes_add_up_to_the_box_wherever_it_begins() {
-    const COLUMNS: [&str; 6] = ["atom", "cell", "volume", "area", "faces", "density"];
+    const COLUMNS: [&str; 6] = ["serial", "cell", "volume", "area", "faces", "density"];
     let first = table(&structure([0.0; 3]), &["--periodic", "--cells"]);
     let sum: f64 = (0..first.len()).map(|row| first.number(row, "volume")).sum();
     assert!((sum - 1320.0).abs() < 1e-5);

@@ -239,16 +239,18 @@ impl StructureBuilder {
             number: record.residue_number,
             insertion_code: self.names.intern(record.insertion_code),
             subchain: if record.subchain.is_empty() { chain } else { self.names.intern(record.subchain) },
+            segment: Name::EMPTY,
             class: Class::default(),
         };
+        let segment = self.names.intern(record.segment);
         let next = u32::try_from(self.residues.len())
             .map_err(|_| Error::malformed("more than 2^32 residues, the maximum"))?;
-        let labels = (residue, self.names.intern(record.segment), detail.entity);
+        let labels = (residue, segment, detail.entity);
         let index = self.places.place(labels, [detail.atom, altloc], next);
         match self.details.get_mut(index as usize) {
             Some(first) => first.is_single &= first.atom == detail.atom,
             None => {
-                self.residues.push(residue);
+                self.residues.push(Residue { segment, ..residue });
                 self.details.push(detail);
             }
         }

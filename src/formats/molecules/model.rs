@@ -4,6 +4,7 @@ use std::num::NonZeroU16;
 
 use crate::molecules::assemblies::Assemblies;
 use crate::molecules::classes::Class;
+use crate::molecules::elements::Element;
 use crate::molecules::names::{Name, Names};
 use crate::molecules::periodic_box::StatedBox;
 use spmesh_stream::Coordinates;
@@ -107,6 +108,8 @@ pub struct Residue {
     pub insertion_code: Name,
     /// Part of the chain, as mmCIF names it (`label_asym_id`); otherwise the chain.
     pub subchain: Name,
+    /// Segment (columns 73 to 76 of PDB), as its first atom has it; mostly empty.
+    pub segment: Name,
     /// What it belongs to.
     pub class: Class,
 }
@@ -135,6 +138,16 @@ impl<'s> AtomView<'s> {
         self.structure.names.text(self.residue().chain)
     }
 
+    /// Part of its chain, as mmCIF names it; otherwise the chain.
+    pub fn subchain(&self) -> &'s str {
+        self.structure.names.text(self.residue().subchain)
+    }
+
+    /// Segment of its residue.
+    pub fn segment(&self) -> &'s str {
+        self.structure.names.text(self.residue().segment)
+    }
+
     /// Name of its residue.
     pub fn residue_name(&self) -> &'s str {
         self.structure.names.text(self.residue().name)
@@ -155,9 +168,14 @@ impl<'s> AtomView<'s> {
         self.structure.names.text(self.atom.name)
     }
 
-    /// Its element.
+    /// The symbol of its element as chemists write it, "Zn"; what the file states if that is no element.
+    /// Deuterium stays "D".
     pub fn element(&self) -> &'s str {
-        self.structure.names.text(self.atom.element)
+        let stated = self.structure.names.text(self.atom.element);
+        match Element::of_number(usize::from(self.atom.atomic_number)) {
+            Some(element) if !stated.eq_ignore_ascii_case("D") => element.symbol(),
+            _ => stated,
+        }
     }
 
     /// Its alternate location.

@@ -80,7 +80,7 @@ impl Pair {
     /// Adds the part of the face under one side of the polygon.
     #[inline(always)]
     pub(super) fn add(&self, side: Side, with_angles: bool, face: &mut Face) {
-        let Side { offset, from, to } = side;
+        let Side { offset, from, to, .. } = side;
         if !with_angles {
             // The whole polygon is in the disk.
             face.area += 0.5 * offset * (to - from);
@@ -144,6 +144,8 @@ pub(crate) struct Side {
     /// Ends, measured along the line, counterclockwise as the second centre sees the face.
     pub(crate) from: f64,
     pub(crate) to: f64,
+    /// Directions of length 1: from the foot away to the line, and along it.
+    pub(super) frame: [Point3; 2],
 }
 
 impl Pair {
@@ -164,6 +166,6 @@ impl Pair {
         // Far corners are as good as infinite; products of larger numbers would overflow.
         let far = 1e15 * (self.radius + offset.abs());
         let [from, to] = ends.map(|end| dot(end, direction).max(-far).min(far));
-        Some(Side { offset, from, to })
+        Some(Side { offset, from, to, frame: [lateral.map(|c| c / length), direction] })
     }
 }

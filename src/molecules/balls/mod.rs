@@ -16,9 +16,12 @@
 //! Source: the cells are those of Edelsbrunner, "The union of balls and its dual shape", 1995; his inclusion
 //! and exclusion gives the same sums, of which the faces are the parts that users ask for.
 
+mod buried;
 pub(crate) mod dual;
 pub(crate) mod face;
+mod gradients;
 mod molecular;
+mod near;
 mod periodic;
 mod pockets;
 mod shares;
@@ -26,9 +29,12 @@ mod surface;
 mod tile;
 mod tiles;
 
-pub use molecular::{molecular_surface, molecular_surface_in_tiles};
+pub use buried::{Burial, buried};
+pub use gradients::{Gradient, gradients};
+pub use molecular::{molecular_mesh, molecular_surface, molecular_surface_in_tiles};
+pub use near::nearest;
 pub use periodic::{PeriodicCells, measure_in_box};
-pub use pockets::{Mouth, Pocket, pockets};
+pub use pockets::{Mouth, Pocket, Spheres, pocket_spheres, pockets};
 pub use surface::{FINEST, Faces, Surface, faces, linings, surface};
 pub use tiles::Contacts;
 
@@ -105,6 +111,26 @@ pub struct Cells {
 pub fn measure(balls: Balls<'_>, contacts_above: Option<f64>, threads: NonZeroUsize) -> Result<Cells> {
     check(balls)?;
     measure_in_tiles(balls, contacts_above, threads, TILE_MAX)
+}
+
+/// The faces between balls of different parts, as [`measure`] lists them: `parts` has the part of each ball.
+/// Balls that no such face depends on are left out of the power diagram.
+///
+/// # Errors
+/// As [`measure`].
+pub fn contacts_between(balls: Balls<'_>, parts: &[u32], threads: NonZeroUsize) -> Result<Vec<Contact>> {
+    check(balls)?;
+    let kept = near::between_parts(balls, parts);
+    let centres: Vec<Point3> = kept.iter().map(|&ball| balls.centres[ball as usize]).collect();
+    let radii: Vec<f64> = kept.iter().map(|&ball| balls.radii[ball as usize]).collect();
+    let found = measure(Balls { centres: &centres, radii: &radii }, Some(0.0), threads)?;
+    let named = found
+        .contacts
+        .iter()
+        .map(|&Contact { balls, area }| Contact { balls: balls.map(|ball| kept[ball as usize]), area });
+    Ok(named
+        .filter(|contact| contact.balls.map(|ball| parts[ball as usize]).windows(2).all(|p| p[0] != p[1]))
+        .collect())
 }
 
 /// Greatest magnitude of coordinates and radii: squares and products of squares stay finite.

@@ -9,6 +9,7 @@ mod exact;
 pub mod filtration;
 mod frames;
 pub mod heap;
+mod identity;
 mod job;
 mod labels;
 mod mesh;
@@ -20,7 +21,9 @@ pub mod sweep;
 mod tables;
 
 pub use alpha::{AlphaComplex, Radius};
-pub use balls::{BallOptions, ColourBy, ContactFilter, Level, NamedRadii, PictureForm, PictureOptions};
+pub use balls::{
+    BallOptions, Between, ColourBy, ContactFilter, Level, Maxima, NamedRadii, PictureForm, PictureOptions,
+};
 pub use frames::run_frames;
 pub use job::{ModelName, Open, run};
 pub use labels::Labels;
@@ -50,6 +53,8 @@ pub enum Product {
     Surface,
     /// A table of the faces between cells.
     ContactAreas,
+    /// A table of the areas that parts take from each other.
+    BuriedAreas,
     /// A table of the pockets and voids between them.
     Pockets,
     /// A table of the Voronoi cells, or of those of the power diagram of [`Options::balls`], with rows of this

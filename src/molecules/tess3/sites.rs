@@ -1,25 +1,31 @@
 //! Tables of Voronoi and Laguerre cells and their faces.
 
 use super::balls::{Groups, Molecule};
+use super::identity::{self, Named, Origin};
+use super::tables::pair_columns;
 use super::{Level, Product, Report};
 use crate::cells::{SiteCell, SiteFace, Sites, State, cells};
 use spmesh_base::error::Result;
 use spmesh_formats::sink::TableSink;
 use std::num::NonZeroUsize;
 
-/// The line with the names of the columns of cells at a level, or of faces.
+/// The names of the columns of cells at a level, or of faces.
 pub(super) fn columns(product: Product, has_radii: bool, is_periodic: bool) -> String {
-    match product {
+    let (names, rest) = match product {
         Product::SiteFaces => {
-            let shift = if is_periodic { " shift_a shift_b shift_c" } else { "" };
-            format!("model atom1 atom2 serial1 serial2{shift} distance face area")
+            let shift = if is_periodic { "shift_a shift_b shift_c " } else { "" };
+            (pair_columns(Level::Atom), format!("{shift}distance face area"))
         }
-        Product::SiteCells(level @ (Level::Residue | Level::Chain | Level::Molecule)) => {
-            format!("model {} atoms cell volume", level.name())
+        Product::SiteCells(level @ (Level::Residue | Level::Chain)) => {
+            (identity::columns(level, "", "").join(" "), "atoms cell volume".to_string())
         }
-        _ if has_radii => "model atom serial cell volume area faces".to_string(),
-        _ => "model atom serial cell volume area faces density".to_string(),
-    }
+        Product::SiteCells(Level::Molecule) => return format!("{} atoms cell volume", Origin::COLUMNS),
+        _ => {
+            let density = if has_radii { "" } else { " density" };
+            (identity::columns(Level::Atom, "", "").join(" "), format!("cell volume area faces{density}"))
+        }
+    };
+    format!("{} {names} {rest}", Origin::COLUMNS)
 }
 
 /// Measures the cells of atoms, of these radii unless there are none, and writes the rows of a table, which is
@@ -56,11 +62,9 @@ struct SiteTable<'t> {
 
 impl SiteTable<'_> {
     fn write_cells(&self, cells: &[SiteCell], rows: &mut TableSink) -> Result<()> {
-        let groups = Groups::new(self.molecule.selected, Level::Atom);
         for (atom, cell) in (0..).zip(cells) {
-            rows.integer(self.molecule.number)?;
-            rows.field(groups.name(atom));
-            rows.integer(self.molecule.selected.label(atom as usize))?;
+            self.molecule.origin.start_row(rows)?;
+            self.name(Named::atom(atom), Level::Atom, rows)?;
             rows.field(cell.state.name());
             self.volume(cell.state, cell.volume, rows);
             if is_known(cell.state) {
@@ -96,14 +100,18 @@ impl SiteTable<'_> {
             }
         }
         for ((group, (state, volume)), &atoms) in (0..).zip(sums).zip(&groups.sizes) {
-            rows.integer(self.molecule.number)?;
-            rows.field(groups.name(group));
+            self.molecule.origin.start_row(rows)?;
+            self.name(groups.named(group), level, rows)?;
             rows.integer(atoms)?;
             rows.field(state.name());
             self.volume(state, volume, rows);
             rows.end()?;
         }
         Ok(())
+    }
+
+    fn name(&self, named: Named, level: Level, rows: &mut TableSink) -> Result<()> {
+        named.write(self.molecule.selected, level, level, rows)
     }
 
     fn volume(&self, state: State, volume: f64, rows: &mut TableSink) {
@@ -115,12 +123,10 @@ impl SiteTable<'_> {
     }
 
     fn write_faces(&self, faces: &[SiteFace], rows: &mut TableSink) -> Result<()> {
-        let groups = Groups::new(self.molecule.selected, Level::Atom);
         for face in faces {
-            rows.integer(self.molecule.number)?;
-            face.sites.iter().for_each(|&atom| rows.field(groups.name(atom)));
+            self.molecule.origin.start_row(rows)?;
             for atom in face.sites {
-                rows.integer(self.molecule.selected.label(atom as usize))?;
+                self.name(Named::atom(atom), Level::Atom, rows)?;
             }
             if self.molecule.periodic_box.is_some() {
                 face.shift.iter().try_for_each(|&boxes| rows.integer(boxes))?;

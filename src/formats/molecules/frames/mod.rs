@@ -131,7 +131,10 @@ impl FrameReader {
         range: FrameRange,
         topology: Option<&Structure>,
     ) -> Result<FrameReader> {
-        let topology = topology.map(|topology| first_model(topology.clone()));
+        // Atoms are those of the frames.
+        let of_frames =
+            |topology: &Structure| Structure { name: name.clone(), ..first_model(topology.clone()) };
+        let topology = topology.map(of_frames);
         let (head, input) = plain_with_head(input, &name)?;
         let format = format.map_or_else(|| detect::detect(&head), Ok).map_err(|e| e.of_input(&name))?;
         let Some(open) = format.row().frames else {

@@ -14,7 +14,7 @@ pub(super) struct PeriodicFlags {
     /// points by Delaunay tessellation (DTFE). With --radii, cells of the power diagram (Laguerre cells).
     /// Without a box, cells on the hull are unbounded
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes", "ses"])]
-    #[arg(conflicts_with_all = ["contact_areas", "pockets"])]
+    #[arg(conflicts_with_all = ["contact_areas", "buried_areas", "pockets"])]
     cells: bool,
 
     /// Rows of --cells are the faces between cells: which image of the second atom is a neighbour of the
@@ -46,13 +46,16 @@ impl PeriodicFlags {
     }
 
     /// Where the box of a product comes from, if there is one.
-    pub(super) fn source(&self, product: Product) -> Result<Option<PeriodicFrom>> {
+    pub(super) fn source(&self, product: Product, balls: &BallFlags) -> Result<Option<PeriodicFrom>> {
         let source = match (self.stated, self.periodic) {
             (Some(stated), _) => PeriodicFrom::Stated(stated),
             (None, true) => PeriodicFrom::File,
             (None, false) => return Ok(None),
         };
         let reason = match product {
+            Product::Cells if balls.has_gradients() => {
+                "derivatives (--gradients) are measured without images"
+            }
             Product::SiteCells(_) | Product::SiteFaces | Product::Cells | Product::ContactAreas => {
                 return Ok(Some(source));
             }
@@ -60,7 +63,7 @@ impl PeriodicFlags {
             Product::Mesh => "a mesh has each vertex at one place",
             Product::Tetrahedra => "a tetrahedron may have a point and its image as corners",
             Product::Pockets => "a pocket could lead through the box without end",
-            Product::Surface | Product::Filtration => "it is not measured with images",
+            Product::Surface | Product::BuriedAreas | Product::Filtration => "it is not measured with images",
         };
         let message =
             format!("a periodic box goes with --cells, --sasa, --volumes and --contact-areas only: {reason}");

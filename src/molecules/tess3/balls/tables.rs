@@ -2,30 +2,58 @@
 
 use std::collections::BTreeMap;
 
-use super::groups::{Groups, Key, key};
+use super::accessibility::{KINDS, kinds};
+use super::groups::Groups;
 use super::{BallOptions, ContactFilter, Level, Molecule};
-use crate::balls::{Cell, Contacts};
+use crate::balls::{Balls, Cell, Contact, Gradient, gradients};
 use crate::cells::SiteFace;
-use crate::tess3::tables::distance;
+use crate::tess3::identity::{self, Origin};
+use crate::tess3::tables::{distance, pair_columns};
 use spmesh_base::error::Result;
 use spmesh_formats::sink::TableSink;
 
 pub(super) fn cell_columns(options: &BallOptions) -> String {
-    let mut columns = vec!["model", options.level.name()];
-    columns.push(if options.level == Level::Atom { "serial" } else { "atoms" });
-    columns.extend(options.areas.then_some("area"));
-    columns.extend(options.volumes.then_some("volume"));
+    let mut columns = vec![Origin::COLUMNS.to_string()];
+    columns.extend(identity::columns(options.level, "", ""));
+    columns.extend((options.level != Level::Atom).then(|| "atoms".to_string()));
+    columns.extend(options.areas.then(|| "area".to_string()));
+    columns.extend(KINDS.into_iter().filter(|_| options.by_kind).map(str::to_string));
+    columns.extend(options.relative.map(|_| "relative".to_string()));
+    columns.extend(options.volumes.then(|| "volume".to_string()));
+    let parts = [(options.areas, "area"), (options.volumes, "volume")];
+    for (_, name) in parts.into_iter().filter(|(is_given, _)| options.gradients && *is_given) {
+        columns.extend(["dx", "dy", "dz"].map(|by| format!("{name}_{by}")));
+    }
     columns.join(" ")
 }
 
 pub(super) fn contact_columns(options: &BallOptions, is_periodic: bool) -> String {
-    let name = options.level.name();
     let rest = match (options.level, is_periodic) {
-        (Level::Atom, false) => "serial1 serial2 distance area",
-        (Level::Atom, true) => "serial1 serial2 shift_a shift_b shift_c distance area",
+        (Level::Atom, false) => "distance area",
+        (Level::Atom, true) => "shift_a shift_b shift_c distance area",
         _ => "contacts area",
     };
-    format!("model {name}1 {name}2 {rest}")
+    format!("{} {} {rest}", Origin::COLUMNS, pair_columns(options.level))
+}
+
+/// What a row of cells sums.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    atoms: u32,
+    cell: Cell,
+    /// Areas of atoms by their kinds.
+    kinds: [f64; KINDS.len()],
+}
+
+impl Sum {
+    fn add(&mut self, cell: &Cell, kinds: &[bool; KINDS.len()]) {
+        self.atoms += 1;
+        self.cell.area += cell.area;
+        self.cell.volume += cell.volume;
+        for (sum, &is_kind) in self.kinds.iter_mut().zip(kinds) {
+            *sum += if is_kind { cell.area } else { 0.0 };
+        }
+    }
 }
 
 pub(super) struct CellTable<'t> {
@@ -35,38 +63,58 @@ pub(super) struct CellTable<'t> {
 }
 
 impl CellTable<'_> {
-    pub(super) fn write(&self, cells: &[Cell], rows: &mut TableSink) -> Result<()> {
-        if self.options.level == Level::Atom {
-            for (atom, cell) in (0..).zip(cells) {
-                let serial = self.molecule.selected.label(atom as usize);
-                self.row(atom, serial, cell, rows)?;
-            }
-            return Ok(());
-        }
-        let mut sums = vec![Cell::default(); self.groups.sizes.len()];
+    pub(super) fn write(&self, balls: Balls<'_>, cells: &[Cell], rows: &mut TableSink) -> Result<()> {
+        let kinds = if self.options.by_kind { kinds(self.molecule) } else { Vec::new() };
+        let kind = |atom: u32| kinds.get(atom as usize).copied().unwrap_or_default();
+        let count = if self.options.level == Level::Atom { cells.len() } else { self.groups.sizes.len() };
+        let found = if self.options.gradients { gradients(balls, self.options.threads)? } else { Vec::new() };
+        let mut sums = vec![Sum::default(); count];
         for (atom, cell) in (0..).zip(cells) {
-            let sum = &mut sums[self.groups.of(atom) as usize];
-            sum.area += cell.area;
-            sum.volume += cell.volume;
+            sums[self.groups.of(atom) as usize].add(cell, &kind(atom));
         }
-        for ((group, sum), &atoms) in (0..).zip(&sums).zip(&self.groups.sizes) {
-            self.row(group, u64::from(atoms), sum, rows)?;
+        (0..).zip(&sums).try_for_each(|(group, sum)| {
+            self.row(group, sum, rows)?;
+            self.gradient(found.get(group as usize), rows);
+            rows.end()
+        })
+    }
+
+    fn row(&self, group: u32, sum: &Sum, rows: &mut TableSink) -> Result<()> {
+        let Molecule { origin, selected, scale, .. } = *self.molecule;
+        let (level, square) = (self.options.level, scale.powi(2));
+        origin.start_row(rows)?;
+        let named = self.groups.named(group);
+        named.write(selected, level, level, rows)?;
+        if level != Level::Atom {
+            rows.integer(sum.atoms)?;
+        }
+        if self.options.areas {
+            rows.number(sum.cell.area * square);
+        }
+        if self.options.by_kind {
+            sum.kinds.iter().for_each(|area| rows.number(area * square));
+        }
+        if let Some(maxima) = self.options.relative {
+            let residue = selected.atom(named.atom as usize).map_or("", |atom| atom.residue_name());
+            match maxima.of(residue) {
+                Some(most) => rows.number(sum.cell.area * square / most),
+                None => rows.nothing(),
+            }
+        }
+        if self.options.volumes {
+            rows.number(sum.cell.volume * scale.powi(3));
         }
         Ok(())
     }
 
-    fn row(&self, group: u32, count: u64, cell: &Cell, rows: &mut TableSink) -> Result<()> {
-        rows.integer(self.molecule.number)?;
-        rows.field(self.groups.name(group));
-        rows.integer(count)?;
+    /// The derivatives at an atom, if they are wanted.
+    fn gradient(&self, gradient: Option<&Gradient>, rows: &mut TableSink) {
+        let Some(Gradient { area, volume }) = gradient else { return };
         let scale = self.molecule.scale;
-        if self.options.areas {
-            rows.number(cell.area * scale.powi(2));
+        let wanted = [(self.options.areas, area, scale), (self.options.volumes, volume, scale.powi(2))];
+        for (_, by, scale) in wanted.into_iter().filter(|(is_wanted, ..)| *is_wanted) {
+            by.iter().for_each(|c| rows.number(c * scale));
         }
-        if self.options.volumes {
-            rows.number(cell.volume * scale.powi(3));
-        }
-        rows.end()
     }
 }
 
@@ -78,8 +126,11 @@ pub(super) struct ContactTable<'t> {
 
 impl ContactTable<'_> {
     /// Contacts without a box as faces.
-    pub(super) fn faces(&self, contacts: &Contacts) -> impl Iterator<Item = SiteFace> {
-        contacts.iter().map(|contact| SiteFace {
+    pub(super) fn faces<'c>(
+        &self,
+        contacts: impl Iterator<Item = &'c Contact>,
+    ) -> impl Iterator<Item = SiteFace> {
+        contacts.map(|contact| SiteFace {
             sites: contact.balls,
             shift: [0; 3],
             distance: distance_of(self.molecule, contact.balls),
@@ -87,17 +138,17 @@ impl ContactTable<'_> {
         })
     }
 
+    /// Writes those of the faces that are within the greatest distance and have the least area.
     pub(super) fn write(&self, faces: impl Iterator<Item = SiteFace>, rows: &mut TableSink) -> Result<()> {
-        let filter = &self.options.contacts;
         let mut sums: BTreeMap<[u32; 2], (u64, f64)> = BTreeMap::new();
         for face in faces {
             let area = face.area * self.molecule.scale.powi(2);
             let distance = face.distance * self.molecule.scale;
-            if !is_wanted(self.molecule, filter, face.sites, distance) {
+            if !is_near(&self.options.contacts, distance) {
                 continue;
             }
             if self.options.level == Level::Atom {
-                if area >= filter.min_area {
+                if area >= self.options.contacts.min_area {
                     self.row_of_atoms(&face, [distance, area], rows)?;
                 }
                 continue;
@@ -111,7 +162,7 @@ impl ContactTable<'_> {
             }
         }
         for (pair, (count, area)) in sums {
-            if area >= filter.min_area {
+            if area >= self.options.contacts.min_area {
                 self.start_row(pair, rows)?;
                 rows.integer(count)?;
                 rows.number(area);
@@ -123,9 +174,6 @@ impl ContactTable<'_> {
 
     fn row_of_atoms(&self, face: &SiteFace, numbers: [f64; 2], rows: &mut TableSink) -> Result<()> {
         self.start_row(face.sites, rows)?;
-        for ball in face.sites {
-            rows.integer(self.molecule.selected.label(ball as usize))?;
-        }
         if self.molecule.periodic_box.is_some() {
             face.shift.iter().try_for_each(|&boxes| rows.integer(boxes))?;
         }
@@ -134,25 +182,16 @@ impl ContactTable<'_> {
     }
 
     fn start_row(&self, pair: [u32; 2], rows: &mut TableSink) -> Result<()> {
-        rows.integer(self.molecule.number)?;
-        pair.iter().for_each(|&group| rows.field(self.groups.name(group)));
-        Ok(())
+        self.molecule.origin.start_row(rows)?;
+        let level = self.options.level;
+        pair.iter()
+            .try_for_each(|&group| self.groups.named(group).write(self.molecule.selected, level, level, rows))
     }
 }
 
-/// Whether a contact of two atoms at a distance in Å passes a filter, up to its area.
-pub(super) fn is_wanted(
-    molecule: &Molecule<'_>,
-    filter: &ContactFilter,
-    atoms: [u32; 2],
-    distance: f64,
-) -> bool {
-    let differ = |level| {
-        let [p, q]: [Option<Key>; 2] =
-            atoms.map(|atom| Some(key(&molecule.selected.atom(atom as usize)?, level)));
-        p != q
-    };
-    filter.within.is_none_or(|most| distance <= most) && filter.between.is_none_or(differ)
+/// Whether two atoms at a distance in Å are within the greatest one.
+pub(super) fn is_near(filter: &ContactFilter, distance: f64) -> bool {
+    filter.within.is_none_or(|most| distance <= most)
 }
 
 /// Distance of the centres of two atoms, in stored units.

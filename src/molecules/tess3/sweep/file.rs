@@ -168,6 +168,7 @@ fn ending(options: &Options) -> String {
         Product::Cells => "cells",
         Product::Surface => "surface",
         Product::ContactAreas => "contact-areas",
+        Product::BuriedAreas => "buried-areas",
         Product::Pockets => "pockets",
         Product::SiteCells(_) => "voronoi-cells",
         Product::SiteFaces => "voronoi-faces",
