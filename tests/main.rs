@@ -33,4 +33,5 @@ mod stream;
 mod torture;
 mod vectors;
 mod view;
+mod volumes;
 mod weight;

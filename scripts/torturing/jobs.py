@@ -93,6 +93,7 @@ JOBS = [
         "height", "spfinalize in/tile.las | spdelaunay2d | spheight --ground - in/east.las", "-o out/east.laz"
     ),
     Job("classes", "spground in/tile.laz in/east.laz --report out/found.json", "--out-dir out"),
+    Job("volumes", "spdiff in/ground.spm --levels 0:400:5", "-o out/volumes.tsv", ""),
     Job("canopy", "spcanopy --ground in/ground.spm in/tile.laz --step 2", "-o out/canopy.tif", ""),
     Job(
         "lines",

@@ -9,6 +9,7 @@
 //! | [`ground`], with [`height`] and [`meshing`] | `spground` |
 //! | [`constrain`] | `spconstrain` |
 //! | [`report`], with [`height`] | `spreport` |
+//! | [`diff`], with [`height`] | `spdiff` |
 //!
 //! `flags`, with the feature of this name, has their command lines.
 
@@ -17,6 +18,7 @@ pub mod canopy;
 pub mod constrain;
 pub mod contours;
 pub mod dem;
+pub mod diff;
 pub mod files;
 #[cfg(feature = "flags")]
 pub mod flags;

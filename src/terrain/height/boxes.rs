@@ -5,9 +5,9 @@ use spmesh_stream::model::points::Point2;
 
 /// A closed box in the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Box2 {
-    pub(super) min: Point2,
-    pub(super) max: Point2,
+pub(crate) struct Box2 {
+    pub(crate) min: Point2,
+    pub(crate) max: Point2,
 }
 
 impl Box2 {

@@ -141,7 +141,7 @@ impl Ground {
     }
 
     /// Its triangles.
-    pub(super) fn blocks(&self) -> &Blocks {
+    pub(crate) fn blocks(&self) -> &Blocks {
         &self.blocks
     }
 
