@@ -27,6 +27,7 @@ mod programs;
 mod raster;
 mod raster_storage;
 mod report;
+mod simplify;
 mod soak;
 mod sources;
 mod stream;

@@ -9,6 +9,7 @@
 //! | [`ground`], with [`height`] and [`meshing`] | `spground` |
 //! | [`constrain`] | `spconstrain` |
 //! | [`report`], with [`height`] | `spreport` |
+//! | [`simplify`], with [`height`] and [`meshing`] | `spsimplify` |
 //!
 //! `flags`, with the feature of this name, has their command lines.
 
@@ -25,4 +26,5 @@ pub mod height;
 pub mod meshing;
 pub mod points;
 pub mod report;
+pub mod simplify;
 mod surface;

@@ -1,4 +1,4 @@
-//! Command lines of `spdem`, `spground`, `spheight`, `spcanopy`, `spconstrain` and `spreport`.
+//! Command lines of `spdem`, `spground`, `spheight`, `spcanopy`, `spconstrain`, `spreport` and `spsimplify`.
 
 mod names;
 mod rewrite;
@@ -9,3 +9,4 @@ pub mod spdem;
 pub mod spground;
 pub mod spheight;
 pub mod spreport;
+pub mod spsimplify;

@@ -19,7 +19,7 @@ use spmesh_pipeline::plan::{Naming, NodeReport, Plan, Planning, hash_of_file, pl
 use spmesh_pipeline::reduce::Duplicates;
 use spmesh_spacetime::flags::dd4;
 use spmesh_splines::flags::{configgen, splinefit};
-use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spheight};
+use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spheight, spsimplify};
 use spmesh_view::flags::spview;
 use tempfile::TempDir;
 
@@ -97,6 +97,7 @@ pub const SURFACE: &[&str] = &[
     "spconstrain --lines DATA/lines.txt HERE/in.spm -o HERE/out.spm",
     "spheight --threads 1 --ground HERE/in.spm DATA/hextest.las -o HERE/out.las",
     "spcanopy --threads 1 --columns 9 --ground HERE/in.spm DATA/hextest.las -o HERE/out.tif",
+    "spsimplify --threads 1 --tolerance 1 HERE/in.spm -o HERE/out.spm",
     "spview --width 320 HERE/in.spm -o HERE/out.svg",
 ];
 
@@ -309,6 +310,7 @@ fn call_tool(tool: &str, words: &[String]) -> Result<(), String> {
         "spheight" => parsed(words, spheight::run),
         "splinefit" => parsed(words, splinefit::run),
         "spnode" => parsed(words, spnode::run),
+        "spsimplify" => parsed(words, spsimplify::run),
         "spview" => parsed(words, spview::run),
         "tess3" => parsed(words, tess3::run),
         other => panic!("no tool {other}"),
