@@ -87,8 +87,8 @@ pub const fn assembly_atoms_max(atoms: usize) -> usize {
 /// Least number of images of points in a periodic box that may be made: 600 MB with their tetrahedra.
 pub const IMAGES_SMALL: usize = 1 << 21;
 
-/// Most images of `points` points in a periodic box. Boxes that are as long as wide, with hundreds of points or
-/// more, need fewer images than points; small ones a hundred for each.
+/// Most images of `points` points in a periodic box. Boxes that are as long as wide, with hundreds of points
+/// or more, need fewer images than points; small ones a hundred for each.
 pub const fn images_max(points: usize) -> usize {
     let most = points.saturating_mul(32);
     if most < IMAGES_SMALL {

@@ -27,8 +27,8 @@ pub struct Structure {
     pub names: Names,
     /// The biological assemblies that the file states.
     pub assemblies: Assemblies,
-    /// The space group of a crystal, if the file states one beside P 1: its atoms are then only a part of what
-    /// is in the box.
+    /// The space group of a crystal, if the file states one beside P 1: its atoms are then only a part of
+    /// what is in the box.
     pub space_group: Option<String>,
     /// Oddities of the input, as sentences.
     pub warnings: Vec<String>,

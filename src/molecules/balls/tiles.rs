@@ -34,8 +34,8 @@ pub(super) fn cut(balls: Balls<'_>, most: usize) -> Vec<Members> {
     cut_first(balls, balls.centres.len(), most)
 }
 
-/// Halves the first `count` balls at the median, along the longest side of their box, until tiles have at most
-/// `most`. Tiles depend on the balls only.
+/// Halves the first `count` balls at the median, along the longest side of their box, until tiles have at
+/// most `most`. Tiles depend on the balls only.
 pub(super) fn cut_first(balls: Balls<'_>, count: usize, most: usize) -> Vec<Members> {
     let mut tiles = Vec::new();
     let mut open = vec![Members::first(balls, count)];

@@ -44,8 +44,8 @@ pub(crate) struct Wrapped {
 }
 
 impl Lattice {
-    /// The lattice that three vectors span: those of a [`PeriodicBox`](spmesh_formats::molecules::PeriodicBox),
-    /// in any unit.
+    /// The lattice that three vectors span: those of a
+    /// [`PeriodicBox`](spmesh_formats::molecules::PeriodicBox), in any unit.
     pub(crate) fn new(stated: [Point3; 3]) -> Lattice {
         let (vectors, of_stated) = reduce(stated);
         Lattice { vectors, of_stated, reciprocal: inverse(&vectors), unit: 0.0 }

@@ -199,8 +199,8 @@ impl<'m> Stars<'m> {
     /// How far beyond the box of a lattice images may be that change the cell that was measured last:
     /// `heaviest` is the greatest weight, the square of a radius. A bound, which shrinks with the cell.
     ///
-    /// A site changes it only if it is in conflict with a tetrahedron: nearer to its orthocentre than the root
-    /// of the power of that and its own weight. (Proof in `docs/theory/balls.md`.)
+    /// A site changes it only if it is in conflict with a tetrahedron: nearer to its orthocentre than the
+    /// root of the power of that and its own weight. (Proof in `docs/theory/balls.md`.)
     pub(super) fn needed(&self, v: u32, lattice: &Lattice, heaviest: f64) -> Needed {
         let mut needed = Needed::default();
         let (site, weight, of_unit) = (self.at(v), self.radius(v).powi(2), lattice.extents(1.0));

@@ -57,8 +57,8 @@ pub enum Product {
     BuriedAreas,
     /// A table of the pockets and voids between them.
     Pockets,
-    /// A table of the Voronoi cells, or of those of the power diagram of [`Options::balls`], with rows of this
-    /// level.
+    /// A table of the Voronoi cells, or of those of the power diagram of [`Options::balls`], with rows of
+    /// this level.
     SiteCells(Level),
     /// A table of the faces of these.
     SiteFaces,

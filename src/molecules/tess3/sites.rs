@@ -33,8 +33,8 @@ pub(super) fn columns(product: Product, has_radii: bool, is_periodic: bool) -> S
         .join(" ")
 }
 
-/// Measures the cells of atoms, of these radii unless there are none, and writes the rows of a table, which is
-/// opened when they are measured.
+/// Measures the cells of atoms, of these radii unless there are none, and writes the rows of a table, which
+/// is opened when they are measured.
 pub(super) fn write<'o>(
     product: Product,
     molecule: &Molecule<'_>,

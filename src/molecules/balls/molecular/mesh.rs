@@ -48,8 +48,8 @@ const TETRAHEDRA: [([usize; 4], bool); 6] = [
 /// eight times the radius of the least ball without the probe.
 ///
 /// # Errors
-/// As [`super::molecular_surface`]; usage, if the step is not positive, or so small that there are 2^20 cubes along
-/// an axis.
+/// As [`super::molecular_surface`]; usage, if the step is not positive, or so small that there are 2^20 cubes
+/// along an axis.
 ///
 /// Cost: proportional to the vertices. Memory: 200 bytes per vertex, 2 kB per ball.
 pub fn molecular_mesh(balls: Balls<'_>, probe: f64, step: f64, threads: NonZeroUsize) -> Result<Surface> {

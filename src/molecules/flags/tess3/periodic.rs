@@ -10,8 +10,8 @@ use spmesh_formats::molecules::PeriodicBox;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Voronoi cells and periodic boxes")]
 pub(super) struct PeriodicFlags {
-    /// Write a table of Voronoi cells, not clipped by balls: volume, area, number of faces, and the density of
-    /// points by Delaunay tessellation (DTFE). With --radii, cells of the power diagram (Laguerre cells).
+    /// Write a table of Voronoi cells, not clipped by balls: volume, area, number of faces, and the density
+    /// of points by Delaunay tessellation (DTFE). With --radii, cells of the power diagram (Laguerre cells).
     /// Without a box, cells on the hull are unbounded
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes", "ses"])]
     #[arg(conflicts_with_all = ["contact_areas", "buried_areas", "pockets"])]
