@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::programs::{Folder, outcome, run, sample};
 
-const TOOLS: [&str; 19] = [
+const TOOLS: [&str; 20] = [
     "spfinalize",
     "spdelaunay2d",
     "spdelaunay3d",
@@ -16,6 +16,7 @@ const TOOLS: [&str; 19] = [
     "spreport",
     "spdiff",
     "spsimplify",
+    "sptiles",
     "spnode",
     "spcanopy",
     "spview",

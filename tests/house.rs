@@ -30,10 +30,11 @@ const ARROWS: [(&str, &[&str]); 15] = [
 const OF_COMMAND_LINES: [&str; 2] = ["clap", "anyhow"];
 
 /// Packages that only one crate may use, so that a library user does not pay for them.
-const PACKAGES: [(&str, &str); 5] = [
+const PACKAGES: [(&str, &str); 6] = [
     ("epsg-utils", "formats"),
     ("faer", "splines"),
     ("laz", "formats"),
+    ("proj4rs", "terrain"),
     ("tiny-skia", "view"),
     ("zstd", "stream"),
 ];

@@ -50,6 +50,7 @@ const COMMANDS: [(&[&str], &[&str]); 22] = [
     (&["spreport"], &["tile.las"]),
     (&["spdiff"], &["mesh.spm", "--level", "1"]),
     (&["spsimplify"], &["--tolerance", "9", "mesh.spm"]),
+    (&["sptiles"], &["--tolerance", "9", "--out-dir", "tiles", "mesh.spm"]),
     (&["spview"], &["mesh.spm"]),
     (&["spinfo"], &["mesh.spm"]),
     (&["spconvert"], &["--to", "text", "mesh.spm"]),

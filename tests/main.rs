@@ -31,6 +31,7 @@ mod simplify;
 mod soak;
 mod sources;
 mod stream;
+mod tiles;
 mod torture;
 mod vectors;
 mod view;

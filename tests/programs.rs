@@ -23,6 +23,7 @@ pub fn tool(name: &str) -> Command {
         "spreport" => env!("CARGO_BIN_EXE_spreport"),
         "spdiff" => env!("CARGO_BIN_EXE_spdiff"),
         "spsimplify" => env!("CARGO_BIN_EXE_spsimplify"),
+        "sptiles" => env!("CARGO_BIN_EXE_sptiles"),
         "spnode" => env!("CARGO_BIN_EXE_spnode"),
         "spview" => env!("CARGO_BIN_EXE_spview"),
         "spinfo" => env!("CARGO_BIN_EXE_spinfo"),

@@ -10,7 +10,9 @@ use spmesh_molecules::flags::tess3;
 use spmesh_pipeline::flags::{spdelaunay2d, spdelaunay3d, spfinalize, spinfo, spnode};
 use spmesh_spacetime::flags::dd4;
 use spmesh_splines::flags::{configgen, splinefit};
-use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spdiff, spground, spheight, spreport, spsimplify};
+use spmesh_terrain::flags::{
+    spcanopy, spconstrain, spdem, spdiff, spground, spheight, spreport, spsimplify, sptiles,
+};
 use spmesh_view::flags::spview;
 
 fn main() -> std::io::Result<()> {
@@ -45,6 +47,7 @@ fn tools() -> [Command; 19] {
         spreport::Flags::command(),
         spdiff::Flags::command(),
         spsimplify::Flags::command(),
+        sptiles::Flags::command(),
         spnode::Flags::command(),
         spcanopy::Flags::command(),
         spview::Flags::command(),

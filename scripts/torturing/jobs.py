@@ -110,6 +110,7 @@ JOBS = [
     ),
     Job("simple", "spsimplify --tolerance 1 in/ground.spm", "-o out/simple.spm", ""),
     Job("levels", "spsimplify --levels 0.5,2 in/ground.spm", "--out-dir out/levels"),
+    Job("tiles", "sptiles --tolerance 2 --crs EPSG:25832 in/ground.spm", "--out-dir out/tiles"),
     # A cluster.
     Job("plan", "spfinalize in/tile.las in/east.las --leaf-points 1000 --plan out/plan.json", ""),
     Job("nodes", "spnode run in/plan.json {nodes}", "-d out/parts", needs=CLUSTER),

@@ -106,10 +106,23 @@ impl Output {
     /// # Errors
     /// If the last bytes cannot be written, or the file cannot get its name. Nothing is left behind then.
     pub fn commit(self) -> Result<()> {
+        self.finish(true)
+    }
+
+    /// The same without waiting for the disk: for many small files that count only beside another one, which is
+    /// committed after [`sync_files`].
+    ///
+    /// # Errors
+    /// As [`Output::commit`].
+    pub fn commit_unsynced(self) -> Result<()> {
+        self.finish(false)
+    }
+
+    fn finish(self, is_synced: bool) -> Result<()> {
         let committed = match self.sink {
             Sink::InPlace(mut file) => file.flush(),
-            Sink::Unnamed { file, target } => commit_unnamed(file, &target),
-            Sink::Named { file, target, _name } => commit_named(file, &target),
+            Sink::Unnamed { file, target } => commit_unnamed(file, &target, is_synced),
+            Sink::Named { file, target, _name } => commit_named(file, &target, is_synced),
         };
         committed.map_err(|e| Error::io("finishing the output", e).of_input(self.name))
     }
@@ -171,6 +184,25 @@ impl Seek for Output {
 pub fn create_folder(folder: &Path) -> Result<()> {
     fs::create_dir_all(folder)
         .map_err(|e| Error::io("creating the folder", e).of_input(folder.display().to_string()))
+}
+
+/// Waits until all files of the file system of a folder are on the disk.
+///
+/// # Errors
+/// If the system reports one.
+pub fn sync_files(folder: &Path) -> Result<()> {
+    #[cfg(target_os = "linux")]
+    {
+        let failed =
+            |e: io::Error| Error::io("waiting for the disk", e).of_input(folder.display().to_string());
+        rustix::fs::syncfs(File::open(folder).map_err(failed)?).map_err(|e| failed(e.into()))
+    }
+    #[cfg(not(target_os = "linux"))]
+    {
+        let _ = folder;
+        rustix::fs::sync();
+        Ok(())
+    }
 }
 
 /// Removes a file of an earlier run, if it is there. `what` it is stands in messages.
@@ -296,9 +328,11 @@ fn descriptor_path(file: &File) -> PathBuf {
 
 /// Links the unnamed file to its name. A link cannot replace an existing file; if there is one, the file is
 /// linked to a temporary name, which is then renamed.
-fn commit_unnamed(file: BufWriter<File>, target: &Path) -> io::Result<()> {
+fn commit_unnamed(file: BufWriter<File>, target: &Path, is_synced: bool) -> io::Result<()> {
     let file = file.into_inner().map_err(|e| e.into_error())?;
-    file.sync_all()?;
+    if is_synced {
+        file.sync_all()?;
+    }
     match link(&file, target) {
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
             let (linked, _name) = with_temporary_name(target, |name| link(&file, name))?;
@@ -306,7 +340,7 @@ fn commit_unnamed(file: BufWriter<File>, target: &Path) -> io::Result<()> {
         }
         other => other?,
     }
-    sync_folder(folder_of(target))
+    if is_synced { sync_folder(folder_of(target)) } else { Ok(()) }
 }
 
 fn link(file: &File, name: &Path) -> io::Result<()> {
@@ -314,11 +348,13 @@ fn link(file: &File, name: &Path) -> io::Result<()> {
     Ok(())
 }
 
-fn commit_named(file: BufWriter<tempfile::NamedTempFile>, target: &Path) -> io::Result<()> {
+fn commit_named(file: BufWriter<tempfile::NamedTempFile>, target: &Path, is_synced: bool) -> io::Result<()> {
     let file = file.into_inner().map_err(|e| e.into_error())?;
-    file.as_file().sync_all()?;
+    if is_synced {
+        file.as_file().sync_all()?;
+    }
     file.persist(target).map_err(|e| e.error)?;
-    sync_folder(folder_of(target))
+    if is_synced { sync_folder(folder_of(target)) } else { Ok(()) }
 }
 
 /// Waits until the names in a folder are on the disk. Folders that may not be read, and file systems without

@@ -11,6 +11,7 @@
 //! | [`report`], with [`height`] | `spreport` |
 //! | [`diff`], with [`height`] | `spdiff` |
 //! | [`simplify`], with [`height`] and [`meshing`] | `spsimplify` |
+//! | [`tiles`], with [`simplify`] | `sptiles` |
 //!
 //! `flags`, with the feature of this name, has their command lines.
 
@@ -30,3 +31,4 @@ pub mod points;
 pub mod report;
 pub mod simplify;
 mod surface;
+pub mod tiles;

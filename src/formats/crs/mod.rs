@@ -11,6 +11,7 @@ mod from_wkt;
 mod keys;
 mod methods;
 mod names;
+mod proj_string;
 mod request;
 mod system;
 mod to_keys;
@@ -19,6 +20,7 @@ mod wkt;
 
 pub use compare::differences;
 pub use keys::GeoKeys;
+pub use proj_string::proj_string;
 pub use request::requested;
 pub use system::{Ellipsoid, Geographic, Horizontal, Kind, Projection, System, Vertical};
 pub use to_keys::keys as geotiff_keys;

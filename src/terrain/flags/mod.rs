@@ -1,5 +1,5 @@
-//! Command lines of `spdem`, `spground`, `spheight`, `spcanopy`, `spconstrain`, `spreport`, `spdiff` and
-//! `spsimplify`.
+//! Command lines of `spdem`, `spground`, `spheight`, `spcanopy`, `spconstrain`, `spreport`, `spdiff`,
+//! `spsimplify` and `sptiles`.
 
 mod names;
 mod rewrite;
@@ -12,3 +12,4 @@ pub mod spground;
 pub mod spheight;
 pub mod spreport;
 pub mod spsimplify;
+pub mod sptiles;

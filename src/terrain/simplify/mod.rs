@@ -12,7 +12,8 @@ mod plane;
 mod rounds;
 mod vertices;
 
-use std::io::{Read, Write};
+use std::fs::File;
+use std::io::{BufReader, Read, Write};
 use std::num::NonZeroUsize;
 
 use crate::meshing::Meshing;
@@ -112,6 +113,14 @@ impl Simplification {
             Work { cells: &self.cells, limit: Limit { tolerance, is_integer }, meshing: &self.meshing };
         let rounds = work.choose(&mut self.chosen, progress)?;
         Ok(Stats { vertices: self.cells.points, chosen: self.chosen.len(), rounds })
+    }
+
+    /// The triangulation of what was chosen so far, from a temporary file.
+    ///
+    /// # Errors
+    /// Those of triangulating.
+    pub fn mesh(&self) -> Result<StreamReader<BufReader<File>>> {
+        self.meshing.mesh(&self.chosen, "the simplified mesh")
     }
 
     /// Writes the triangulation of what was chosen so far, which may be compressed.

@@ -19,7 +19,7 @@ use spmesh_pipeline::plan::{Naming, NodeReport, Plan, Planning, hash_of_file, pl
 use spmesh_pipeline::reduce::Duplicates;
 use spmesh_spacetime::flags::dd4;
 use spmesh_splines::flags::{configgen, splinefit};
-use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spdiff, spheight, spsimplify};
+use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spdiff, spheight, spsimplify, sptiles};
 use spmesh_view::flags::spview;
 use tempfile::TempDir;
 
@@ -100,6 +100,7 @@ pub const SURFACE: &[&str] = &[
     "spdiff --threads 1 --levels 0:9:3 HERE/in.spm -o HERE/out.tsv",
     "spdiff --threads 1 HERE/in.spm HERE/in.spm -o HERE/out.tsv",
     "spsimplify --threads 1 --tolerance 1 HERE/in.spm -o HERE/out.spm",
+    "sptiles --threads 1 --tolerance 1 --level-max 4 --crs EPSG:4326 HERE/in.spm --out-dir HERE/tiles",
     "spview --width 320 HERE/in.spm -o HERE/out.svg",
 ];
 
@@ -317,6 +318,7 @@ fn call_tool(tool: &str, words: &[String]) -> Result<(), String> {
         "splinefit" => parsed(words, splinefit::run),
         "spnode" => parsed(words, spnode::run),
         "spsimplify" => parsed(words, spsimplify::run),
+        "sptiles" => parsed(words, sptiles::run),
         "spview" => parsed(words, spview::run),
         "tess3" => parsed(words, tess3::run),
         other => panic!("no tool {other}"),
