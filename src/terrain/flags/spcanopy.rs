@@ -173,7 +173,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     // The system of the ground stands in where points state none.
     let crs = &input.description().crs;
     let crs = if *crs == Crs::Unknown { &reader.header().crs } else { crs };
-    bottom.mask = flags.outline.mask(crs, |text| flags.notice(text))?;
+    bottom.mask = flags.outline.mask(crs, Some(flags.memory), |text| flags.notice(text))?;
     let total = input.description().stated_points;
     let mut progress = Progress::new(&flags.common, "finding heights", total);
     let surface = flags.surface()?;

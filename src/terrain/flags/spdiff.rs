@@ -249,7 +249,7 @@ impl Flags {
         if path.as_os_str() == "-" {
             refuse_terminal()?;
         }
-        let (polygons, notices) = read_polygons(slice::from_ref(path), &Coordinates::F64, crs)?;
+        let (polygons, notices) = read_polygons(slice::from_ref(path), &Coordinates::F64, crs, self.memory)?;
         notices.iter().for_each(|text| self.notice(text));
         if polygons.is_empty() {
             return Err(Error::usage("there are no polygons").of_input(path.display().to_string()));
