@@ -82,18 +82,27 @@ impl FillValues {
     }
 }
 
+impl FillValues {
+    /// The fill values.
+    pub fn values(&self) -> Vec<f64> {
+        self.far().map(|(value, _)| value).collect()
+    }
+
+    /// How many points have each of them.
+    pub fn counts(&self) -> String {
+        let counts = self.far().map(|(value, count)| {
+            let points = if count == 1 { "point has" } else { "points have" };
+            // Debug writes great numbers with an exponent.
+            format!("{count} {points} z = {}", format!("{value:?}").trim_end_matches(".0"))
+        });
+        counts.collect::<Vec<String>>().join(", ")
+    }
+}
+
 /// Says how many there are, and how to drop them.
 impl fmt::Display for FillValues {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let counts: Vec<String> = self
-            .far()
-            .map(|(value, count)| {
-                let points = if count == 1 { "point has" } else { "points have" };
-                // Debug writes great numbers with an exponent.
-                format!("{count} {points} z = {}", format!("{value:?}").trim_end_matches(".0"))
-            })
-            .collect();
-        f.write_str(&counts.join(", "))?;
+        f.write_str(&self.counts())?;
         match self.others {
             Some([min, max]) => write!(
                 f,

@@ -3,6 +3,7 @@
 mod bases;
 mod choices;
 mod clamped;
+mod covariance;
 mod elevations;
 mod energies;
 mod failures;
@@ -17,5 +18,4 @@ mod random_knots;
 mod refinement;
 mod robustness;
 mod smoothing;
-mod spacing;
 mod undetermined;
