@@ -47,7 +47,7 @@ mod tetrahedralized;
 #[path = "audit/winding.rs"]
 mod winding;
 
-use spmesh_audit::{Audit, PointSet, Report, Standard, Violation};
+use spmesh_audit::{Audit, Given, PointSet, Report, Standard, Violation};
 use spmesh_base::error::ErrorKind;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind, Patch, StreamReader, StreamWriter};
@@ -56,7 +56,7 @@ use spmesh_stream::{Coordinates, Header, Kind, Patch, StreamReader, StreamWriter
 fn audit(stream: &[u8], standard: Standard, given: Option<PointSet>) -> Result<Report, Verdict> {
     let mut reader = StreamReader::new(stream, "test").map_err(|e| Verdict::Malformed(e.to_string()))?;
     let header = reader.header().clone();
-    let mut audit = Audit::new(&header, standard, given).unwrap();
+    let mut audit = Audit::new(&header, standard, given.map(Given::All)).unwrap();
     while let Some(event) = reader.next_event().map_err(|e| Verdict::Malformed(e.to_string()))? {
         if let Err(violation) = audit.event(&event) {
             let error = violation.to_error(&header);

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::programs::{Folder, outcome, run, sample};
 
-const TOOLS: [&str; 17] = [
+const TOOLS: [&str; 19] = [
     "spfinalize",
     "spdelaunay2d",
     "spdelaunay3d",
@@ -14,6 +14,8 @@ const TOOLS: [&str; 17] = [
     "spground",
     "spheight",
     "spreport",
+    "spdiff",
+    "spsimplify",
     "spnode",
     "spcanopy",
     "spview",
@@ -151,7 +153,7 @@ fn each_failure_has_its_exit_code() {
 #[test]
 fn names_of_other_formats_are_refused() {
     let folder = Folder::new();
-    let tools: [(&str, &[&str]); 17] = [
+    let tools: [(&str, &[&str]); 19] = [
         ("spfinalize", &["-"]),
         ("spdelaunay2d", &[]),
         ("spdelaunay3d", &[]),
@@ -161,6 +163,8 @@ fn names_of_other_formats_are_refused() {
         ("spground", &["none.las"]),
         ("spheight", &["--ground", "none", "none.las"]),
         ("spreport", &["none.las"]),
+        ("spdiff", &["none.spm", "--level", "1"]),
+        ("spsimplify", &["--tolerance", "1"]),
         ("spnode", &["collect", "none.json", "-d", "."]),
         ("spcanopy", &["--ground", "none", "none.las"]),
         ("spview", &[]),

@@ -114,7 +114,7 @@ fn compressed_meshes_and_streams_are_read_as_plain_ones() {
 fn compressed_structures_and_volumes_are_read_as_plain_ones() {
     for name in ["1aki.pdb", "1aki.cif"] {
         let content = std::fs::read(sample(name)).expect("a sample");
-        assert_reads_compressed("tess3", &["--table", "--atoms", "ca"], name, &content);
+        assert_reads_compressed("tess3", &["--atoms", "ca"], name, &content);
     }
     let off = b"OFF\n5 0 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 2\n";
     assert_reads_compressed("tess3", &[], "points.off", off);

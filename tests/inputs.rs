@@ -38,7 +38,7 @@ fn flags(command: &[&str]) -> Vec<String> {
 }
 
 /// A command of every program, and arguments with which it runs in a folder that has the files.
-const COMMANDS: [(&[&str], &[&str]); 20] = [
+const COMMANDS: [(&[&str], &[&str]); 22] = [
     (&["spfinalize"], &["points.txt"]),
     (&["spdelaunay2d"], &["points.spm"]),
     (&["spdelaunay3d"], &["points3.spm"]),
@@ -48,6 +48,8 @@ const COMMANDS: [(&[&str], &[&str]); 20] = [
     (&["spheight"], &["--ground", "mesh.spm", "tile.las"]),
     (&["spcanopy"], &["--ground", "mesh.spm", "--step", "50", "tile.las"]),
     (&["spreport"], &["tile.las"]),
+    (&["spdiff"], &["mesh.spm", "--level", "1"]),
+    (&["spsimplify"], &["--tolerance", "9", "mesh.spm"]),
     (&["spview"], &["mesh.spm"]),
     (&["spinfo"], &["mesh.spm"]),
     (&["spconvert"], &["--to", "text", "mesh.spm"]),

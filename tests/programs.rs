@@ -21,6 +21,8 @@ pub fn tool(name: &str) -> Command {
         "spground" => env!("CARGO_BIN_EXE_spground"),
         "spheight" => env!("CARGO_BIN_EXE_spheight"),
         "spreport" => env!("CARGO_BIN_EXE_spreport"),
+        "spdiff" => env!("CARGO_BIN_EXE_spdiff"),
+        "spsimplify" => env!("CARGO_BIN_EXE_spsimplify"),
         "spnode" => env!("CARGO_BIN_EXE_spnode"),
         "spview" => env!("CARGO_BIN_EXE_spview"),
         "spinfo" => env!("CARGO_BIN_EXE_spinfo"),

@@ -10,7 +10,7 @@ use spmesh_molecules::flags::tess3;
 use spmesh_pipeline::flags::{spdelaunay2d, spdelaunay3d, spfinalize, spinfo, spnode};
 use spmesh_spacetime::flags::dd4;
 use spmesh_splines::flags::{configgen, splinefit};
-use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spground, spheight, spreport};
+use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spdiff, spground, spheight, spreport, spsimplify};
 use spmesh_view::flags::spview;
 
 fn main() -> std::io::Result<()> {
@@ -33,7 +33,7 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-fn tools() -> [Command; 17] {
+fn tools() -> [Command; 19] {
     [
         spfinalize::Flags::command(),
         spdelaunay2d::Flags::command(),
@@ -43,6 +43,8 @@ fn tools() -> [Command; 17] {
         spground::Flags::command(),
         spheight::Flags::command(),
         spreport::Flags::command(),
+        spdiff::Flags::command(),
+        spsimplify::Flags::command(),
         spnode::Flags::command(),
         spcanopy::Flags::command(),
         spview::Flags::command(),

@@ -93,6 +93,7 @@ JOBS = [
         "height", "spfinalize in/tile.las | spdelaunay2d | spheight --ground - in/east.las", "-o out/east.laz"
     ),
     Job("classes", "spground in/tile.laz in/east.laz --report out/found.json", "--out-dir out"),
+    Job("volumes", "spdiff in/ground.spm --levels 0:400:5", "-o out/volumes.tsv", ""),
     Job("canopy", "spcanopy --ground in/ground.spm in/tile.laz --step 2", "-o out/canopy.tif", ""),
     Job(
         "lines",
@@ -107,6 +108,8 @@ JOBS = [
         "-o out/breaklines.tif",
         "",
     ),
+    Job("simple", "spsimplify --tolerance 1 in/ground.spm", "-o out/simple.spm", ""),
+    Job("levels", "spsimplify --levels 0.5,2 in/ground.spm", "--out-dir out/levels"),
     # A cluster.
     Job("plan", "spfinalize in/tile.las in/east.las --leaf-points 1000 --plan out/plan.json", ""),
     Job("nodes", "spnode run in/plan.json {nodes}", "-d out/parts", needs=CLUSTER),

@@ -23,6 +23,7 @@ claims! {
     Counts "counts" "vertices, merged and unwritten points are all points"
     Bounds "bounds" "the bounding box holds all points"
     Points "points" "the vertices are where the given points are"
+    Within "within" "every given point is at most so far above or below the surface"
     Labels "labels" "all vertices have a label or none has, and it follows its vertex"
     Region "region" "every point lies in the region of the stream"
     Cells "cells" "no point follows the tag of its cell, every tag is news"

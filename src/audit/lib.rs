@@ -86,6 +86,7 @@ mod triangles;
 mod unused;
 mod vertices;
 mod winding;
+mod within;
 
 pub use check::{Check, CheckLine, Violation};
 pub use inventory::{
@@ -96,6 +97,7 @@ pub use point_set::PointSet;
 pub use regions::RegionInventory;
 pub use tetrahedra::{Census, Counts, Faults};
 pub use triangles::Standard;
+pub use within::NearPoints;
 
 use check::Ledger;
 use mesh::{MeshAudit, mesh_checks};
@@ -115,10 +117,18 @@ use spmesh_stream::{Event, Header, Kind};
 /// block.
 pub struct Audit {
     state: State,
-    given: Option<PointSet>,
+    given: Option<Given>,
     ledger: Ledger,
     violation: Option<Violation>,
     open_max: usize,
+}
+
+/// Points that a mesh is compared with.
+pub enum Given {
+    /// Its vertices have exactly these positions.
+    All(PointSet),
+    /// Its vertices are some of these, and the others are near its triangles.
+    Near(Box<NearPoints>),
 }
 
 enum State {
@@ -143,11 +153,11 @@ pub struct Report {
 }
 
 impl Audit {
-    /// An audit of a stream with this header. `given` are the points whose positions the mesh must have.
+    /// An audit of a stream with this header. `given` are points that the mesh must have, or be near to.
     ///
     /// # Errors
     /// Usage, if there is no audit of the kind.
-    pub fn new(header: &Header, standard: Standard, given: Option<PointSet>) -> Result<Self, Error> {
+    pub fn new(header: &Header, standard: Standard, given: Option<Given>) -> Result<Self, Error> {
         if header.part.is_some() {
             return Err(Error::usage(
                 "a part of a mesh proves nothing alone: audit the manifest that spnode collect writes",
@@ -190,6 +200,7 @@ impl Audit {
         checks.extend((is_mesh && standard == Standard::Canonical).then_some(Check::Canonical));
         checks.extend((is_mesh && header.weighted.is_some()).then_some(Check::Hidden));
         checks.extend((is_mesh && given.is_some()).then_some(Check::Points));
+        checks.extend(matches!(given, Some(Given::Near(_))).then_some(Check::Within));
         let ledger = Ledger::of(&checks);
         Ok(Audit { state, given, ledger, violation: None, open_max: 0 })
     }
@@ -246,9 +257,19 @@ impl Audit {
         }
     }
 
-    /// Removes the vertices of the event from the given points.
+    /// Compares the event with the given points.
     fn check_given(&mut self, event: &Event) -> Result<(), Violation> {
-        let Some(given) = &mut self.given else { return Ok(()) };
+        let given = match &mut self.given {
+            None => return Ok(()),
+            Some(Given::Near(near)) => {
+                return match event {
+                    Event::Patch(patch) => near.patch(patch, &mut self.ledger),
+                    Event::End(_) => near.check_complete(),
+                    _ => Ok(()),
+                };
+            }
+            Some(Given::All(given)) => given,
+        };
         let mut take = |id: Option<u64>, at: Point| given.take(id, at, &mut self.ledger);
         match event {
             Event::Patch(patch) => {

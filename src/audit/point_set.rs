@@ -107,7 +107,7 @@ impl Keys {
 }
 
 /// Whether coordinates mean the same in both encodings.
-fn same_positions(a: &Coordinates, b: &Coordinates, dims: usize) -> bool {
+pub(super) fn same_positions(a: &Coordinates, b: &Coordinates, dims: usize) -> bool {
     match (a, b) {
         (Coordinates::F64, Coordinates::F64) => true,
         (Coordinates::I32 { scale: s, offset: o }, Coordinates::I32 { scale: t, offset: p }) => {

@@ -84,6 +84,22 @@ pub const fn assembly_atoms_max(atoms: usize) -> usize {
     if most < ASSEMBLY_ATOMS_MAX { most } else { ASSEMBLY_ATOMS_MAX }
 }
 
+/// Least number of images of points in a periodic box that may be made: 600 MB with their tetrahedra.
+pub const IMAGES_SMALL: usize = 1 << 21;
+
+/// Most images of `points` points in a periodic box. Boxes that are as long as wide, with hundreds of points
+/// or more, need fewer images than points; small ones a hundred for each.
+pub const fn images_max(points: usize) -> usize {
+    let most = points.saturating_mul(32);
+    if most < IMAGES_SMALL {
+        IMAGES_SMALL
+    } else if most < 1 << 25 {
+        most
+    } else {
+        1 << 25
+    }
+}
+
 /// Longest header line of a text twin, in bytes: it may hold a CRS, escaped.
 pub const TEXT_HEADER_LINE_MAX: usize = 1 << 23;
 

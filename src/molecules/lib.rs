@@ -1,11 +1,12 @@
 //! Molecules and other balls: tetrahedra of atoms (thesis 3.4), and the union of balls, its areas, volumes,
 //! contacts, pockets and surfaces.
 //!
-//! [`balls`] computes, [`tess3`] is the engine of the program; `flags`, with the feature of this name, has
-//! its command line. `float`, with the feature `experiments`, is the program of the thesis, in floating-point
-//! arithmetic.
+//! [`balls`] and [`cells`] compute, [`tess3`] is the engine of the program; `flags`, with the feature of this
+//! name, has its command line. `float`, with the feature `experiments`, is the program of the thesis, in
+//! floating-point arithmetic.
 
 pub mod balls;
+pub mod cells;
 #[cfg(feature = "flags")]
 pub mod flags;
 #[cfg(feature = "experiments")]

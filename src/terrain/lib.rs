@@ -9,6 +9,8 @@
 //! | [`ground`], with [`height`] and [`meshing`] | `spground` |
 //! | [`constrain`] | `spconstrain` |
 //! | [`report`], with [`height`] | `spreport` |
+//! | [`diff`], with [`height`] | `spdiff` |
+//! | [`simplify`], with [`height`] and [`meshing`] | `spsimplify` |
 //!
 //! `flags`, with the feature of this name, has their command lines.
 
@@ -17,6 +19,7 @@ pub mod canopy;
 pub mod constrain;
 pub mod contours;
 pub mod dem;
+pub mod diff;
 pub mod files;
 #[cfg(feature = "flags")]
 pub mod flags;
@@ -25,4 +28,5 @@ pub mod height;
 pub mod meshing;
 pub mod points;
 pub mod report;
+pub mod simplify;
 mod surface;

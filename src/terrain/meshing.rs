@@ -48,14 +48,14 @@ impl Meshing {
     /// # Errors
     /// Those of finalizing and triangulating.
     pub fn mesh(&self, points: &dyn Passes, name: &str) -> Result<StreamReader<BufReader<File>>> {
-        self.stream(name, |output| self.write(points, output))
+        self.stream(name, |output| self.write(points, false, output))
     }
 
-    /// Writes the mesh of points.
+    /// Writes the mesh of points, which may be compressed.
     ///
     /// # Errors
     /// As [`Meshing::mesh`]; if writing fails.
-    pub fn write(&self, points: &dyn Passes, output: impl Write + Send) -> Result<()> {
+    pub fn write(&self, points: &dyn Passes, compress: bool, output: impl Write + Send) -> Result<()> {
         let options = finalize::Options {
             leaves: Leaves::Collapsed { cell_points: CELL_POINTS, level_max: None },
             order: Order::Chunked,
@@ -73,6 +73,7 @@ impl Meshing {
             duplicates: self.duplicates,
             threads: self.threads,
             memory: Some(self.memory),
+            compress,
             ..reduce::Options::default()
         };
         reduce::triangulate(finalized, output, &options, |_| {}).map(drop)

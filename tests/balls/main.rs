@@ -1,11 +1,16 @@
 //! Unions of balls against slow and plain references.
 
 mod balls;
+mod cells;
 #[cfg(feature = "experiments")]
 mod float;
 #[cfg(feature = "experiments")]
 mod float_parts;
+mod in_box;
+mod molecular_mesh;
+mod parts;
 mod pockets;
+mod polyhedron;
 mod surface;
 mod surfaces;
 mod tiles;

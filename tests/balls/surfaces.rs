@@ -18,7 +18,7 @@ fn meshed(centres: &[Point], radii: &[f64], step: f64) -> Surface {
 }
 
 /// Each edge belongs to two triangles, which run along it in opposite directions.
-fn check_closed(triangles: &[[u32; 3]]) {
+pub(super) fn check_closed(triangles: &[[u32; 3]]) {
     let mut edges: HashMap<[u32; 2], [u32; 2]> = HashMap::new();
     for &[a, b, c] in triangles {
         for [from, to] in [[a, b], [b, c], [c, a]] {
@@ -49,7 +49,7 @@ fn check_on_spheres(surface: &Surface, centres: &[Point], radii: &[f64]) {
     }
 }
 
-fn area(surface: &Surface) -> f64 {
+pub(super) fn area(surface: &Surface) -> f64 {
     let twice = |[a, b, c]: [Point; 3]| {
         let normal = cross(minus(b, a), minus(c, a));
         dot(normal, normal).sqrt()
@@ -58,7 +58,7 @@ fn area(surface: &Surface) -> f64 {
 }
 
 /// The volume that is enclosed, by component: those of voids are negative.
-fn volumes(surface: &Surface) -> Vec<f64> {
+pub(super) fn volumes(surface: &Surface) -> Vec<f64> {
     let mut group: Vec<usize> = (0..surface.points.len()).collect();
     fn root(group: &mut [usize], mut at: usize) -> usize {
         while group[at] != at {

@@ -1,6 +1,6 @@
 //! The set of tetrahedra is that of the kernel over all points at once, however the input comes.
 
-use spmesh_audit::{Audit, PointSet, Standard};
+use spmesh_audit::{Audit, Given, PointSet, Standard};
 use spmesh_base::error::ErrorKind;
 use spmesh_pipeline::reduce::{Duplicates, Options};
 use spmesh_stream::model::bounds::Point;
@@ -29,7 +29,7 @@ pub fn assert_proven(mesh: &[u8], points: &[Point], coordinates: Coordinates) {
     given.extend(points);
     let given = given.finish(&coordinates).unwrap();
     let mut reader = StreamReader::new(mesh, "mesh").unwrap();
-    let mut audit = Audit::new(reader.header(), Standard::Canonical, Some(given)).unwrap();
+    let mut audit = Audit::new(reader.header(), Standard::Canonical, Some(Given::All(given))).unwrap();
     while let Some(event) = reader.next_event().unwrap() {
         audit.event(&event).unwrap();
     }

@@ -1,7 +1,7 @@
 //! Tiles of space: merging separately triangulated parts of an input gives the mesh of one run over all of
 //! it.
 
-use spmesh_audit::{Audit, PointSet, Standard};
+use spmesh_audit::{Audit, Given, PointSet, Standard};
 use spmesh_base::error::Result;
 use spmesh_pipeline::reduce::{Options, Part, Stats};
 use spmesh_stream::model::bounds::{Point, Region};
@@ -32,7 +32,7 @@ fn assert_proven(bytes: &[u8], points: Option<&[Point]>) {
     let given = points.map(|points| {
         let mut given = PointSet::new(coordinates, 3);
         given.extend(points);
-        given.finish(&coordinates).unwrap()
+        Given::All(given.finish(&coordinates).unwrap())
     });
     let mut audit = Audit::new(reader.header(), Standard::Canonical, given).unwrap();
     while let Some(event) = reader.next_event().unwrap() {

@@ -11,6 +11,7 @@ pub mod incremental;
 pub mod laplace;
 pub mod natural;
 pub mod noding;
+pub mod overlay;
 pub mod peer;
 pub mod segments;
 pub mod sets;

@@ -148,7 +148,7 @@ fn xyz_frames_are_models() {
     );
     assert_eq!(structure.warnings.len(), 1, "the last line has no end");
     let by_number = read("1\n\n6 1 2 3\n").unwrap();
-    assert_eq!(atoms(&by_number), ["1 1 6 6 - - - - 1 1000 2000 3000"]);
+    assert_eq!(atoms(&by_number), ["1 1 6 C - - - - 1 1000 2000 3000"]);
 
     let cases: [(&str, &[&str]); 6] = [
         ("2\n\nC 0 0 0\n", &["line 4", "truncated", "atom 2 of 2"]),
@@ -183,7 +183,10 @@ fn extended_xyz_states_its_columns() {
     }
     let periodic =
         frame("Lattice=\"9 0 0 0 9 0 0 0 9\" Properties=species:S:1:pos:R:3", "C 1.5 2 3").unwrap();
-    assert!(periodic.warnings[0].contains("(Lattice)"));
+    assert!(periodic.models[0].periodic_box.is_some());
+    let notices = |is_periodic| periodic.notices(&Selection::default(), is_periodic);
+    assert!(notices(false)[0].contains("--periodic"));
+    assert!(notices(true).is_empty());
     for list in [
         "species:S:1:pos:R",
         "species:S:1:pos:R:2",

@@ -22,14 +22,14 @@ fn columns_are_read_whatever_ends_the_line() {
     let cases = [
         (whole.to_string(), "1 7 HG21 H A B ILE -5C 0.25"),
         (whole.replace('\n', "\r\n"), "1 7 HG21 H A B ILE -5C 0.25"),
-        (whole.to_lowercase(), "1 7 hg21 h a b ile -5c 0.25"),
+        (whole.to_lowercase(), "1 7 hg21 H a b ile -5c 0.25"),
         (whole.replace("ATOM  ", "HETATM"), "1 7 HG21* H A B ILE -5C 0.25"),
-        (whole[..54].to_string() + "\n", "1 7 HG21 - A B ILE -5C 1"),
-        (whole[..59].to_string() + "\n", "1 7 HG21 - A B ILE -5C 0.2"),
-        (whole[..77].to_string() + "\n", "1 7 HG21 - A B ILE -5C 0.25"),
+        (whole[..54].to_string() + "\n", "1 7 HG21 H A B ILE -5C 1"),
+        (whole[..59].to_string() + "\n", "1 7 HG21 H A B ILE -5C 0.2"),
+        (whole[..77].to_string() + "\n", "1 7 HG21 H A B ILE -5C 0.25"),
         (whole[..78].to_string() + "\n", "1 7 HG21 H A B ILE -5C 0.25"),
         // Columns 73 to 80 in files of the 1990s: the code of the entry and the number of the line.
-        (whole[..66].to_string() + "      1ABC  87\n", "1 7 HG21 - A B ILE -5C 0.25"),
+        (whole[..66].to_string() + "      1ABC  87\n", "1 7 HG21 H A B ILE -5C 0.25"),
         ("\u{feff}".to_string() + whole, "1 7 HG21 H A B ILE -5C 0.25"),
     ];
     for (line, expected) in cases {

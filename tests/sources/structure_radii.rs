@@ -102,7 +102,7 @@ fn an_atom_without_radius_is_named_with_a_remedy() {
     let cases = [
         ("HETATM    7  X1  UNX B   5", "X", "atom 7 X1 in residue UNX 5 of chain B, element X"),
         ("HETATM    8  Q    QQ     5C", "", "atom 8 Q in residue QQ 5C, of unknown element"),
-        ("HETATM    9 RF    RF A   1", "RF", "atom 9 RF in residue RF 1 of chain A, element RF"),
+        ("HETATM    9 RF    RF A   1", "RF", "atom 9 RF in residue RF 1 of chain A, element Rf"),
     ];
     for (start, element, expected) in cases {
         let error = step(&protor, start, element).expect_err(start);

@@ -207,14 +207,14 @@ fn levels_add_up() {
         let atoms = of_sample("1aki.pdb", flags);
         let mut residues: BTreeMap<String, f64> = BTreeMap::new();
         for row in 0..atoms.len() {
-            let name = atoms.text(row, "atom");
+            let name = atoms.label(row, "");
             let residue = name.rsplit_once('/').unwrap().0.to_string();
             *residues.entry(residue).or_default() += atoms.number(row, column);
         }
         let rows = of_sample("1aki.pdb", &[flags, &["--per", "residue"]].concat());
         assert_eq!(rows.len(), residues.len());
         for row in 0..rows.len() {
-            assert_near(rows.number(row, column), residues[rows.text(row, "residue")], 1e-5);
+            assert_near(rows.number(row, column), residues[&rows.label(row, "")], 1e-5);
         }
         for level in ["chain", "molecule"] {
             let rows = of_sample("1aki.pdb", &[flags, &["--per", level]].concat());
@@ -229,8 +229,8 @@ fn contacts_of_residues_are_sums_of_those_of_atoms() {
     let atoms = of_sample("1aki.pdb", &["--contact-areas"]);
     let mut sums: BTreeMap<[String; 2], (u32, f64)> = BTreeMap::new();
     for row in 0..atoms.len() {
-        let residue = |column| atoms.text(row, column).rsplit_once('/').unwrap().0.to_string();
-        let (p, q) = (residue("atom1"), residue("atom2"));
+        let residue = |end| atoms.label(row, end).rsplit_once('/').unwrap().0.to_string();
+        let (p, q) = (residue("1"), residue("2"));
         if p != q {
             let mut pair = [p, q];
             pair.sort();
@@ -241,7 +241,7 @@ fn contacts_of_residues_are_sums_of_those_of_atoms() {
     let rows = of_sample("1aki.pdb", &["--contact-areas", "--per", "residue"]);
     assert_eq!(rows.len(), sums.len());
     for row in 0..rows.len() {
-        let mut pair = ["residue1", "residue2"].map(|column| rows.text(row, column).to_string());
+        let mut pair = ["1", "2"].map(|end| rows.label(row, end));
         pair.sort();
         let (contacts, area) = sums[&pair];
         assert_eq!(rows.text(row, "contacts"), contacts.to_string());
@@ -259,8 +259,8 @@ fn contacts_are_filtered() {
     assert_eq!(near.len(), count(&|row| all.number(row, "distance") <= 3.5));
     assert!(near.len() > 100 && near.len() < all.len());
     let between = of_sample("1l2y.pdb.gz", &["--contact-areas", "--between", "residues"]);
-    let residue = |row: usize, column| all.text(row, column).rsplit_once('/').unwrap().0.to_string();
-    assert_eq!(between.len(), count(&|row| residue(row, "atom1") != residue(row, "atom2")));
+    let residue = |row: usize, end| all.label(row, end).rsplit_once('/').unwrap().0.to_string();
+    assert_eq!(between.len(), count(&|row| residue(row, "1") != residue(row, "2")));
     let two = [Record::carbon(1, [0.0; 3]), Record { chain: 'B', ..Record::carbon(2, [2.0, 0.0, 0.0]) }];
     for (chains, expected) in [(['A', 'B'], 1), (['A', 'A'], 0)] {
         let atoms = [0, 1].map(|i| Record { chain: chains[i], ..two[i].clone() });

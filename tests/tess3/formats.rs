@@ -8,7 +8,7 @@ use super::molecules::Rows;
 use crate::programs::{Folder, assert_outcome, outcome, run, sample};
 
 /// Flags of each kind of table.
-const TABLES: [&[&str]; 11] = [
+const TABLES: [&[&str]; 15] = [
     &["--table"],
     &["--contacts", "--alpha", "3"],
     &["--sasa", "--volumes"],
@@ -20,6 +20,10 @@ const TABLES: [&[&str]; 11] = [
     &["--pockets", "--mouths", "--probe", "0"],
     &["--pockets", "--mouths", "--probe", "0", "--per", "residue"],
     &["--ses", "--probe", "1.4"],
+    &["--sasa", "--per", "residue", "--classes", "polymer", "--by-kind", "--relative", "tien"],
+    &["--sasa", "--volumes", "--gradients"],
+    &["--buried-areas", "--between", "A:1-5"],
+    &["--buried-areas", "--between", "A:1-5", "--per", "atom"],
 ];
 
 /// The table of a sample in a format: the content of the file.
@@ -66,7 +70,9 @@ fn names_tell_the_format_unless_a_flag_does() {
     let folder = Folder::new();
     let file = folder.write("four.xyz", text);
     let lines = run("tess3", &["--table", "--format", "jsonl", &file], &[]);
-    assert!(lines.stdout.starts_with(b"{\"model\":1,\"atom1\":\"1\","), "{:?}", outcome(&lines));
+    let text = String::from_utf8(lines.stdout.clone()).unwrap();
+    let start = format!("{{\"file\":\"{file}\",\"model\":1,\"atom1\":\"1\",");
+    assert!(text.starts_with(&start), "{text}");
     let path = folder.path("t.txt");
     assert_eq!(outcome(&run("tess3", &["--table", "--format", "jsonl", &file, "-o", &path], &[])).0, Some(0));
     assert_eq!(fs::read(&path).unwrap(), lines.stdout);
@@ -143,9 +149,9 @@ mod parquet {
     #[test]
     fn a_table_without_rows_has_columns() {
         let table = read(&made(&["--contacts", "--alpha", "0.001"], "parquet"));
-        assert_eq!((table.columns.len(), table.rows.len()), (7, 0));
-        assert_eq!(table.columns[5], ("distance".to_string(), "DOUBLE"));
-        assert_eq!(table.columns[3], ("serial1".to_string(), "INT64"));
+        assert_eq!((table.columns.len(), table.rows.len()), (26, 0));
+        assert_eq!(table.columns[24], ("distance".to_string(), "DOUBLE"));
+        assert_eq!(table.columns[12], ("serial1".to_string(), "INT64"));
     }
 
     #[test]
@@ -161,8 +167,10 @@ mod parquet {
         let lines = Rows::new(&String::from_utf8(lines).unwrap());
         assert_eq!(table.rows.len(), lines.len());
         for (row, fields) in table.rows.iter().zip(&lines.rows) {
-            assert_is(&row[2], &Json::from(&fields[2][..]));
-            assert_is(&row[5], &fields[5].parse::<f64>().unwrap().into());
+            // Points have no names.
+            assert!(row[2].is_none());
+            assert_is(&row[12], &fields[12].parse::<i64>().unwrap().into());
+            assert_is(&row[24], &fields[24].parse::<f64>().unwrap().into());
         }
     }
 

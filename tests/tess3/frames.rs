@@ -6,7 +6,7 @@ use std::path::Path;
 use super::molecules::Rows;
 use crate::programs::{Folder, outcome, run};
 
-fn sample(name: &str) -> String {
+pub fn sample(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name).to_str().unwrap().to_string()
 }
 
@@ -19,6 +19,17 @@ fn table(arguments: &[&str]) -> String {
 
 const AREAS: [&str; 4] = ["--sasa", "--volumes", "--per", "residue"];
 
+/// The rows of a table: file, number of the model or frame, and the rest.
+fn rows(table: &str) -> Vec<[&str; 3]> {
+    let fields = table.lines().skip(1).map(|line| line.splitn(3, '\t').collect::<Vec<_>>());
+    fields.map(|fields| fields.try_into().unwrap()).collect()
+}
+
+/// The rows without the file.
+fn numbered(table: &str) -> Vec<[&str; 2]> {
+    rows(table).into_iter().map(|[_, number, rest]| [number, rest]).collect()
+}
+
 /// The frames of `frames.gro` as texts.
 fn separate() -> Vec<String> {
     let text = fs::read_to_string(sample("frames.gro")).unwrap();
@@ -29,19 +40,26 @@ fn separate() -> Vec<String> {
 #[test]
 fn frames_have_the_rows_of_files_of_their_own() {
     let folder = Folder::new();
-    let mut expected = String::new();
-    for (number, text) in separate().iter().enumerate() {
-        let rows = table(&[&AREAS[..], &[&folder.write("one.gro", text)]].concat());
-        let rows = rows.lines().skip(1).map(|row| format!("{number}{}\n", row.strip_prefix('1').unwrap()));
-        expected.extend(rows);
-    }
+    let of_files: Vec<String> = separate()
+        .iter()
+        .map(|text| table(&[&AREAS[..], &[&folder.write("one.gro", text)]].concat()))
+        .collect();
+    let expected: Vec<[&str; 2]> = ["0", "1", "2"]
+        .iter()
+        .zip(&of_files)
+        .flat_map(|(number, table)| rows(table).into_iter().map(move |[_, _, rest]| [*number, rest]))
+        .collect();
     let [gro, xtc, trr, dcd] = ["gro", "xtc", "trr", "dcd"].map(|ending| sample(&format!("frames.{ending}")));
     for threads in ["1", "2", "5"] {
         let arguments = [&AREAS[..], &["--threads", threads]].concat();
         let of_frames = table(&[&arguments[..], &["--frames", "::", &gro]].concat());
-        assert!(of_frames.starts_with("frame\tresidue\t"), "{of_frames}");
-        assert_eq!(of_frames.split_once('\n').unwrap().1, expected);
-        assert_eq!(table(&[&arguments[..], &["--top", &gro, &xtc]].concat()), of_frames);
+        assert!(of_frames.starts_with("file\tframe\tchain\t"), "{of_frames}");
+        assert_eq!(numbered(&of_frames), expected);
+        let of_trajectory = table(&[&arguments[..], &["--top", &gro, &xtc]].concat());
+        assert_eq!(numbered(&of_trajectory), expected);
+        // The file is that of the frames.
+        assert!(rows(&of_frames).iter().all(|row| row[0] == gro));
+        assert!(rows(&of_trajectory).iter().all(|row| row[0] == xtc));
         for exact in [&trr, &dcd] {
             let rows = Rows::new(&table(&[&arguments[..], &["--top", &gro, exact]].concat()));
             let rounded = Rows::new(&of_frames);
@@ -51,10 +69,10 @@ fn frames_have_the_rows_of_files_of_their_own() {
         }
     }
     let second = table(&[&AREAS[..], &["--top", &gro, &xtc, "--frames", "1"]].concat());
-    assert!(second.lines().skip(1).all(|row| row.starts_with("1\t") && expected.contains(row)), "{second}");
+    assert!(numbered(&second).iter().all(|row| row[0] == "1" && expected.contains(row)), "{second}");
     let zipped = folder.write("frames.xtc.zst", zstd::encode_all(&fs::read(&xtc).unwrap()[..], 3).unwrap());
     let [plain, zipped] = [&xtc, &zipped].map(|path| table(&["--contacts", "--top", &gro, path]));
-    assert!(plain.starts_with("frame\tatom1") && plain == zipped);
+    assert!(plain.starts_with("file\tframe\tchain1") && numbered(&plain) == numbered(&zipped));
 }
 
 #[test]
@@ -69,8 +87,8 @@ fn models_are_measured_by_their_numbers() {
     }
     assert_eq!(areas(&["--model", "2..2"]), second);
     let frames = areas(&["--frames", "1:"]);
-    let rows = frames.lines().skip(1).map(|row| format!("2{}\n", row.strip_prefix('1').unwrap()));
-    assert_eq!(rows.collect::<String>(), second_rows);
+    let of_models = numbered(&second).into_iter().map(|[_, rest]| ["1", rest]);
+    assert_eq!(numbered(&frames), of_models.collect::<Vec<_>>());
     for (range, code, words) in [("3..9", 2, "has no model"), ("2..1", 2, "FIRST..LAST")] {
         let (found, message) = outcome(&run("tess3", &["--model", range, "--sasa", &path], &[]));
         assert!(found == Some(code) && message.contains(words), "{message}");
@@ -99,6 +117,14 @@ fn a_sweep_has_a_row_for_each_frame() {
     let output = summary.text(summary.of_file("frames.xtc"), "output").to_string();
     assert_eq!(fs::read_to_string(folder.path(&format!("out/{output}"))).unwrap(), of_one);
     assert!(sweep(&["--resume"]).1.contains("2 had been done before"), "{:?}", sweep(&["--resume"]));
+    // One table of all, on any number of threads.
+    let whole = folder.path("whole.tsv");
+    for threads in ["1", "3"] {
+        assert_eq!(sweep(&["-o", &whole, "--threads", threads]).0, Some(0));
+        let of_both = fs::read_to_string(&whole).unwrap();
+        assert_eq!(rows(&of_both)[..3], rows(&of_one));
+        assert_eq!(rows(&of_both).len(), 6);
+    }
     // Meshes are one output per frame.
     let meshes = folder.path("meshes");
     assert_eq!(outcome(&run("tess3", &["--top", &gro, &xtc, "--out-dir", &meshes], &[])).0, Some(0));

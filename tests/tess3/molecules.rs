@@ -107,6 +107,26 @@ impl Rows {
         self.text(row, column).parse().unwrap()
     }
 
+    /// Whether there is a column.
+    pub fn has(&self, column: &str) -> bool {
+        self.columns.iter().any(|name| name == column)
+    }
+
+    /// What identifies an atom, a residue or a chain, with slashes between: the columns whose names end so.
+    pub fn label(&self, row: usize, end: &str) -> String {
+        let text = |column: &str| self.text(row, &format!("{column}{end}"));
+        let mut label = text("chain").to_string();
+        if self.has(&format!("residue_name{end}")) {
+            label +=
+                &format!("/{}/{}{}", text("residue_name"), text("residue_number"), text("insertion_code"));
+        }
+        if self.has(&format!("atom_name{end}")) {
+            label += &format!("/{}", text("atom_name"));
+            label += &if text("altloc").is_empty() { String::new() } else { format!("/{}", text("altloc")) };
+        }
+        label
+    }
+
     /// The row of the file whose name ends so.
     pub fn of_file(&self, name: &str) -> usize {
         let is_it = |&row: &usize| self.text(row, "file").ends_with(name);

@@ -60,6 +60,27 @@ impl Ply {
         Ply { header, points, faces }
     }
 
+    /// Each edge is of two faces, which run along it in opposite directions.
+    fn is_closed(&self) -> bool {
+        let mut uses: HashMap<[usize; 2], [u32; 2]> = HashMap::new();
+        for (corners, _) in &self.faces {
+            for (at, &from) in corners.iter().enumerate() {
+                let to = corners[(at + 1) % corners.len()];
+                uses.entry([from.min(to), from.max(to)]).or_default()[usize::from(from > to)] += 1;
+            }
+        }
+        uses.values().all(|uses| *uses == [1, 1])
+    }
+
+    /// Areas by serial numbers.
+    fn areas(&self) -> HashMap<u64, f64> {
+        let mut areas: HashMap<u64, f64> = HashMap::new();
+        for (corners, properties) in &self.faces {
+            *areas.entry(properties["serial"] as u64).or_default() += self.area(corners);
+        }
+        areas
+    }
+
     /// Area of a flat face.
     fn area(&self, corners: &[usize]) -> f64 {
         let mut sum = [0.0; 3];
@@ -101,16 +122,8 @@ fn the_surface_of_a_protein_is_closed_and_has_the_areas_of_the_table() {
     for property in ["float nx", "uchar red", "int serial"] {
         assert!(ply.header.contains(&format!("property {property}\n")), "{}", ply.header);
     }
-    let mut uses: HashMap<[usize; 2], [u32; 2]> = HashMap::new();
-    let mut areas: HashMap<u64, f64> = HashMap::new();
-    for (corners, properties) in &ply.faces {
-        *areas.entry(properties["serial"] as u64).or_default() += ply.area(corners);
-        for (at, &from) in corners.iter().enumerate() {
-            let to = corners[(at + 1) % corners.len()];
-            uses.entry([from.min(to), from.max(to)]).or_default()[usize::from(from > to)] += 1;
-        }
-    }
-    assert!(uses.values().all(|uses| *uses == [1, 1]));
+    assert!(ply.is_closed());
+    let areas = ply.areas();
     let rows = table(&arguments);
     for row in 0..rows.len() {
         let (exact, serial) = (rows.number(row, "area"), rows.number(row, "serial") as u64);
@@ -125,6 +138,24 @@ fn the_surface_of_a_protein_is_closed_and_has_the_areas_of_the_table() {
         [&counts[..], "<CellData", "\"serial\"", "\"element\"", "\"chain\"", "\"residue\"", "\"area\""]
     {
         assert!(head.contains(part), "{part}: {head}");
+    }
+}
+
+#[test]
+fn the_molecular_surface_is_closed_and_has_labels_of_atoms() {
+    let folder = Folder::new();
+    let file = sample("1aki.cif");
+    for (probe, most) in [("1.4", 0.02), ("0", 0.02)] {
+        let arguments = [&[&file[..], "--ses", "--probe", probe], &ATOMS[..]].concat();
+        let ply = Ply::read(&made(&folder, "a.ply", &[&arguments[..], &["--resolution", "0.3"]].concat()));
+        assert!(ply.is_closed());
+        let (areas, rows) = (ply.areas(), table(&arguments));
+        let exact: HashMap<u64, f64> = (0..rows.len())
+            .map(|row| (rows.number(row, "serial") as u64, rows.number(row, "area")))
+            .collect();
+        let [found, expected] = [areas.values().sum::<f64>(), exact.values().sum()];
+        assert!((found - expected).abs() < most * expected, "{found} {expected}");
+        assert!(areas.keys().all(|serial| exact.contains_key(serial)));
     }
 }
 

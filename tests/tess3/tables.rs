@@ -119,8 +119,8 @@ fn names_tell_alternate_locations_and_insertion_codes() {
     let mut atoms = cloud(5, 9_000, 13);
     atoms[0] = Record { altloc: 'B', name: "N", residue: "GLY", chain: 'X', number: -3, ..atoms[0].clone() };
     let rows = table(&pdb(&atoms), &["--contacts", "--altloc", "all"]);
-    assert_eq!(rows.text(0, "atom1"), "X/GLY/-3/N/B");
-    assert_eq!(rows.text(0, "atom2"), "A/ALA/20/CA");
+    assert_eq!(rows.label(0, "1"), "X/GLY/-3/N/B");
+    assert_eq!(rows.label(0, "2"), "A/ALA/20/CA");
 }
 
 #[test]

@@ -78,6 +78,42 @@ pub(crate) fn lexicographic(p: Xy, q: Xy) -> Ordering {
     p.partial_cmp(&q).expect("coordinates are finite")
 }
 
+/// Whether the vertical distance of `point` from the counterclockwise triangle with these corners, in which
+/// it is, exceeds `most` (`Greater`), which is not negative, or is equal to it or less.
+pub(crate) fn distance_to(corners: [[f64; 3]; 3], point: [f64; 3], most: f64) -> Decided {
+    decided(filtered_distance(corners, point, most), || exact_distance(corners, point, most))
+}
+
+/// The signed volume below the point, with shares of the corners of the area as weights of their heights, is
+/// compared with the area times `most`. A share passes four roundings, its product with a height three more,
+/// and sums two; 16 covers those of the bound.
+fn filtered_distance(corners: [[f64; 3]; 3], point: [f64; 3], most: f64) -> Option<Ordering> {
+    let rise = corners.map(|corner| [0, 1, 2].map(|axis| corner[axis] - point[axis]));
+    let (mut volume, mut area, mut magnitude) = (0.0f64, 0.0, 0.0);
+    for corner in 0..3 {
+        let [p, q] = [1, 2].map(|turn| rise[(corner + turn) % 3]);
+        let (left, right) = (p[0] * q[1], p[1] * q[0]);
+        volume += (left - right) * rise[corner][2];
+        area += left - right;
+        magnitude += (left.abs() + right.abs()) * (rise[corner][2].abs() + most);
+    }
+    let error = 16.0 * ROUNDING * magnitude + UNDERFLOW_OF_CIRCLE;
+    decide(volume.abs() - area * most, error).filter(|_| magnitude < LIFT_OF_FILTER)
+}
+
+fn exact_distance([a, b, c]: [[f64; 3]; 3], point: [f64; 3], most: f64) -> Ordering {
+    let [a, b, c, [most, ..], point] = integers([a, b, c, [most, 0.0, 0.0], point]);
+    let rise = differences([a, b, c], &point);
+    let share = |corner: usize| {
+        let [p, q] = [1, 2].map(|turn| &rise[(corner + turn) % 3]);
+        &p[0] * &q[1] - &p[1] * &q[0]
+    };
+    let volume: BigInt = (0..3).map(|corner| share(corner) * &rise[corner][2]).sum();
+    let area: BigInt = (0..3).map(share).sum();
+    let limit = area * most;
+    if volume < BigInt::ZERO { (-volume).cmp(&limit) } else { volume.cmp(&limit) }
+}
+
 /// Each of the two products of `(a - c) x (b - c)` passes four roundings (two differences, the product, the
 /// last difference), hence an error of at most 4.1 `ROUNDING` times the sum of their magnitudes; 8 covers the
 /// rounding of that sum too. Products that underflow err by less than 2^-1000. What overflows compares false.
@@ -175,6 +211,25 @@ mod tests {
             assert!(!whole || !is_longer(ends, 5.0 * scale), "{scale}");
             assert!(is_longer(ends, (5.0 * scale).next_down().next_down()), "{scale}");
             assert!(!is_longer(ends, (5.0 * scale).next_up().next_up()), "{scale}");
+        }
+    }
+
+    #[test]
+    fn distances_are_compared_exactly() {
+        let corners = [[0.0, 0.0, 1.0], [3.0, 0.0, 2.0], [0.0, 3.0, 5.0]];
+        for (height, sign) in [(3.0, Ordering::Equal), (3.0f64.next_up(), Ordering::Greater)] {
+            for scale in [1.0, 1e-9, 1e60, 1e200] {
+                let [at, up] = [[1.0, 1.0, height], [1.0, 1.0, 16.0 / 3.0 - height]];
+                let [corners, [at, _, _]] =
+                    [corners, [at, up, up]].map(|points| points.map(|p| p.map(|v| v * scale)));
+                // The plane is at 8/3 there, which no f64 is.
+                let third = distance_to(corners, at, scale / 3.0);
+                assert!(third.exactly || third.sign == sign);
+                let level = corners.map(|[x, y, _]| [x, y, 0.0]);
+                assert_eq!(distance_to(level, at, 3.0 * scale).sign, sign, "{scale}");
+                let below = [at[0], at[1], -at[2]];
+                assert_eq!(distance_to(level, below, 3.0 * scale).sign, sign, "{scale}");
+            }
         }
     }
 

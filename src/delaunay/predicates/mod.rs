@@ -57,6 +57,7 @@ pub use counts::PredicateCounts;
 pub(crate) use distance::nearer;
 pub use extent::Extent;
 pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredicates, Width};
+pub use pairs::Pair;
 pub use perturbation::lexicographic;
 pub(crate) use spatial::filter::{
     INSPHERE_SQUARED_BOUND, POWER_SQUARED_BOUND, TINY, insphere_is_certain, orient3d_is_certain,

@@ -36,7 +36,7 @@ use super::Sign;
 use super::forms::{Form, Magnitude, lift};
 #[cfg(target_arch = "x86_64")]
 use crate::processor::Avx2Fma;
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The sign is certain if the value is more than this times the sum of magnitudes: 256 u^2.
 const BOUND: f64 = 64.0 * f64::EPSILON * f64::EPSILON;
@@ -46,8 +46,8 @@ const SPLITTER: f64 = ((1u64 << 27) + 1) as f64;
 
 /// The exact sum of two numbers, of which the second is at most the rounding error of the first. `FUSED`: the
 /// processor multiplies and adds in one instruction, which makes products cheap. The numbers are the same.
-#[derive(Debug, Clone, Copy)]
-struct Pair<const FUSED: bool>(f64, f64);
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair<const FUSED: bool>(pub f64, pub f64);
 
 #[inline(always)]
 fn split(a: f64) -> [f64; 2] {
@@ -95,6 +95,40 @@ impl<const FUSED: bool> Sub for Pair<FUSED> {
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self + Pair(-other.0, -other.1)
+    }
+}
+
+impl<const FUSED: bool> Neg for Pair<FUSED> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Pair(-self.0, -self.1)
+    }
+}
+
+/// A quotient, and the quotient of what it leaves: its relative error is below 16 u^2.
+impl<const FUSED: bool> Div for Pair<FUSED> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let quotient = self.0 / other.0;
+        let left = self - other * Pair(quotient, 0.0);
+        Pair::sum(quotient, left.0 / other.0)
+    }
+}
+
+/// The nearest pair.
+impl<const FUSED: bool> From<i128> for Pair<FUSED> {
+    #[inline(always)]
+    fn from(value: i128) -> Self {
+        if let Ok(short) = i64::try_from(value) {
+            let high = short as f64;
+            return Pair(high, (short as i128 - high as i128) as f64);
+        }
+        let high = value as f64;
+        Pair(high, value.wrapping_sub(high as i128) as f64)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::tables::{Column, ColumnKind, TableSink};
+use crate::tables::{Column, ColumnKind, TableSink, escaped};
 use serde_json::{Map, Value};
 use spmesh_base::error::Result;
 
@@ -132,11 +132,6 @@ fn value(kind: ColumnKind, field: &str) -> Value {
     }
     let number = if kind == ColumnKind::Text { None } else { serde_json::from_str(field).ok() };
     number.unwrap_or_else(|| Value::String(field.to_string()))
-}
-
-/// Escapes tabs and line breaks, so that the text fits a field.
-fn escaped(text: &str) -> String {
-    text.replace('\\', "\\\\").replace('\t', "\\t").replace('\n', "\\n").replace('\r', "\\r")
 }
 
 fn unescaped(text: &str) -> String {

@@ -65,8 +65,7 @@ impl Structure {
         let chain = self.residues.iter().map(|residue| residue.chain_number).max().unwrap_or(0);
         let steps: Vec<Steps> =
             models.iter().map(|model| Steps { serial: greatest_serial(model), chain }).collect();
-        let mut made: Vec<Model> =
-            models.iter().map(|model| Model { number: model.number, ..Model::default() }).collect();
+        let mut made: Vec<Model> = models.iter().map(Model::without_atoms).collect();
         let mut counts = Counts::new(&self.residues);
         let chains_of = self.chains_of_subchains();
         for copies in &all {

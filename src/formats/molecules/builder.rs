@@ -9,6 +9,7 @@ use crate::molecules::guess::Elements;
 use crate::molecules::identity::Residues;
 use crate::molecules::model::{Atom, Model, Residue, Structure};
 use crate::molecules::names::{Name, Names};
+use crate::molecules::periodic_box::{PeriodicBox, StatedBox};
 use spmesh_base::error::{Error, Result};
 
 /// An atom as stated by a file.
@@ -76,6 +77,9 @@ pub(crate) struct StructureBuilder {
     /// What the file states of its molecules.
     pub(crate) annotations: Annotations,
     pub(crate) assemblies: Assemblies,
+    /// That of the atoms that follow.
+    periodic_box: StatedBox,
+    space_group: Option<String>,
     names: Names,
     /// First line and count of each oddity.
     oddities: [(u64, u64); ODDITIES.len()],
@@ -91,6 +95,8 @@ impl StructureBuilder {
             annotations: self.annotations.of_next_frame(),
             assemblies: self.assemblies.clone(),
             names: self.names.clone(),
+            periodic_box: self.periodic_box.clone(),
+            space_group: self.space_group.clone(),
             ..StructureBuilder::default()
         }
     }
@@ -138,6 +144,27 @@ impl StructureBuilder {
         self.annotations.chain_ends.push(self.residues.len());
     }
 
+    /// Takes the box of the models that follow, `None` if they have none.
+    pub(crate) fn set_box(&mut self, stated: Option<Result<PeriodicBox>>) {
+        self.periodic_box = stated.map(|stated| stated.map_err(|fault| fault.to_string()));
+    }
+
+    /// As [`StructureBuilder::set_box`], for a box that is stated behind the atoms of all models, or of the
+    /// last one.
+    pub(crate) fn set_box_of(&mut self, is_of_all: bool, stated: Option<Result<PeriodicBox>>) {
+        self.set_box(stated);
+        let first = if is_of_all { 0 } else { self.model };
+        for model in self.models.iter_mut().skip(first) {
+            model.periodic_box = self.periodic_box.clone();
+        }
+    }
+
+    /// Takes the space group of a crystal. That without symmetry is none.
+    pub(crate) fn set_space_group(&mut self, name: &str) {
+        let letters: String = name.chars().filter(|c| !c.is_whitespace()).collect();
+        self.space_group = (!matches!(&letters[..], "" | "P1")).then(|| name.trim().to_string());
+    }
+
     /// Counts an oddity in `line`.
     pub(crate) fn note(&mut self, oddity: Oddity, line: u64) {
         let (first, count) = &mut self.oddities[oddity as usize];
@@ -182,6 +209,9 @@ impl StructureBuilder {
         let residue = self.residue(record, [residue_name, altloc], detail)?;
         let point = self.quantum.store(record.place, &mut self.models);
         let model = &mut self.models[self.model];
+        if model.points.is_empty() {
+            model.periodic_box = self.periodic_box.clone();
+        }
         let after_last = || model.atoms.last().map_or(1, |atom| atom.serial.saturating_add(1));
         let atom = Atom {
             serial: record.serial.unwrap_or_else(after_last),
@@ -209,16 +239,18 @@ impl StructureBuilder {
             number: record.residue_number,
             insertion_code: self.names.intern(record.insertion_code),
             subchain: if record.subchain.is_empty() { chain } else { self.names.intern(record.subchain) },
+            segment: Name::EMPTY,
             class: Class::default(),
         };
+        let segment = self.names.intern(record.segment);
         let next = u32::try_from(self.residues.len())
             .map_err(|_| Error::malformed("more than 2^32 residues, the maximum"))?;
-        let labels = (residue, self.names.intern(record.segment), detail.entity);
+        let labels = (residue, segment, detail.entity);
         let index = self.places.place(labels, [detail.atom, altloc], next);
         match self.details.get_mut(index as usize) {
             Some(first) => first.is_single &= first.atom == detail.atom,
             None => {
-                self.residues.push(residue);
+                self.residues.push(Residue { segment, ..residue });
                 self.details.push(detail);
             }
         }
@@ -247,6 +279,7 @@ impl StructureBuilder {
             residues: self.residues,
             names: self.names,
             assemblies: self.assemblies,
+            space_group: self.space_group,
             warnings: self.warnings,
         })
     }

@@ -23,6 +23,18 @@ pub enum Class {
     Ligand,
 }
 
+impl Class {
+    /// Its name, as `--classes` takes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Class::Polymer => "polymer",
+            Class::Water => "water",
+            Class::Ion => "ion",
+            Class::Ligand => "ligand",
+        }
+    }
+}
+
 /// An entity of mmCIF, by its type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Entity {

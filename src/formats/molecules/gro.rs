@@ -7,6 +7,7 @@ use std::io::Read;
 
 use crate::molecules::builder::{Oddity, Record, StructureBuilder, printable};
 use crate::molecules::decimal::Number;
+use crate::molecules::periodic_box::PeriodicBox;
 use crate::text::lines::Lines;
 use crate::twin::tokens::{fields, parse_integer, parse_signed, unexpected};
 use spmesh_base::error::{Error, Result};
@@ -48,7 +49,9 @@ pub(crate) fn read_frame(lines: &mut Lines<impl Read>, builder: &mut StructureBu
     let Some(line) = lines.next_line()? else {
         return Err(lines.locate(truncated("the vectors of the box")));
     };
-    check_box(line).map_err(|e| lines.locate(e))?;
+    let vectors = box_of(line).map_err(|e| lines.locate(e))?;
+    let stated = PeriodicBox::of_vectors(vectors);
+    builder.set_box_of(false, stated.map(|stated| stated.map_err(|e| lines.locate(e))));
     Ok(true)
 }
 
@@ -159,17 +162,27 @@ fn read_atom(
     Ok(serial)
 }
 
-/// Checks the line of the box: the lengths of a right-angled one, or nine components of three vectors.
-/// Numbers that fill their columns touch.
-fn check_box(line: &[u8]) -> Result<()> {
-    let points = line.iter().filter(|&&byte| byte == b'.').count();
-    let is_of_number =
-        |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'+' | b'-' | b'e' | b'E' | b' ' | b'\t');
-    let has_numbers = matches!(points, 3 | 9) || matches!(fields(line).count(), 3 | 9);
-    if has_numbers && line.iter().all(is_of_number) {
-        return Ok(());
+/// The vectors of the box in Å, of three lengths or nine components: the diagonal, then the others by rows.
+fn box_of(line: &[u8]) -> Result<[[f64; 3]; 3]> {
+    let numbers = box_fields(line).into_iter().map(|field| Some(Number::parse(field)?.tenfold().value()));
+    match numbers.collect::<Option<Vec<f64>>>().as_deref() {
+        Some(&[ax, by, cz]) => Ok([[ax, 0.0, 0.0], [0.0, by, 0.0], [0.0, 0.0, cz]]),
+        Some(&[ax, by, cz, ay, az, bx, bz, cx, cy]) => Ok([[ax, ay, az], [bx, by, bz], [cx, cy, cz]]),
+        _ => Err(unexpected(line, "three or nine numbers of the box")),
     }
-    Err(unexpected(line, "three or nine numbers of the box"))
+}
+
+/// The numbers in the line of the box. Those that fill their columns touch, and all have as many decimals.
+fn box_fields(line: &[u8]) -> Vec<&[u8]> {
+    let line = line.trim_ascii_end();
+    let separate: Vec<&[u8]> = fields(line).collect();
+    let is_point = |byte: &u8| *byte == b'.';
+    let Some(last) = line.iter().rposition(is_point).filter(|_| !matches!(separate.len(), 3 | 9)) else {
+        return separate;
+    };
+    let (mut start, places) = (0, line.len() - last);
+    let ends = (0..=last).filter(|&at| is_point(&line[at])).map(|at| at + places);
+    ends.map(|end| line[std::mem::replace(&mut start, end)..end].trim_ascii()).collect()
 }
 
 fn truncated(expected: &str) -> Error {

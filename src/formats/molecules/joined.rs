@@ -19,7 +19,7 @@ impl Structure {
     /// Malformed, if serial numbers exceed 64 bits.
     pub fn joined(mut self) -> Result<Structure> {
         let mut counts = Counts::new(&self.residues);
-        let mut all = Model { number: self.models[0].number, ..Model::default() };
+        let mut all = self.models[0].without_atoms();
         let mut serials = 0u64;
         for mut model in std::mem::take(&mut self.models) {
             self.name_chains_of(&model, &mut counts);

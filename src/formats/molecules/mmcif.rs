@@ -383,12 +383,12 @@ impl Row {
     }
 }
 
-fn parse<T: std::str::FromStr>(value: &[u8]) -> Option<T> {
+pub(crate) fn parse<T: std::str::FromStr>(value: &[u8]) -> Option<T> {
     std::str::from_utf8(value).ok()?.parse().ok()
 }
 
 /// A number without its standard uncertainty: `12.34` of `12.34(5)`.
-fn without_uncertainty(value: &[u8]) -> &[u8] {
+pub(crate) fn without_uncertainty(value: &[u8]) -> &[u8] {
     let Some(inner) = value.strip_suffix(b")") else { return value };
     let digits = inner.iter().rev().take_while(|byte| byte.is_ascii_digit()).count();
     match &inner[..inner.len() - digits] {

@@ -3,7 +3,9 @@
 use crate::molecules::assemblies::{Generator, Operator};
 use crate::molecules::builder::StructureBuilder;
 use crate::molecules::classes::Entity;
+use crate::molecules::mmcif::{parse, without_uncertainty};
 use crate::molecules::motion::Motion;
+use crate::molecules::periodic_box::PeriodicBox;
 
 /// A category.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,10 +15,12 @@ enum Category {
     Subchain,
     Generator,
     Operator,
+    UnitCell,
+    SpaceGroup,
 }
 
 /// The categories: the start of their tags, and the items that are used.
-const CATEGORIES: [(Category, &str, &[&str]); 5] = [
+const CATEGORIES: [(Category, &str, &[&str]); 7] = [
     (Category::Entity, "_entity.", &["id", "type"]),
     (Category::EntityPolymer, "_entity_poly.", &["entity_id"]),
     (Category::Subchain, "_struct_asym.", &["id", "entity_id"]),
@@ -40,6 +44,12 @@ const CATEGORIES: [(Category, &str, &[&str]); 5] = [
             "vector[3]",
         ],
     ),
+    (
+        Category::UnitCell,
+        "_cell.",
+        &["length_a", "length_b", "length_c", "angle_alpha", "angle_beta", "angle_gamma"],
+    ),
+    (Category::SpaceGroup, "_symmetry.", &["space_group_name_H-M"]),
 ];
 
 /// Category and item of a tag, as indices into [`CATEGORIES`].
@@ -122,5 +132,15 @@ fn give_row(category: Category, row: &Row, builder: &mut StructureBuilder) {
             let motion = Motion::parse(&row[1..]);
             builder.assemblies.operators.push(Operator { name: row[0].clone(), motion });
         }
+        Category::UnitCell => {
+            let number = |place: usize| {
+                let value = without_uncertainty(row[place].as_bytes());
+                parse::<f64>(value).unwrap_or(f64::NAN)
+            };
+            let is_stated = row[..3].iter().any(|length| !length.is_empty());
+            let stated = PeriodicBox::of_unit_cell(std::array::from_fn(number)).filter(|_| is_stated);
+            builder.set_box_of(true, stated);
+        }
+        Category::SpaceGroup => builder.set_space_group(&row[0]),
     }
 }

@@ -33,12 +33,15 @@ pub(crate) mod operators;
 pub(crate) mod pdb;
 pub(crate) mod pdb_assemblies;
 pub(crate) mod pdb_header;
+pub(crate) mod periodic_box;
 pub(crate) mod points;
 pub(crate) mod pqr;
 pub(crate) mod radii;
+pub(crate) mod residue_list;
 pub(crate) mod residue_names;
 pub(crate) mod selection;
 pub(crate) mod serial;
+pub(crate) mod write;
 pub(crate) mod xyz;
 
 use std::io::{Cursor, Read};
@@ -49,8 +52,11 @@ pub use classes::Class;
 pub use frames::{Content, Frame, FrameRange, FrameReader};
 pub use model::{Atom, AtomView, Model, Residue, Structure};
 pub use names::{Name, Names};
+pub use periodic_box::{PeriodicBox, StatedBox};
 pub use radii::{LoadedRadii, Radii, RadiusCounts, RadiusFinder, RadiusOrigin};
+pub use residue_list::ResidueList;
 pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
+pub use write::{WrittenAtom, write_mmcif, write_pdb, written_atoms};
 
 use self::builder::StructureBuilder;
 use crate::source::gzip::Plain;

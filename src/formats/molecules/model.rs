@@ -4,7 +4,9 @@ use std::num::NonZeroU16;
 
 use crate::molecules::assemblies::Assemblies;
 use crate::molecules::classes::Class;
+use crate::molecules::elements::Element;
 use crate::molecules::names::{Name, Names};
+use crate::molecules::periodic_box::StatedBox;
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::points::Point3;
 
@@ -25,6 +27,9 @@ pub struct Structure {
     pub names: Names,
     /// The biological assemblies that the file states.
     pub assemblies: Assemblies,
+    /// The space group of a crystal, if the file states one beside P 1: its atoms are then only a part of
+    /// what is in the box.
+    pub space_group: Option<String>,
     /// Oddities of the input, as sentences.
     pub warnings: Vec<String>,
 }
@@ -40,6 +45,15 @@ pub struct Model {
     pub atoms: Vec<Atom>,
     /// Labels of points without names, if the input has any.
     pub labels: Vec<u64>,
+    /// The periodic box.
+    pub periodic_box: StatedBox,
+}
+
+impl Model {
+    /// The number and the box.
+    pub(crate) fn without_atoms(&self) -> Model {
+        Model { number: self.number, periodic_box: self.periodic_box.clone(), ..Model::default() }
+    }
 }
 
 /// The data of an atom, in 32 bytes. Its position is the point with the same index.
@@ -94,6 +108,8 @@ pub struct Residue {
     pub insertion_code: Name,
     /// Part of the chain, as mmCIF names it (`label_asym_id`); otherwise the chain.
     pub subchain: Name,
+    /// Segment (columns 73 to 76 of PDB), as its first atom has it; mostly empty.
+    pub segment: Name,
     /// What it belongs to.
     pub class: Class,
 }
@@ -122,6 +138,16 @@ impl<'s> AtomView<'s> {
         self.structure.names.text(self.residue().chain)
     }
 
+    /// Part of its chain, as mmCIF names it; otherwise the chain.
+    pub fn subchain(&self) -> &'s str {
+        self.structure.names.text(self.residue().subchain)
+    }
+
+    /// Segment of its residue.
+    pub fn segment(&self) -> &'s str {
+        self.structure.names.text(self.residue().segment)
+    }
+
     /// Name of its residue.
     pub fn residue_name(&self) -> &'s str {
         self.structure.names.text(self.residue().name)
@@ -142,9 +168,14 @@ impl<'s> AtomView<'s> {
         self.structure.names.text(self.atom.name)
     }
 
-    /// Its element.
+    /// The symbol of its element as chemists write it, "Zn"; what the file states if that is no element.
+    /// Deuterium stays "D".
     pub fn element(&self) -> &'s str {
-        self.structure.names.text(self.atom.element)
+        let stated = self.structure.names.text(self.atom.element);
+        match Element::of_number(usize::from(self.atom.atomic_number)) {
+            Some(element) if !stated.eq_ignore_ascii_case("D") => element.symbol(),
+            _ => stated,
+        }
     }
 
     /// Its alternate location.

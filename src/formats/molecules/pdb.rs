@@ -103,6 +103,7 @@ impl PdbReader {
                 }
             }
             b"MODRES" => pdb_header::modified_residue(line, builder),
+            b"CRYST1" => pdb_header::unit_cell(line, self.number, builder),
             _ => {}
         }
         Ok(())
@@ -198,6 +199,7 @@ fn record_name(line: &[u8]) -> &'static [u8] {
         Some(b'T' | b't') if is(b"TER", 6) => b"TER",
         Some(b'S' | b's') if is(b"SEQRES", 6) => b"SEQRES",
         Some(b'M' | b'm') if is(b"MODRES", 6) => b"MODRES",
+        Some(b'C' | b'c') if is(b"CRYST1", 6) => b"CRYST1",
         Some(b'R' | b'r') if is(b"REMARK", 6) => b"REMARK",
         _ => b"",
     }

@@ -3,6 +3,7 @@
 
 use crate::molecules::builder::StructureBuilder;
 use crate::molecules::pdb::{LINE_LEN, columns};
+use crate::molecules::periodic_box::PeriodicBox;
 use crate::molecules::residue_names::{Kind, kind};
 use crate::molecules::serial::residue_number;
 
@@ -33,6 +34,17 @@ pub(crate) fn modified_residue(line: &[u8], builder: &mut StructureBuilder) {
         let site = (chain, residue_number(columns(text, 18, 22)), insertion_code, name);
         builder.annotations.modified.insert(site);
     }
+}
+
+/// Reads the record of the unit cell (CRYST1). Structures that are not of crystals have the cell of 1 Å; in
+/// simulations without a box it is zero.
+pub(crate) fn unit_cell(line: &[u8], number: u64, builder: &mut StructureBuilder) {
+    const COLUMNS: [(usize, usize); 6] = [(6, 15), (15, 24), (24, 33), (33, 40), (40, 47), (47, 54)];
+    let Some(text) = text(line) else { return };
+    let numbers = COLUMNS.map(|(start, end)| columns(text, start, end).parse().unwrap_or(f64::NAN));
+    let stated = PeriodicBox::of_unit_cell(numbers);
+    builder.set_box(stated.map(|stated| stated.map_err(|e| e.at(format!("line {number}")))));
+    builder.set_space_group(columns(text, 55, 66));
 }
 
 /// The text of the used columns of a line, if it is ASCII.

@@ -113,6 +113,7 @@ pub(crate) fn structure(
         residues: Vec::new(),
         names: Names::default(),
         assemblies: Assemblies::default(),
+        space_group: None,
         warnings,
     })
 }

@@ -144,7 +144,8 @@ impl Structure {
     }
 
     /// What a user may not expect of the file, or of a selection of its atoms, in sentences; usually nothing.
-    pub fn notices(&self, selection: &Selection) -> Vec<String> {
+    /// `is_periodic` says whether atoms repeat in a box.
+    pub fn notices(&self, selection: &Selection, is_periodic: bool) -> Vec<String> {
         let models = self.models.len();
         let is_cut = models > 1 && selection.models == Models::First;
         let others = is_cut.then(|| {
@@ -152,7 +153,24 @@ impl Structure {
                 "only the first of {models} models is taken: see --model N, --model all and --model joined"
             )
         });
-        self.warnings.iter().cloned().chain(self.missing_location(selection)).chain(others).collect()
+        let of_box = self.notice_of_box(is_periodic);
+        let missing = self.missing_location(selection);
+        self.warnings.iter().cloned().chain(missing).chain(others).chain(of_box).collect()
+    }
+
+    /// What a user may not expect of the periodic box.
+    fn notice_of_box(&self, is_periodic: bool) -> Option<String> {
+        let group = self.space_group.as_ref().filter(|_| is_periodic);
+        let of_crystal = group.map(|group| {
+            format!("the space group is {group}: only the atoms of the file repeat, not those that it makes")
+        });
+        // Structures with residues mostly state the cell of a crystal, and are wanted without it.
+        let has_residues = self.residues.iter().any(|residue| !residue.name.is_empty());
+        let is_left = !is_periodic && !has_residues && self.models.iter().any(|m| m.periodic_box.is_some());
+        of_crystal.or_else(|| {
+            is_left
+                .then(|| "the file states a periodic box: images of atoms count with --periodic".to_string())
+        })
     }
 
     /// Indices of the selected models, of which there is one at least.

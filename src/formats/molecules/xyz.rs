@@ -4,39 +4,29 @@ use std::io::Read;
 
 use crate::molecules::builder::{Record, StructureBuilder, printable};
 use crate::molecules::decimal::Number;
+use crate::molecules::periodic_box::PeriodicBox;
 use crate::text::lines::Lines;
 use crate::twin::tokens::{expect_no_field, fields, next_field, parse_integer, unexpected};
 use spmesh_base::error::{Error, Result};
 
 /// Reads all frames, each as a model. Atoms are numbered from 1 in each frame; their name is their element.
 pub(crate) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<()> {
-    let mut is_periodic = false;
-    while let Some(has_cell) = read_next(lines, builder)? {
-        is_periodic |= has_cell;
-    }
-    if is_periodic {
-        builder
-            .warn("the file states a periodic cell (Lattice): images of atoms in other cells do not count");
-    }
+    while read_frame(lines, builder)? {}
     builder.end(lines.unended());
     Ok(())
 }
 
 /// Reads a frame as the next model; false at the end of the input.
 pub(crate) fn read_frame(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<bool> {
-    Ok(read_next(lines, builder)?.is_some())
-}
-
-/// Reads a frame; returns whether it states a cell, or `None` if there is no frame.
-fn read_next(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<Option<bool>> {
-    let Some(atoms) = read_count(lines).map_err(|e| lines.locate(e))? else { return Ok(None) };
+    let Some(atoms) = read_count(lines).map_err(|e| lines.locate(e))? else { return Ok(false) };
     builder.start_model(builder.next_model_number());
     let Some(comment) = lines.next_line()? else {
         return Err(lines.locate(truncated("the comment of the frame")));
     };
-    let has_cell = value(comment, b"lattice").is_some();
+    let stated = lattice(comment);
     let columns = value(comment, b"properties").map_or(Ok(Columns::USUAL), Columns::parse);
     let columns = columns.map_err(|e| lines.locate(e))?;
+    builder.set_box(stated.map(|stated| stated.map_err(|e| lines.locate(e))));
     let first = lines.number();
     for serial in 1..=atoms {
         let Some(line) = lines.next_line()? else {
@@ -44,7 +34,21 @@ fn read_next(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Re
         };
         read_atom(line, columns, [serial, first + serial], builder).map_err(|e| lines.locate(e))?;
     }
-    Ok(Some(has_cell))
+    Ok(true)
+}
+
+/// The box that the comment of a frame states, if it states one.
+fn lattice(comment: &[u8]) -> Option<Result<PeriodicBox>> {
+    let text = value(comment, b"lattice")?;
+    let is_false = |field: &[u8]| field.first().is_some_and(|letter| letter.eq_ignore_ascii_case(&b'f'));
+    if fields(value(comment, b"pbc").unwrap_or_default()).any(is_false) {
+        return Some(Err(Error::malformed("the frame does not repeat along all three vectors (pbc)")));
+    }
+    let number = |field: &[u8]| Some(Number::parse(field)?.value());
+    let numbers: Option<Vec<f64>> = fields(text).map(number).collect();
+    let numbers = numbers.filter(|numbers| numbers.len() == 9);
+    let numbers = numbers.ok_or_else(|| unexpected(text, "the nine numbers of three vectors in Lattice"));
+    Some(numbers.and_then(|numbers| PeriodicBox::from_numbers(&numbers)))
 }
 
 /// The value of a key in the comment of extended XYZ, `key=value` or `key="value"`, without its quotes.

@@ -1,17 +1,18 @@
 //! Tables with typed columns, which are given row by row: tab-separated text, JSON Lines or Parquet.
 
-mod held;
 mod number;
 mod parquet;
+mod parts;
 mod text;
 
 use std::fmt::Display;
 use std::io::Write;
 use std::path::Path;
 
-use held::HeldRows;
 use parquet::ParquetRows;
+use parts::PartRows;
 use text::TextRows;
+pub(crate) use text::escaped;
 
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
@@ -30,6 +31,8 @@ pub enum TableFormat {
     JsonLines,
     /// Apache Parquet, with numbers as they are in memory.
     Parquet,
+    /// A part of another table ([`TableSink::append_part`]): not for users.
+    Rows,
 }
 
 impl TableFormat {
@@ -54,6 +57,7 @@ impl TableFormat {
             TableFormat::Tsv => "tsv",
             TableFormat::JsonLines => "jsonl",
             TableFormat::Parquet => "parquet",
+            TableFormat::Rows => "rows",
         }
     }
 }
@@ -93,7 +97,7 @@ pub struct TableSink {
 pub(crate) enum Rows {
     Text(TextRows),
     Parquet(Box<ParquetRows>),
-    Held(HeldRows),
+    Parts(PartRows),
 }
 
 impl TableSink {
@@ -103,6 +107,7 @@ impl TableSink {
             TableFormat::Tsv => Rows::Text(TextRows::tsv(&columns)),
             TableFormat::JsonLines => Rows::Text(TextRows::json_lines(&columns)),
             TableFormat::Parquet => Rows::Parquet(Box::new(ParquetRows::new(&columns))),
+            TableFormat::Rows => Rows::Parts(PartRows::new(&columns)),
         };
         TableSink { rows, output: Some(output), columns, fields: 0 }
     }
@@ -114,10 +119,11 @@ impl TableSink {
         let mut rows = match format {
             TableFormat::Tsv => Rows::Text(TextRows::tsv(&columns)),
             TableFormat::JsonLines => Rows::Text(TextRows::json_lines(&columns)),
-            TableFormat::Parquet => Rows::Held(HeldRows::default()),
+            TableFormat::Parquet | TableFormat::Rows => Rows::Parts(PartRows::new(&columns)),
         };
-        if let Rows::Text(rows) = &mut rows {
-            rows.bytes.clear();
+        // Without what comes before the first row.
+        if let Rows::Text(TextRows { bytes, .. }) | Rows::Parts(PartRows { bytes, .. }) = &mut rows {
+            bytes.clear();
         }
         TableSink { rows, output: None, columns, fields: 0 }
     }
@@ -127,14 +133,16 @@ impl TableSink {
     /// # Errors
     /// If writing fails.
     pub fn append(&mut self, held: TableSink) -> Result<()> {
-        match (&mut self.rows, held.rows) {
+        let len = match (&mut self.rows, held.rows) {
             (Rows::Text(rows), Rows::Text(held)) => {
                 rows.bytes.extend_from_slice(&held.bytes);
-                if rows.bytes.len() >= BUFFER_LEN { self.flush() } else { Ok(()) }
+                rows.bytes.len()
             }
-            (_, Rows::Held(held)) => held.give(self.columns.len(), self),
+            (Rows::Parts(rows), Rows::Parts(held)) => rows.append(&held),
+            (_, Rows::Parts(held)) => return held.give(self),
             _ => unreachable!("rows are held for a table of their format"),
-        }
+        };
+        if len >= BUFFER_LEN { self.flush() } else { Ok(()) }
     }
 
     /// Adds a text to the row.
@@ -143,7 +151,7 @@ impl TableSink {
         match &mut self.rows {
             Rows::Text(rows) => rows.text(column, text),
             Rows::Parquet(rows) => rows.text(column, text),
-            Rows::Held(rows) => rows.text(text),
+            Rows::Parts(rows) => rows.text(text),
         }
     }
 
@@ -157,7 +165,7 @@ impl TableSink {
             Rows::Text(rows) => rows.integer(column, value),
             rows => match (value.try_into(), rows) {
                 (Ok(value), Rows::Parquet(rows)) => rows.integer(column, value),
-                (Ok(value), Rows::Held(rows)) => rows.integer(value),
+                (Ok(value), Rows::Parts(rows)) => rows.integer(value),
                 _ => {
                     let name = &self.columns[column].name;
                     let message =
@@ -175,7 +183,7 @@ impl TableSink {
         match &mut self.rows {
             Rows::Text(rows) => rows.number(column, value),
             Rows::Parquet(rows) => rows.number(column, value),
-            Rows::Held(rows) => rows.number(value),
+            Rows::Parts(rows) => rows.number(value),
         }
     }
 
@@ -186,7 +194,7 @@ impl TableSink {
         match &mut self.rows {
             Rows::Text(rows) => rows.nothing(column),
             Rows::Parquet(rows) => rows.nothing(column),
-            Rows::Held(rows) => rows.nothing(),
+            Rows::Parts(rows) => rows.nothing(),
         }
     }
 
@@ -200,7 +208,7 @@ impl TableSink {
         let is_full = match &mut self.rows {
             Rows::Text(rows) => rows.end() >= BUFFER_LEN,
             Rows::Parquet(rows) => rows.end()?,
-            Rows::Held(_) => false,
+            Rows::Parts(rows) => rows.end() >= BUFFER_LEN,
         };
         if is_full { self.flush() } else { Ok(()) }
     }
@@ -212,9 +220,12 @@ impl TableSink {
     pub fn commit(mut self) -> Result<()> {
         self.flush()?;
         let mut output = self.output.expect("rows are not held");
-        if let Rows::Parquet(rows) = self.rows {
-            output.write_all(&rows.footer()).map_err(write_error)?;
-        }
+        let footer = match &self.rows {
+            Rows::Text(_) => Vec::new(),
+            Rows::Parquet(rows) => rows.footer(),
+            Rows::Parts(rows) => rows.footer(),
+        };
+        output.write_all(&footer).map_err(write_error)?;
         output.commit()
     }
 
@@ -224,7 +235,7 @@ impl TableSink {
         let bytes = match &mut self.rows {
             Rows::Text(rows) => &mut rows.bytes,
             Rows::Parquet(rows) => rows.group()?,
-            Rows::Held(_) => return Ok(()),
+            Rows::Parts(rows) => &mut rows.bytes,
         };
         output.write_all(bytes).map_err(write_error)?;
         bytes.clear();

@@ -1,10 +1,20 @@
 //! Rows as text: tab-separated values, and JSON Lines.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::Write;
 
 use crate::tables::Column;
 use crate::tables::number::write_number;
+
+/// Escapes tabs, line breaks and backslashes, so that the text fits a field.
+pub(crate) fn escaped(text: &str) -> Cow<'_, str> {
+    if text.bytes().any(|byte| matches!(byte, b'\\' | b'\t' | b'\n' | b'\r')) {
+        let text = text.replace('\\', "\\\\").replace('\t', "\\t").replace('\n', "\\n").replace('\r', "\\r");
+        return Cow::Owned(text);
+    }
+    Cow::Borrowed(text)
+}
 
 /// Rows as text.
 pub(crate) struct TextRows {
@@ -40,7 +50,7 @@ impl TextRows {
         if self.is_json {
             serde_json::to_writer(&mut self.bytes, text).expect("a vector takes all");
         } else {
-            self.bytes.extend_from_slice(text.as_bytes());
+            self.bytes.extend_from_slice(escaped(text).as_bytes());
         }
     }
 

@@ -96,7 +96,7 @@ const THIN: f64 = 1e-7;
 ///
 /// Domain: the centres are not in a plane. Accurate to about nine digits of the distance from the first
 /// centre, however thin the tetrahedron is.
-pub(super) fn orthocentre(points: [Point3; 4], weights: [f64; 4]) -> (Point3, f64) {
+pub(crate) fn orthocentre(points: [Point3; 4], weights: [f64; 4]) -> (Point3, f64) {
     let [b, c, d] = [1, 2, 3].map(|i| difference(points[i], points[0]));
     let [over_b, over_c, over_d] =
         [(b, 1), (c, 2), (d, 3)].map(|(p, i)| dot(p, p) - (weights[i] - weights[0]));

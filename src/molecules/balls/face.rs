@@ -12,11 +12,11 @@ use spmesh_delaunay::vector::{cross, difference, dot};
 
 /// Two balls whose spheres meet, and the plane of equal power.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pair {
+pub(crate) struct Pair {
     /// From the centre of the first to that of the second, of length 1.
     normal: Point3,
     /// Signed distances of the plane from the centres, positive if it lies towards the other centre.
-    pub(super) heights: [f64; 2],
+    pub(crate) heights: [f64; 2],
     /// Square of the radius of the disk; not positive if there is none.
     square: f64,
     radius: f64,
@@ -37,7 +37,7 @@ pub(super) struct Face {
 impl Pair {
     /// Domain: different centres.
     #[inline(always)]
-    pub(super) fn new([p, q]: [Point3; 2], radii: [f64; 2]) -> Pair {
+    pub(crate) fn new([p, q]: [Point3; 2], radii: [f64; 2]) -> Pair {
         let between = difference(q, p);
         let distance = dot(between, between).sqrt();
         let heights = heights(distance, radii);
@@ -80,7 +80,7 @@ impl Pair {
     /// Adds the part of the face under one side of the polygon.
     #[inline(always)]
     pub(super) fn add(&self, side: Side, with_angles: bool, face: &mut Face) {
-        let Side { offset, from, to } = side;
+        let Side { offset, from, to, .. } = side;
         if !with_angles {
             // The whole polygon is in the disk.
             face.area += 0.5 * offset * (to - from);
@@ -138,12 +138,14 @@ fn signed(height: f64) -> f64 {
 /// A side of the polygon, on the line where the power distances of the two balls and of a third one are
 /// equal.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Side {
+pub(crate) struct Side {
     /// Signed distance of the line from the foot: positive if the third ball is beyond it.
-    pub(super) offset: f64,
+    pub(crate) offset: f64,
     /// Ends, measured along the line, counterclockwise as the second centre sees the face.
-    pub(super) from: f64,
-    pub(super) to: f64,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    /// Directions of length 1: from the foot away to the line, and along it.
+    pub(crate) frame: [Point3; 2],
 }
 
 impl Pair {
@@ -151,7 +153,7 @@ impl Pair {
     /// and to are vertices of the power diagram, relative to the first centre, too. `None` if the three
     /// centres are on a line.
     #[inline(always)]
-    pub(super) fn side(&self, third: Point3, heavier: f64, ends: [Point3; 2]) -> Option<Side> {
+    pub(crate) fn side(&self, third: Point3, heavier: f64, ends: [Point3; 2]) -> Option<Side> {
         let along = dot(third, self.normal);
         let lateral = [0, 1, 2].map(|axis| third[axis] - along * self.normal[axis]);
         let square = dot(lateral, lateral);
@@ -164,6 +166,6 @@ impl Pair {
         // Far corners are as good as infinite; products of larger numbers would overflow.
         let far = 1e15 * (self.radius + offset.abs());
         let [from, to] = ends.map(|end| dot(end, direction).max(-far).min(far));
-        Some(Side { offset, from, to })
+        Some(Side { offset, from, to, frame: [lateral.map(|c| c / length), direction] })
     }
 }

@@ -16,17 +16,25 @@
 //! Source: the cells are those of Edelsbrunner, "The union of balls and its dual shape", 1995; his inclusion
 //! and exclusion gives the same sums, of which the faces are the parts that users ask for.
 
-mod dual;
-mod face;
+mod buried;
+pub(crate) mod dual;
+pub(crate) mod face;
+mod gradients;
 mod molecular;
+mod near;
+mod periodic;
 mod pockets;
 mod shares;
 mod surface;
 mod tile;
 mod tiles;
 
-pub use molecular::{molecular_surface, molecular_surface_in_tiles};
-pub use pockets::{Mouth, Pocket, pockets};
+pub use buried::{Burial, buried};
+pub use gradients::{Gradient, gradients};
+pub use molecular::{molecular_mesh, molecular_surface, molecular_surface_in_tiles};
+pub use near::nearest;
+pub use periodic::{PeriodicCells, measure_in_box};
+pub use pockets::{Mouth, Pocket, Spheres, pocket_spheres, pockets};
 pub use surface::{FINEST, Faces, Surface, faces, linings, surface};
 pub use tiles::Contacts;
 
@@ -105,12 +113,38 @@ pub fn measure(balls: Balls<'_>, contacts_above: Option<f64>, threads: NonZeroUs
     measure_in_tiles(balls, contacts_above, threads, TILE_MAX)
 }
 
+/// The faces between balls of different parts, as [`measure`] lists them: `parts` has the part of each ball.
+/// Balls that no such face depends on are left out of the power diagram.
+///
+/// # Errors
+/// As [`measure`].
+pub fn contacts_between(balls: Balls<'_>, parts: &[u32], threads: NonZeroUsize) -> Result<Vec<Contact>> {
+    check(balls)?;
+    let kept = near::between_parts(balls, parts);
+    let centres: Vec<Point3> = kept.iter().map(|&ball| balls.centres[ball as usize]).collect();
+    let radii: Vec<f64> = kept.iter().map(|&ball| balls.radii[ball as usize]).collect();
+    let found = measure(Balls { centres: &centres, radii: &radii }, Some(0.0), threads)?;
+    let named = found
+        .contacts
+        .iter()
+        .map(|&Contact { balls, area }| Contact { balls: balls.map(|ball| kept[ball as usize]), area });
+    Ok(named
+        .filter(|contact| contact.balls.map(|ball| parts[ball as usize]).windows(2).all(|p| p[0] != p[1]))
+        .collect())
+}
+
 /// Greatest magnitude of coordinates and radii: squares and products of squares stay finite.
 const GREATEST: f64 = 1e60;
 
 fn check(balls: Balls<'_>) -> Result<()> {
-    let numbers = balls.centres.iter().flatten().chain(balls.radii);
-    match numbers.into_iter().find(|number| number.abs() > GREATEST) {
+    check_numbers(balls.centres, balls.radii)
+}
+
+/// Refuses numbers that are too large, or none.
+pub(crate) fn check_numbers(points: &[Point3], radii: &[f64]) -> Result<()> {
+    let is_fit = |number: &&f64| number.abs() <= GREATEST;
+    match points.as_flattened().iter().chain(radii).find(|number| !is_fit(number)) {
+        Some(number) if number.is_nan() => Err(Error::usage("a coordinate or radius is NaN, not a number")),
         Some(number) => {
             Err(Error::usage(format!("{number:e} is too large: balls are measured up to {GREATEST:e}")))
         }
@@ -129,12 +163,23 @@ pub fn measure_in_tiles(
     threads: NonZeroUsize,
     tile_max: usize,
 ) -> Result<Cells> {
-    let tiles = tiles::cut(balls, tile_max);
+    measure_first(balls, balls.centres.len(), contacts_above, threads, tile_max)
+}
+
+/// The cells of the first `count` balls among all, and their contacts.
+fn measure_first(
+    balls: Balls<'_>,
+    count: usize,
+    contacts_above: Option<f64>,
+    threads: NonZeroUsize,
+    tile_max: usize,
+) -> Result<Cells> {
+    let tiles = tiles::cut_first(balls, count, tile_max);
     let measured = parallel::map(threads, tiles.iter(), |members| {
         let tile = Tile::new(balls, members)?;
         Ok(tile.measure(contacts_above, |_, _, _| ()))
     })?;
-    let mut cells = vec![Cell::default(); balls.centres.len()];
+    let mut cells = vec![Cell::default(); count];
     let mut parts = Vec::with_capacity(tiles.len());
     for (members, part) in tiles.iter().zip(measured) {
         for (&ball, cell) in members.core.iter().zip(part.cells) {
@@ -142,5 +187,5 @@ pub fn measure_in_tiles(
         }
         parts.push(part.contacts);
     }
-    Ok(Cells { cells, contacts: Contacts::of_tiles(balls.centres.len(), &tiles, parts) })
+    Ok(Cells { cells, contacts: Contacts::of_tiles(count, &tiles, parts) })
 }

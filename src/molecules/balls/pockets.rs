@@ -74,6 +74,30 @@ pub fn pockets(balls: Balls<'_>) -> Result<Vec<Pocket>> {
     with_all(balls, |tile| Ok(with_members(tile).into_iter().map(|(pocket, _)| pocket).collect()))
 }
 
+/// Spheres: the centre of each, and its radius.
+pub type Spheres = Vec<(Point3, f64)>;
+
+/// For each pocket, in the order of [`pockets`], whether it is a void, and of each of its tetrahedra the
+/// sphere around the orthocentre that touches the nearest ball.
+///
+/// # Errors
+/// As [`pockets`].
+pub fn pocket_spheres(balls: Balls<'_>) -> Result<Vec<(bool, Spheres)>> {
+    super::check(balls)?;
+    with_all(balls, |tile| {
+        let sphere = |t: usize| {
+            let centre = tile.centre(t);
+            let gap = |&v: &u32| length(difference(centre, tile.point(v))) - tile.radius(v);
+            let radius = tile.tetrahedra()[t].vertices.iter().map(gap).fold(f64::INFINITY, f64::min);
+            (centre, radius.max(0.0))
+        };
+        let pockets = with_members(tile).into_iter();
+        Ok(pockets
+            .map(|(pocket, members)| (pocket.mouths.is_empty(), members.into_iter().map(sphere).collect()))
+            .collect())
+    })
+}
+
 /// The pockets, the largest volume first, each with the numbers of its tetrahedra.
 pub(super) fn with_members(tile: &Tile<'_>) -> Vec<(Pocket, Vec<usize>)> {
     let mut pockets = Search::new(tile).pockets();

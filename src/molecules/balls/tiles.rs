@@ -19,15 +19,26 @@ pub(super) struct Members {
 
 impl Members {
     pub(super) fn all(balls: Balls<'_>) -> Members {
-        Members { core: (0..balls.centres.len() as u32).collect(), around: Vec::new() }
+        Members::first(balls, balls.centres.len())
+    }
+
+    /// A tile of the first balls, and the others around it.
+    fn first(balls: Balls<'_>, count: usize) -> Members {
+        let all = balls.centres.len() as u32;
+        Members { core: (0..count as u32).collect(), around: (count as u32..all).collect() }
     }
 }
 
-/// Halves the balls at the median, along the longest side of their box, until tiles have at most `most`.
-/// Tiles depend on the balls only.
+/// As [`cut_first`], all balls.
 pub(super) fn cut(balls: Balls<'_>, most: usize) -> Vec<Members> {
+    cut_first(balls, balls.centres.len(), most)
+}
+
+/// Halves the first `count` balls at the median, along the longest side of their box, until tiles have at
+/// most `most`. Tiles depend on the balls only.
+pub(super) fn cut_first(balls: Balls<'_>, count: usize, most: usize) -> Vec<Members> {
     let mut tiles = Vec::new();
-    let mut open = vec![Members::all(balls)];
+    let mut open = vec![Members::first(balls, count)];
     while let Some(members) = open.pop() {
         if members.core.is_empty() {
             continue;

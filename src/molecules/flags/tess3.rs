@@ -3,6 +3,7 @@
 mod balls;
 mod frames;
 mod method;
+mod periodic;
 mod picture;
 mod report;
 mod selection;
@@ -21,6 +22,7 @@ use crate::tess3::{Arithmetic, ModelName, Options, Product, Radius, Report, Stat
 use balls::BallFlags;
 use frames::FrameFlags;
 use method::MethodFlags;
+use periodic::PeriodicFlags;
 use picture::PictureFlags;
 use selection::SelectionFlags;
 use spmesh_base::error::{Error, Result, counted};
@@ -58,6 +60,9 @@ Examples:
     tess3 1abc.cif.gz --classes polymer --ses --per molecule
     tess3 1abc.cif.gz --classes polymer --contact-areas --between chains -o interface.tsv
     tess3 1abc.cif.gz --classes polymer --pockets -o pockets.tsv
+  Areas that chains take from each other, and what each residue at a ligand loses to it:
+    tess3 1abc.cif.gz --classes polymer --buried-areas
+    tess3 1abc.cif.gz --classes polymer,ligand --buried-areas --between classes --per residue
   Areas of each residue in every tenth frame of a trajectory:
     tess3 --top 1abc.gro 1abc.xtc --frames ::10 --classes polymer --sasa --per residue -o sasa.parquet
   The same areas for pandas, Polars or DuckDB:
@@ -67,6 +72,8 @@ Examples:
   Many structures, two at a time; later only what is new or changed:
     find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2
     find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2 --resume
+  One table of the residues of all of them:
+    find pdb -name '*.cif.gz' | tess3 --lof - --sasa --per residue --out-dir parts -o areas.parquet
 
 Defaults: what the file shows of one molecule. That is its first model; all atoms, hydrogen too; HETATM \
 records, with ligands, ions and water; and of alternate locations, for each residue, those of the conformer \
@@ -97,9 +104,11 @@ pub struct Flags {
     #[arg(value_name = "FILE")]
     inputs: Vec<PathBuf>,
 
-    /// Where the mesh or the table goes; - is stdout
-    #[arg(short, long, value_name = "FILE", default_value = "-", conflicts_with = "out_dir")]
-    output: PathBuf,
+    /// Where the mesh or the table goes; - is stdout. With --out-dir, one table of the rows of all files.
+    /// FILE.pdb, .cif or .defattr (ChimeraX) are atoms with the values of --sasa, --volumes or --ses
+    /// [default: -]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
 
     #[command(flatten)]
     selection: SelectionFlags,
@@ -163,6 +172,9 @@ pub struct Flags {
     #[command(flatten)]
     picture: PictureFlags,
 
+    #[command(flatten)]
+    periodic: PeriodicFlags,
+
     // The last, as its heading holds for all flags after it.
     #[command(flatten)]
     method: MethodFlags,
@@ -212,7 +224,10 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     let [input] = &flags.inputs[..] else {
         let message = match flags.inputs.len() {
             0 => "no input: give a file, or - for stdin (see --help)",
-            _ => "several files need a folder for their outputs: --out-dir FOLDER",
+            _ => {
+                "several files need a folder for their outputs: --out-dir FOLDER, and for one table of all also \
+                 -o FILE"
+            }
         };
         return Err(Error::usage(message));
     };
@@ -220,7 +235,10 @@ fn run_one(flags: &Flags) -> Result<Finished> {
         refuse_terminal()?;
     }
     let mut options = flags.options()?;
-    let picture = flags.picture.of_output(&flags.output, options.product, &flags.balls)?;
+    let picture = flags.picture.of_output(flags.output(), options.product, &flags.balls)?;
+    if options.periodic.is_some() && picture.is_some_and(|picture| !picture.form.is_of_atoms()) {
+        return Err(Error::usage("a periodic box has no mesh: give a name that ends in .tsv"));
+    }
     if let Some(balls) = &mut options.balls {
         balls.picture = picture;
     }
@@ -232,16 +250,16 @@ fn run_one(flags: &Flags) -> Result<Finished> {
         _ => SUMMARY_ENDINGS,
     };
     if picture.is_none() {
-        endings::check(&flags.output, &[ending])?;
+        endings::check(flags.output(), &[ending])?;
     }
     // Fail before the work if the output cannot be created.
-    let mut output = Some(Output::create(&flags.output, is_binary)?);
+    let mut output = Some(Output::create(flags.output(), is_binary)?);
     if options.frames.is_some() {
         return run_frames(flags, input, &options, output);
     }
     let started = Instant::now();
     let structure = read_structure(input, flags.from)?;
-    let notices = structure.notices(&options.selection);
+    let notices = structure.notices(&options.selection, options.periodic.is_some());
     notices.iter().for_each(|text| flags.notice(&format!("{}: {text}", structure.name)));
     check_models(&structure, &options, flags)?;
     let read = started.elapsed();
@@ -304,7 +322,11 @@ fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Resu
 
 fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
     let paths = flags.batch.summary_paths(folder, SUMMARY_NAME)?;
-    let options = flags.options()?;
+    let mut options = flags.options()?;
+    let table = flags.table_of_sweep(&options)?;
+    if table.is_some() {
+        options.format = TableFormat::Rows;
+    }
     flags.picture.refuse("does not go with sweeps, which write tables: give -o FILE.ply or FILE.vtu")?;
     let batch = Batch {
         program: TOOL,
@@ -321,7 +343,8 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
         strict: flags.strict,
     };
     let topology = flags.frames.topology(|text| flags.notice(text))?;
-    let wanted = Sweep { batch, format: flags.from, topology, options, threads: flags.threads().get() };
+    let wanted =
+        Sweep { batch, format: flags.from, topology, options, threads: flags.threads().get(), table };
     let mut messages = BatchMessages::new(TOOL, "triangulating", &flags.common);
     let (outcome, stats) = sweep(&wanted, &mut |news| messages.hear(news))?;
     Ok(Finished { stats, failure: messages.conclude(&outcome, &paths.shown) })
@@ -329,7 +352,8 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
 
 impl Flags {
     fn options(&self) -> Result<Options> {
-        let product = match (self.balls.product(), self.table, self.contacts, self.filtration) {
+        let cells = self.periodic.product(&self.balls)?;
+        let product = match (self.balls.product().or(cells), self.table, self.contacts, self.filtration) {
             (Some(product), ..) => product,
             (_, true, ..) => Product::Tetrahedra,
             (_, _, true, _) => Product::Contacts,
@@ -355,14 +379,33 @@ impl Flags {
             method,
             compress: self.compression.of_output(product == Product::Mesh)?,
             format: tables::format(self.format, self.output_file(), product)?,
+            periodic: self.periodic.source(product, &self.balls)?,
             product,
             balls,
         })
     }
 
+    /// The one table of a sweep, if `--output` names one.
+    fn table_of_sweep(&self, options: &Options) -> Result<Option<(PathBuf, TableFormat)>> {
+        let Some(output) = &self.output else { return Ok(None) };
+        if !options.product.is_table() {
+            let message = "--output with --out-dir is for tables, such as that of --sasa: a mesh or a filtration is \
+                           of one file";
+            return Err(Error::usage(message));
+        }
+        endings::check(output, &[SUMMARY_ENDINGS])?;
+        let format = tables::format(self.format, Some(output), options.product)?;
+        Ok(Some((output.clone(), format)))
+    }
+
+    /// Where the output of one file goes.
+    fn output(&self) -> &Path {
+        self.output.as_deref().unwrap_or(Path::new("-"))
+    }
+
     /// The output of a run without a folder.
     fn output_file(&self) -> Option<&Path> {
-        self.batch.out_dir.is_none().then_some(&*self.output)
+        self.batch.out_dir.is_none().then(|| self.output())
     }
 
     fn threads(&self) -> NonZeroUsize {
@@ -392,6 +435,7 @@ impl Flags {
         if options.format != TableFormat::default() {
             text += &format!(" --format {}", options.format.ending());
         }
+        text += &self.periodic.text();
         text + options.balls.as_ref().map_or("", |balls| &balls.text)
     }
 

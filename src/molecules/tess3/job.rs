@@ -7,15 +7,17 @@ use super::alpha::AlphaComplex;
 use super::balls::{BallOptions, Molecule};
 use super::filtration::Filtration;
 use super::frames::run_models;
+use super::identity::Origin;
 use super::labels::Labels;
 use super::mesh::write_mesh;
-use super::tables::{CONTACTS, ModelTables, TETRAHEDRA, columns};
-use super::{Arithmetic, Options, Product, Report, selection};
+use super::tables::{ModelTables, TETRAHEDRA, columns, contact_columns};
+use super::{Arithmetic, Options, PeriodicFrom, Product, Report, selection, sites};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_delaunay::delaunay3::Tetrahedralization;
+use spmesh_delaunay::predicates::Point3;
 use spmesh_formats::molecules::{Models, Selected, Structure};
-use spmesh_formats::sink::TableSink;
+use spmesh_formats::sink::{Column, TableSink};
 use spmesh_stream::model::attributes::Attributes;
 use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter, Weighted};
@@ -50,6 +52,21 @@ pub fn run(structure: Structure, options: &Options, open: &mut Open<'_>) -> Resu
         table.commit()?;
     }
     Ok(reports)
+}
+
+/// The columns of the table that these options make.
+pub(super) fn table_columns(options: &Options) -> Vec<Column> {
+    let is_periodic = options.periodic.is_some();
+    let names = match (options.product, &options.balls) {
+        (product @ (Product::SiteCells(_) | Product::SiteFaces), balls) => {
+            sites::columns(product, balls.is_some(), is_periodic)
+        }
+        (product, Some(balls)) => balls.columns(product, is_periodic),
+        (Product::Contacts, None) => contact_columns(),
+        (_, None) => TETRAHEDRA.to_string(),
+    };
+    // Frames are the models of a trajectory.
+    columns(&if options.frames.is_some() { names.replacen("model", "frame", 1) } else { names })
 }
 
 /// Creates the output of a model, or the one of all.
@@ -110,10 +127,21 @@ impl Job<'_, '_> {
         let selected =
             plain.is_none().then(|| selection::select(structure, &self.options.selection)).transpose()?;
         let selected = selected.as_ref();
+        let origin = Origin { file: &structure.name, model: name.number };
         let mut report = Report::new(name.number, selected.map_or(0, |selected| selected.points().len()));
         let mut weights = None;
-        if let (Some(balls), Some(selected)) = (self.options.balls.clone(), selected) {
-            let molecule = Molecule { number: name.number, selected, scale: scale(structure.coordinates) };
+        let periodic_box = self.periodic_box(structure, at)?;
+        let molecule = selected.map(|selected| {
+            let scale = scale(structure.coordinates);
+            let periodic_box = periodic_box.map(|vectors| vectors.map(|vector| vector.map(|c| c / scale)));
+            Molecule { origin, selected, scale, periodic_box }
+        });
+        if let (Some(molecule), Product::SiteCells(_) | Product::SiteFaces) =
+            (&molecule, self.options.product)
+        {
+            return self.write_sites(molecule, started);
+        }
+        if let (Some(balls), Some(molecule)) = (self.options.balls.clone(), molecule) {
             if !matches!(self.options.product, Product::Filtration | Product::Mesh) {
                 return self.write_balls(&balls, &molecule, started);
             }
@@ -128,7 +156,7 @@ impl Job<'_, '_> {
         report.times.triangulate = started.elapsed();
         self.options.method.count_violations(&mesh, &mut report);
         let measured = Instant::now();
-        let model = Model { name, coordinates: structure.coordinates, selected };
+        let model = Model { name, origin, coordinates: structure.coordinates, selected };
         match (selected, self.options.product) {
             (Some(selected), Product::Tetrahedra | Product::Contacts) => {
                 self.write_table(&model, selected, &mesh, &mut report)?;
@@ -143,6 +171,34 @@ impl Job<'_, '_> {
             _ => self.write_mesh(&model, mesh, weights.as_deref(), &mut report)?,
         }
         report.times.write = measured.elapsed();
+        Ok(report)
+    }
+
+    /// The vectors of the box of a model, in Å, if atoms repeat.
+    fn periodic_box(&self, structure: &Structure, at: usize) -> Result<Option<[Point3; 3]>> {
+        let model = &structure.models[at];
+        let reason = match (self.options.periodic, &model.periodic_box) {
+            (None, _) => return Ok(None),
+            (Some(PeriodicFrom::Stated(found)), _) => return Ok(Some(found.vectors())),
+            (_, Some(Ok(found))) => return Ok(Some(found.vectors())),
+            (_, Some(Err(fault))) => format!("states no periodic box that can be used ({fault})"),
+            (_, None) => "states no periodic box".to_string(),
+        };
+        let of =
+            if self.options.frames.is_some() { format!("frame {} ", model.number) } else { String::new() };
+        Err(Error::usage(format!("{of}{reason}: give one with --box a,b,c,alpha,beta,gamma")))
+    }
+
+    /// Measures Voronoi or Laguerre cells, and writes rows of them or of their faces.
+    fn write_sites(&mut self, molecule: &Molecule<'_>, started: Instant) -> Result<Report> {
+        let mut report = Report::new(molecule.origin.model, molecule.selected.points().len());
+        report.labels = Labels::of(molecule.selected, &self.options);
+        report.is_of_cells = true;
+        let balls = self.options.balls.as_ref();
+        let radii = balls.map_or(Ok(Vec::new()), |balls| molecule.radii(balls, &mut report))?;
+        let (product, threads) = (self.options.product, self.options.method.threads);
+        sites::write(product, molecule, &radii, threads, &mut report, || self.table())?;
+        report.times.triangulate = started.elapsed();
         Ok(report)
     }
 
@@ -167,8 +223,8 @@ impl Job<'_, '_> {
         report: &mut Report,
     ) -> Result<()> {
         let alpha = self.alpha(model, mesh, report);
-        let (number, scale) = (model.name.number, model.scale());
-        let tables = ModelTables { number, selected, mesh, alpha: alpha.as_ref(), scale };
+        let (origin, scale) = (model.origin, model.scale());
+        let tables = ModelTables { origin, selected, mesh, alpha: alpha.as_ref(), scale };
         report.labels = Labels::of(selected, &self.options);
         let is_contacts = self.options.product == Product::Contacts;
         let table = self.table()?;
@@ -182,7 +238,7 @@ impl Job<'_, '_> {
         molecule: &Molecule<'_>,
         started: Instant,
     ) -> Result<Report> {
-        let mut report = Report::new(molecule.number, molecule.selected.points().len());
+        let mut report = Report::new(molecule.origin.model, molecule.selected.points().len());
         report.labels = Labels::of(molecule.selected, &self.options);
         let product = self.options.product;
         if let Some(picture) = balls.picture {
@@ -200,25 +256,10 @@ impl Job<'_, '_> {
         self.open.as_mut().expect("rows alone are held")(model)
     }
 
-    /// The line with the names of the columns.
-    fn columns(&self) -> String {
-        let columns = self.columns_of_models();
-        // Frames are the models of a trajectory.
-        if self.options.frames.is_some() { columns.replacen("model", "frame", 1) } else { columns }
-    }
-
-    fn columns_of_models(&self) -> String {
-        match (self.options.product, &self.options.balls) {
-            (product, Some(balls)) => balls.columns(product),
-            (Product::Contacts, None) => CONTACTS.to_string(),
-            (_, None) => TETRAHEDRA.to_string(),
-        }
-    }
-
     /// The table, which is created when it gets its first rows.
     pub(super) fn table(&mut self) -> Result<&mut TableSink> {
         if self.table.is_none() {
-            let columns = columns(&self.columns());
+            let columns = table_columns(&self.options);
             self.table = Some(match &mut self.open {
                 Some(open) => TableSink::create(self.options.format, columns, open(None)?),
                 None => TableSink::held(self.options.format, columns),
@@ -276,6 +317,7 @@ impl Job<'_, '_> {
 /// The data that is written beside the mesh.
 struct Model<'s> {
     name: ModelName,
+    origin: Origin<'s>,
     coordinates: Coordinates,
     /// The selected atoms; `None` for plain points.
     selected: Option<&'s Selected<'s>>,

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::hash::Hash;
 
-use super::{Level, Options, Product};
+use super::{Between, Level, Options, Product};
 use spmesh_formats::molecules::{AtomView, Class, Selected};
 
 /// Counts of what the labels in a table do not tell.
@@ -23,7 +23,7 @@ impl Labels {
         let balls = options.balls.as_ref();
         let is_table = balls.is_none_or(|balls| balls.picture.is_none());
         let level = balls.map_or(Level::Atom, |balls| balls.level);
-        let is_by_chain = balls.is_some_and(|balls| balls.contacts.between == Some(Level::Chain));
+        let is_by_chain = balls.is_some_and(|balls| balls.contacts.between == Some(Between::Chains));
         let (mut residues, mut chains, mut classes) = (Shared::default(), Shared::default(), [0; 4]);
         for atom in (0..selected.points().len()).filter_map(|index| selected.atom(index)) {
             let residue = atom.residue();

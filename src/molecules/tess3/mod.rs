@@ -9,17 +9,21 @@ mod exact;
 pub mod filtration;
 mod frames;
 pub mod heap;
+mod identity;
 mod job;
 mod labels;
 mod mesh;
 mod method;
 mod selection;
+mod sites;
 mod spheres;
 pub mod sweep;
 mod tables;
 
 pub use alpha::{AlphaComplex, Radius};
-pub use balls::{BallOptions, ColourBy, ContactFilter, Level, NamedRadii, PictureForm, PictureOptions};
+pub use balls::{
+    BallOptions, Between, ColourBy, ContactFilter, Level, Maxima, NamedRadii, PictureForm, PictureOptions,
+};
 pub use frames::run_frames;
 pub use job::{ModelName, Open, run};
 pub use labels::Labels;
@@ -31,7 +35,7 @@ use std::time::Duration;
 
 use spmesh_base::error::{counted, counted_of};
 use spmesh_delaunay::predicates::PredicateCounts;
-use spmesh_formats::molecules::{FrameRange, RadiusCounts, Selection};
+use spmesh_formats::molecules::{FrameRange, PeriodicBox, RadiusCounts, Selection};
 use spmesh_formats::sink::TableFormat;
 
 /// The output made of a triangulation.
@@ -49,8 +53,15 @@ pub enum Product {
     Surface,
     /// A table of the faces between cells.
     ContactAreas,
+    /// A table of the areas that parts take from each other.
+    BuriedAreas,
     /// A table of the pockets and voids between them.
     Pockets,
+    /// A table of the Voronoi cells, or of those of the power diagram of [`Options::balls`], with rows of
+    /// this level.
+    SiteCells(Level),
+    /// A table of the faces of these.
+    SiteFaces,
     /// The filtration of the alpha complex, one per model.
     Filtration,
 }
@@ -65,6 +76,15 @@ impl Product {
     pub fn is_per_model(self) -> bool {
         matches!(self, Product::Mesh | Product::Filtration)
     }
+}
+
+/// Where the periodic box of atoms comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PeriodicFrom {
+    /// The file states it.
+    File,
+    /// It is given.
+    Stated(PeriodicBox),
 }
 
 /// What to triangulate, and what to write of it.
@@ -88,6 +108,8 @@ pub struct Options {
     pub compress: bool,
     /// How atoms become balls, for what is measured of these, and for meshes and filtrations with weights.
     pub balls: Option<BallOptions>,
+    /// The box that repeats the atoms, if one does: for cells, areas and contacts.
+    pub periodic: Option<PeriodicFrom>,
 }
 
 impl Options {
@@ -124,6 +146,10 @@ pub struct Report {
     pub is_of_cells: bool,
     /// Atoms that have no cell in the power diagram, as others take all of it.
     pub without_cell: u64,
+    /// Atoms with Voronoi or Laguerre cells that reach to infinity.
+    pub unbounded: u64,
+    /// Atoms whose cells are not known, as all are in a plane.
+    pub flat: u64,
     /// Atoms whose surface a mesh lacks, as rounding leaves its border in doubt.
     pub left_out: u64,
     /// What the labels of a table do not tell.
@@ -171,13 +197,20 @@ impl Report {
             let atoms = counted(self.left_out, "atom is", "atoms are");
             texts.push(format!("{atoms} left out of the mesh: {reason}"));
         }
-        if self.is_of_cells {
-            return texts;
+        if self.unbounded > 0 {
+            let cells = counted_of(self.unbounded, self.atoms, ["cell", "cells"], ["reaches", "reach"]);
+            texts.push(format!("{cells} to infinity: there is no box, and they are on the hull"));
+        }
+        if self.flat > 0 {
+            texts.push("cells are not measured: there is no box, and all points are in a plane".to_string());
         }
         let merged = self.atoms - self.vertices;
         if merged > 0 {
             let merged = counted_of(merged, self.atoms, ["point", "points"], ["coincides", "coincide"]);
             texts.push(format!("{merged} with an earlier one"));
+        }
+        if self.is_of_cells {
+            return texts;
         }
         let missing = self.rounding.missing;
         if missing > 0 && self.hull_facets > 0 {

@@ -5,7 +5,9 @@
 
 use std::fmt::Write;
 
+use super::Level;
 use super::alpha::AlphaComplex;
+use super::identity::{self, Named, Origin};
 use super::spheres::measure;
 use spmesh_base::error::Result;
 use spmesh_delaunay::delaunay3::Tetrahedralization;
@@ -15,15 +17,21 @@ use spmesh_formats::sink::{Column, ColumnKind, TableSink};
 
 /// Columns of the table of tetrahedra.
 pub(super) const TETRAHEDRA: &str =
-    "model atom1 atom2 atom3 atom4 serial1 serial2 serial3 serial4 circumradius volume";
+    "file model atom1 atom2 atom3 atom4 serial1 serial2 serial3 serial4 circumradius volume";
 
 /// Columns of the table of contacts.
-pub(super) const CONTACTS: &str = "model atom1 atom2 serial1 serial2 distance tetrahedra";
+pub(super) fn contact_columns() -> String {
+    format!("{} {} distance tetrahedra", Origin::COLUMNS, pair_columns(Level::Atom))
+}
+
+/// Columns of both ends of a contact.
+pub(super) fn pair_columns(level: Level) -> String {
+    ["1", "2"].map(|end| identity::columns(level, "", end).join(" ")).join(" ")
+}
 
 /// The data of the tables of one model.
 pub(super) struct ModelTables<'s> {
-    /// Number that the file gives it.
-    pub(super) number: i64,
+    pub(super) origin: Origin<'s>,
     /// The atoms that the mesh was made of.
     pub(super) selected: &'s Selected<'s>,
     pub(super) mesh: &'s Tetrahedralization,
@@ -42,20 +50,22 @@ impl<'s> ModelTables<'s> {
         let kept = tetrahedra.filter(|&(t, _)| self.alpha.is_none_or(|alpha| alpha.has_tetrahedron(t)));
         let mut found: Vec<[u32; 4]> = kept.map(|(_, t)| self.in_order_of_input(t.vertices)).collect();
         found.sort_unstable();
-        let mut table = Table::new(rows, self);
+        let names = AtomNames::new(self.selected);
         for row in found {
-            table.start_row(&row)?;
+            self.origin.start_row(rows)?;
+            row.iter().for_each(|&index| rows.field(names.name(index as usize)));
+            row.iter().try_for_each(|&index| rows.integer(self.selected.label(index as usize)))?;
             let measure = measure(row.map(|index| self.point(index)));
-            table.rows.number(measure.circumradius * self.scale);
-            table.rows.number(measure.volume * self.scale.powi(3));
-            table.rows.end()?;
+            rows.number(measure.circumradius * self.scale);
+            rows.number(measure.volume * self.scale.powi(3));
+            rows.end()?;
         }
         Ok(())
     }
 
     /// Writes a row per edge: its atoms, their distance, and the number of tetrahedra around it.
     ///
-    /// Memory: 12 bytes per edge, and the names of the atoms.
+    /// Memory: 12 bytes per edge.
     pub(super) fn write_contacts(&self, rows: &mut TableSink) -> Result<()> {
         let mut found: Vec<([u32; 2], u32)> = Vec::new();
         self.mesh.for_each_edge(
@@ -70,12 +80,14 @@ impl<'s> ModelTables<'s> {
             },
         )?;
         found.sort_unstable();
-        let mut table = Table::new(rows, self);
         for (row, tetrahedra) in found {
-            table.start_row(&row)?;
-            table.rows.number(distance(row.map(|index| self.point(index))) * self.scale);
-            table.rows.integer(tetrahedra)?;
-            table.rows.end()?;
+            self.origin.start_row(rows)?;
+            for atom in row {
+                Named::atom(atom).write(self.selected, Level::Atom, Level::Atom, rows)?;
+            }
+            rows.number(distance(row.map(|index| self.point(index))) * self.scale);
+            rows.integer(tetrahedra)?;
+            rows.end()?;
         }
         Ok(())
     }
@@ -92,31 +104,9 @@ impl<'s> ModelTables<'s> {
     }
 }
 
-/// Rows of atoms by their names.
-struct Table<'t> {
-    number: i64,
-    selected: &'t Selected<'t>,
-    names: AtomNames,
-    rows: &'t mut TableSink,
-}
-
-impl<'t> Table<'t> {
-    fn new(rows: &'t mut TableSink, of: &ModelTables<'t>) -> Self {
-        let ModelTables { number, selected, .. } = *of;
-        Table { number, selected, names: AtomNames::new(selected), rows }
-    }
-
-    /// Model, names and serial numbers of atoms.
-    fn start_row(&mut self, atoms: &[u32]) -> Result<()> {
-        self.rows.integer(self.number)?;
-        atoms.iter().for_each(|&index| self.rows.field(self.names.name(index as usize)));
-        atoms.iter().try_for_each(|&index| self.rows.integer(self.selected.label(index as usize)))
-    }
-}
-
 /// The names of all selected atoms, one behind the other.
 #[derive(Debug, Default)]
-pub(super) struct AtomNames {
+struct AtomNames {
     text: String,
     ends: Vec<usize>,
 }
@@ -124,7 +114,7 @@ pub(super) struct AtomNames {
 impl AtomNames {
     /// The names of the atoms: `chain/residue/number/atom`. The number includes its insertion code.
     /// `/location` follows if an atom has alternate locations. Points without names have their numbers.
-    pub(super) fn new(selected: &Selected<'_>) -> Self {
+    fn new(selected: &Selected<'_>) -> Self {
         let mut names = AtomNames::default();
         for index in 0..selected.points().len() {
             names.push(selected.atom(index), selected.label(index));
@@ -133,7 +123,7 @@ impl AtomNames {
     }
 
     /// The name of the atom at `index` of the selection.
-    pub(super) fn name(&self, index: usize) -> &str {
+    fn name(&self, index: usize) -> &str {
         let start = index.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.text[start..self.ends[index]]
     }
@@ -157,7 +147,7 @@ impl AtomNames {
 }
 
 /// Appends the name of the residue of an atom: `chain/residue/number`.
-pub(super) fn push_residue(text: &mut String, atom: &AtomView<'_>) {
+fn push_residue(text: &mut String, atom: &AtomView<'_>) {
     push_name(text, atom.chain());
     text.push('/');
     push_name(text, atom.residue_name());
@@ -186,10 +176,13 @@ pub(super) fn columns(names: &str) -> Vec<Column> {
 
 /// The type of the column of a name; numbers unless it is listed.
 fn kind(name: &str) -> ColumnKind {
-    match name.trim_end_matches(|c: char| c.is_ascii_digit()) {
+    match name.trim_start_matches("partner_").trim_end_matches(|c: char| c.is_ascii_digit()) {
         "model" | "frame" | "serial" | "tetrahedra" | "atoms" | "contacts" | "pocket" | "mouth"
-        | "mouths" => ColumnKind::Integer,
-        "kind" | "atom" | "residue" | "chain" | "molecule" => ColumnKind::Text,
+        | "mouths" | "residue_number" | "faces" | "shift_a" | "shift_b" | "shift_c" => ColumnKind::Integer,
+        "file" | "kind" | "cell" | "face" | "atom" | "chain" | "label_chain" | "segment"
+        | "insertion_code" | "residue_name" | "class" | "atom_name" | "element" | "altloc" => {
+            ColumnKind::Text
+        }
         _ => ColumnKind::Number,
     }
 }

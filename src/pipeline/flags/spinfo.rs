@@ -14,15 +14,16 @@ use clap::Parser;
 use report::Summary;
 use spmesh_audit::configurations::{self as config_audit};
 use spmesh_audit::diagram::{self as diagram4, StreamAudit};
-use spmesh_audit::{Audit, Census, Counts, Inventory, PointSet, Report, Standard};
+use spmesh_audit::{Audit, Census, Counts, Given, Inventory, NearPoints, PointSet, Report, Standard};
 use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_base::output::Output;
 use spmesh_formats::detect::SPINFO;
-use spmesh_formats::source::{Input, SourceOptions};
+use spmesh_formats::source::{Input, Opened, SourceOptions, open_planar};
 use spmesh_shell::messages::escaped_json;
 use spmesh_shell::progress::Progress;
 use spmesh_shell::{Common, Names, advise_on_memory, named, notice, open_input};
-use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader, check_part};
+use spmesh_stream::model::bounds::Point;
+use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader, check_part, check_surface};
 
 const INPUT_BUFFER_LEN: usize = 1 << 18;
 
@@ -33,6 +34,8 @@ Examples:
                                           prove that the mesh is right
   spinfo --audit=delaunay foreign.spm     any Delaunay triangulation will do
   spinfo --audit --points a.laz mesh.spm  and it has exactly these points
+  spinfo --audit --within 0.2 --points terrain.spm simple.spm
+                                          its vertices are some of these, the others at most 0.2 above or below
   spinfo --audit diagram.spm              prove the cells that dd4 made; they are held in memory
   spinfo --audit configurations.spm       prove circles, facets and counts of configurations; they are held
   spinfo --audit --count-violations tetrahedra.spm
@@ -75,6 +78,12 @@ pub struct Flags {
     /// per integer coordinate and 8 bytes per other one
     #[arg(long, value_name = "FILE", requires = "audit")]
     points: Vec<PathBuf>,
+
+    /// With --points, prove instead that the vertices of the triangle mesh are some of the points, and all
+    /// others at most so far above or below its triangles, in the unit of elevations. A triangle mesh stream
+    /// can be the points. They are held, with 48 bytes each
+    #[arg(long, value_name = "DISTANCE", requires = "points", allow_negative_numbers = true)]
+    within: Option<f64>,
 
     /// Count all violations instead of stopping at the first, both exactly and in plain floating-point
     /// arithmetic; for tetrahedral meshes. Holds 4 bytes per tetrahedron more than the audit, and the edges
@@ -239,7 +248,7 @@ impl Proof {
 }
 
 /// The points of `--points`, to be compared with the mesh.
-fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<PointSet>> {
+fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<Given>> {
     if flags.points.is_empty() {
         return Ok(None);
     }
@@ -261,17 +270,50 @@ fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<PointSet>> {
         holds_points: true,
         ..SourceOptions::default()
     };
+    if let Some(distance) = flags.within {
+        return near_points(flags, distance, mesh, &options).map(|near| Some(Given::Near(Box::new(near))));
+    }
     let input = Input::open(&flags.points, &options)?;
-    input.notices().iter().for_each(|text| notice("spinfo", &flags.common, text));
     let mut points = PointSet::new(input.description().coordinates, mesh.dims);
+    for_each_batch(flags, &input, |batch| points.extend(batch))?;
+    points.finish(&mesh.coordinates).map(|points| Some(Given::All(points)))
+}
+
+/// The points that are to be near the mesh.
+fn near_points(flags: &Flags, distance: f64, mesh: &Header, options: &SourceOptions) -> Result<NearPoints> {
+    check_surface(mesh, true)?;
+    if !(0.0..f64::INFINITY).contains(&distance) {
+        return Err(Error::usage(format!("--within {distance}: give a number from 0 on")));
+    }
+    let mut points = Vec::new();
+    let coordinates = match open_planar(&flags.points, options)? {
+        Opened::Points(input) => {
+            for_each_batch(flags, &input, |batch| points.extend_from_slice(batch))?;
+            input.description().coordinates
+        }
+        Opened::Events(mut events) => {
+            while let Some(event) = events.next_event()? {
+                if let Event::Patch(patch) = event {
+                    points.extend(patch.new);
+                }
+            }
+            events.header().coordinates
+        }
+    };
+    NearPoints::new(coordinates, points, &mesh.coordinates, distance)
+}
+
+/// Passes all points of an input on.
+fn for_each_batch(flags: &Flags, input: &Input, mut take: impl FnMut(&[Point])) -> Result<()> {
+    input.notices().iter().for_each(|text| notice("spinfo", &flags.common, text));
     let (mut reader, mut batch) = (input.read()?, Vec::new());
     loop {
         reader.next_batch(&mut batch)?;
         if batch.is_empty() {
             input.withheld_notice().iter().for_each(|text| notice("spinfo", &flags.common, text));
-            return points.finish(&mesh.coordinates).map(Some);
+            return Ok(());
         }
-        points.extend(&batch);
+        take(&batch);
     }
 }
 

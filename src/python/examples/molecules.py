@@ -8,15 +8,22 @@ import spmesh
 
 file = Path(__file__).resolve().parents[3] / "tests" / "data" / "1aki.cif"
 
+
+def residue(table, end, row):
+    """What a row is about: chain, name and number; `end` is that of the columns."""
+    return " ".join(str(table[name + end][row]) for name in ("chain", "residue_name", "residue_number"))
+
+
 with spmesh.molecule(file, classes="polymer") as lysozyme:
     areas = lysozyme.sasa(per="residue")
     most = np.argmax(areas["area"])
-    print(f"{len(areas['area'])} residues; {areas['residue'][most]} has the greatest area, {areas['area'][most]:.1f} Å²")
+    name = residue(areas, "", most)
+    print(f"{len(areas['area'])} residues; {name} has the greatest area, {areas['area'][most]:.1f} Å²")
 
     contacts = lysozyme.contacts(per="residue")
-    first, second = contacts["residue1"], contacts["residue2"]
     most = np.argmax(contacts["area"])
-    print(f"{len(first)} contacts; the greatest between {first[most]} and {second[most]}, {contacts['area'][most]:.1f} Å²")
+    first, second = residue(contacts, "1", most), residue(contacts, "2", most)
+    print(f"{len(contacts['area'])} contacts; the greatest between {first} and {second}, {contacts['area'][most]:.1f} Å²")
 
     pockets = lysozyme.pockets()
     print(f"{len(pockets['volume'])} pockets and voids of {pockets['volume'].sum():.1f} Å³")

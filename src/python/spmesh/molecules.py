@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Literal, overload
@@ -18,8 +19,13 @@ Table = dict[str, np.ndarray]
 
 # Columns of the tables of `tess3`, without the number of an atom in a pair; all others are numbers of 64-bit
 # floating point.
-INTEGERS = {"model", "serial", "tetrahedra", "atoms", "contacts", "pocket", "mouth", "mouths"}
-TEXTS = {"kind", "atom", "residue", "chain", "molecule"}
+INTEGERS = {
+    *("model", "frame", "serial", "residue_number", "tetrahedra", "atoms", "contacts", "pocket", "mouth", "mouths"),
+}
+TEXTS = {
+    *("file", "kind", "atom", "chain", "label_chain", "segment", "insertion_code", "residue_name", "class"),
+    *("atom_name", "element", "altloc"),
+}
 
 
 def molecule(structure: Any, **options: Any) -> Molecule:
@@ -63,7 +69,7 @@ class Molecule(Owner):
     """Atoms in a file, and the flags of `tess3` that select some of them.
 
     Tables are dictionaries of arrays, one for each column: lengths in Å, areas in Å², volumes in Å³. Integers
-    are int64, names are text: atoms are named chain/residue/number/atom. With `as_frame=True` they are
+    are int64, names are text. Numbers that do not apply are NaN. With `as_frame=True` they are
     DataFrames of pandas. All methods raise ProgramError, and pass further options to `tess3`, such as
     `radii="bondi"`.
     """
@@ -81,11 +87,12 @@ class Molecule(Owner):
         """Areas of the surface that a probe of this radius (Å) reaches, of each "atom", "residue", "chain" or
         the "molecule".
 
-        Columns: model, atom and serial (or residue and atoms, their number), area. `volumes=True` adds
-        volume.
+        Columns: file, model, what identifies the atom, residue or chain (chain, label_chain, segment,
+        residue_number, insertion_code, residue_name, class; of atoms atom_name, element, altloc and serial,
+        of others atoms, their number), area. `volumes=True` adds volume.
 
             areas = molecule.sasa(per="residue")
-            exposed = areas["residue"][areas["area"] > 60]
+            exposed = areas["residue_number"][areas["area"] > 60]
         """
         return self._table("sasa", as_frame, {"per": per, "probe": probe, **options})
 
@@ -97,9 +104,9 @@ class Molecule(Owner):
     def contacts(self, per: str = "atom", probe: float = 1.4, as_frame: bool = False, **options: Any) -> Any:
         """Areas of contact between atoms, residues or chains: those of the faces between their cells.
 
-        Columns: model, atom1, atom2, serial1, serial2, distance, area; of residues model, residue1, residue2,
-        contacts, area. `between="chains"` leaves out contacts within a chain; `min_area` and `within` (Å)
-        those that are small or far.
+        Columns: file, model, what identifies both, as of `sasa` (chain1, ..., chain2, ...), distance, area; of
+        residues and chains contacts, their number, for distance. `between="chains"` leaves out contacts within
+        a chain; `min_area` and `within` (Å) those that are small or far.
 
             interface = molecule.contacts(per="residue", between="chains")
         """
@@ -114,7 +121,7 @@ class Molecule(Owner):
         """Edges of the Delaunay tetrahedralization of the centres, or of the alpha complex of the radius
         `alpha` (Å).
 
-        Columns: model, atom1, atom2, serial1, serial2, distance, tetrahedra.
+        Columns: as of `contacts`, but tetrahedra for area.
 
             edges = molecule.neighbours(alpha=4)
         """
@@ -128,7 +135,7 @@ class Molecule(Owner):
     def pockets(self, probe: float = 1.4, as_frame: bool = False, **options: Any) -> Any:
         """Pockets and voids, the largest first.
 
-        Columns: model, pocket, kind ("pocket" or "void"), volume, area, mouths, mouth_area, depth, atoms,
+        Columns: file, model, pocket, kind ("pocket" or "void"), volume, area, mouths, mouth_area, depth, atoms,
         tetrahedra. With `per="atom"` or "residue" those around each, with `mouths=True` the mouths.
 
             largest = molecule.pockets()["volume"][:1]
@@ -153,14 +160,24 @@ class Molecule(Owner):
         return import_module("pandas").DataFrame(table) if as_frame else table
 
 
+def _plain(field: str) -> str:
+    """A text without the escapes of tables."""
+    escapes = {"t": "\t", "n": "\n", "r": "\r"}
+    return re.sub(r"\\(.)", lambda found: escapes.get(found[1], found[1]), field) if "\\" in field else field
+
+
 def _columns(text: str) -> Table:
     """The columns of a table with tabs between fields."""
-    head, *lines = text.splitlines()
+    head, *lines = text.removesuffix("\n").split("\n")
     names = head.split("\t")
     fields = list(zip(*(line.split("\t") for line in lines))) or [()] * len(names)
     table: Table = {}
     for name, values in zip(names, fields):
-        kind = name.rstrip("0123456789")
-        dtype = str if kind in TEXTS else np.int64 if kind in INTEGERS else np.float64
-        table[name] = np.array(values, dtype)
+        kind = name.removeprefix("partner_").rstrip("0123456789")
+        if kind in TEXTS:
+            table[name] = np.array([_plain(value) for value in values], str)
+            continue
+        # What is not stated is no integer.
+        dtype = np.int64 if kind in INTEGERS and "" not in values else np.float64
+        table[name] = np.array([value or "nan" for value in values], dtype)
     return table

@@ -1,4 +1,5 @@
-//! Command lines of `spdem`, `spground`, `spheight`, `spcanopy`, `spconstrain` and `spreport`.
+//! Command lines of `spdem`, `spground`, `spheight`, `spcanopy`, `spconstrain`, `spreport`, `spdiff` and
+//! `spsimplify`.
 
 mod names;
 mod rewrite;
@@ -6,6 +7,8 @@ mod sheets;
 pub mod spcanopy;
 pub mod spconstrain;
 pub mod spdem;
+pub mod spdiff;
 pub mod spground;
 pub mod spheight;
 pub mod spreport;
+pub mod spsimplify;

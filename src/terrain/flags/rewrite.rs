@@ -1,5 +1,5 @@
-//! Programs that write many files of points again, with a summary: what is done already is skipped, and a file
-//! that fails need not end the others.
+//! Programs that write many files of points again, with a summary: what is done already is skipped, and a
+//! file that fails need not end the others.
 
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
@@ -17,6 +17,10 @@ use spmesh_stream::model::bounds::Bounds;
 
 /// The name of the summary in the folder of outputs.
 const SUMMARY_NAME: &str = "summary.jsonl";
+
+/// The help of `--summary`, whose default is JSON Lines.
+pub(super) const SUMMARY_HELP: &str = "Where the summary goes, a line per file: JSON Lines, a table if the name ends in \
+    .tsv, or Parquet if it ends in .parquet; - is stdout [default: summary.jsonl in the folder, with --keep-going or --skip-existing]";
 
 /// A program that writes files again, each for itself, by something that all of them need.
 pub(super) trait Rewriter: Sync {
@@ -41,8 +45,7 @@ pub(super) trait Rewriter: Sync {
     /// Opens a file, whose output gets this name.
     fn open(&self, input: &Path, output: &Path) -> Result<PointFile>;
 
-    /// What all files need: is asked for once, and not at all if no file is left. `failed` are files that
-    /// cannot be opened.
+    /// What all files need, once, if one is left. `failed` are files that cannot be opened.
     fn basis(&self, stated: &[Stated], failed: &[&Path], outputs: &[PathBuf]) -> Result<Self::Basis>;
 
     /// Writes a file.

@@ -17,7 +17,7 @@ use plans::{Around, PlanFlags};
 use report::rows;
 
 use super::names::{FormatFlag, OutputNames};
-use super::rewrite::Written;
+use super::rewrite::{SUMMARY_HELP, Written};
 use crate::ground::{
     ClassCounts, Found, FoundCounts, GroundPoints, RewriteOptions, Settings, Step, write_classes,
     write_stream_classes, write_text_classes,
@@ -85,9 +85,7 @@ input, 5 not enough memory, 6 input of another version of spmesh.";
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 #[command(mut_arg("out_dir", |folder| folder.help("Folder for the files with classes, which keep their names; it is \
     made if necessary")))]
-#[command(mut_arg("summary", |summary| summary.help("Where the summary goes, a line per file: JSON Lines, a table if \
-    the name ends in .tsv, or Parquet if it ends in .parquet; - is stdout [default: summary.jsonl in the folder, with \
-    --keep-going or --skip-existing]")))]
+#[command(mut_arg("summary", |summary| summary.help(SUMMARY_HELP)))]
 #[command(mut_arg("resume", |resume| resume.help("Skip the files that an earlier run to the same folder has done with \
     the same flags, if all files are the same still by size and time")))]
 #[command(mut_arg("keep_going", |keep_going| keep_going.help("Leave files that are damaged out, as if they had not \
@@ -246,7 +244,7 @@ fn run_plain(
     let mut counts = ClassCounts::default();
     if let Some(mut mesh) = mesh {
         let points = GroundPoints::new(&found, &input, flags.threads(), flags.memory / 4);
-        flags.settings().meshing().write(&points, &mut mesh)?;
+        flags.settings().meshing().write(&points, false, &mut mesh)?;
         mesh.commit()?;
         input.withheld_notice().iter().for_each(|text| flags.notice(text));
     }
@@ -340,9 +338,11 @@ impl Flags {
 
     /// What is ground of all points.
     fn found(&self, around: Option<&Around>, inputs: &[PathBuf]) -> Result<(Input, Found)> {
-        let options = self.source_options();
-        let input =
-            Input::open(inputs, &around.map_or_else(|| options.clone(), |it| it.options(options.clone())))?;
+        let mut options = self.source_options();
+        if let Some(around) = around {
+            options = around.options(options);
+        }
+        let input = Input::open(inputs, &options)?;
         input.notices().iter().for_each(|text| self.notice(text));
         let found = self.find(&input, around)?;
         if found.counts().triangles == 0 {

@@ -9,7 +9,7 @@ use std::time::Instant;
 use clap::Parser;
 
 use super::names::{ENDINGS, FormatFlag, OutputNames};
-use super::rewrite::{Rewriter, Stated, Written};
+use super::rewrite::{Rewriter, SUMMARY_HELP, Stated, Written};
 use crate::height::{
     Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights, write_stream_heights,
     write_text_heights,
@@ -87,9 +87,7 @@ memory, 6 input of another version of spmesh.";
     EPSG:CODE+CODE with one for heights, well-known text, or a file of it (.prj)")))]
 #[command(mut_arg("out_dir", |folder| folder.help("Folder for the files with heights, which keep their names; it is \
     made if necessary")))]
-#[command(mut_arg("summary", |summary| summary.help("Where the summary goes, a line per file: JSON Lines, a table if \
-    the name ends in .tsv, or Parquet if it ends in .parquet; - is stdout [default: summary.jsonl in the folder, with \
-    --keep-going or --skip-existing]")))]
+#[command(mut_arg("summary", |summary| summary.help(SUMMARY_HELP)))]
 pub struct Flags {
     /// LAS, LAZ, COPC or text files, or streams of points; several only with --out-dir
     #[arg(value_name = "FILE")]

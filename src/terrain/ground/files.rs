@@ -3,7 +3,7 @@
 use std::io::{Seek, Write};
 use std::num::NonZeroUsize;
 
-use super::Found;
+use super::{Class, Found};
 use crate::height::{rewrite, stored_point};
 use spmesh_base::error::{Error, Result};
 use spmesh_formats::las::{Changes, LasFile};
@@ -52,6 +52,12 @@ pub struct ClassCounts {
 }
 
 impl ClassCounts {
+    /// Adds points that got classes.
+    fn count(&mut self, classes: &[Class]) {
+        classes.iter().for_each(|class| self.classes[class.number()] += 1);
+        self.points += classes.len() as u64;
+    }
+
     /// Adds the counts of another file.
     pub fn add(&mut self, other: &ClassCounts) {
         self.points += other.points;
@@ -79,8 +85,7 @@ pub fn write_text_classes<W: Write>(
     let (mut counts, mut classes) = (ClassCounts::default(), Vec::new());
     file.write_with((COLUMN, Some(0)), most, &mut output, |points, values| {
         classifier.of(points, &mut classes)?;
-        classes.iter().for_each(|class| counts.classes[class.number()] += 1);
-        counts.points += classes.len() as u64;
+        counts.count(&classes);
         values.clear();
         values.extend(classes.iter().map(|&class| f64::from(class as u8)));
         progress(counts.points);
@@ -111,8 +116,7 @@ pub fn write_stream_classes<W: Write>(
     let attribute = Attribute::new(ATTRIBUTE, NumberType::U8);
     let output = file.write_with(attribute, most, output, |points, numbers| {
         classifier.of(points, &mut classes)?;
-        classes.iter().for_each(|class| counts.classes[class.number()] += 1);
-        counts.points += classes.len() as u64;
+        counts.count(&classes);
         numbers.clear();
         numbers.extend(classes.iter().map(|&class| class as u8));
         progress(counts.points);

@@ -12,7 +12,7 @@ const GROUP_LEN: usize = 64;
 pub type Triangle = [Point; 3];
 
 /// The corners of a triangle, as places among the vertices of its block.
-pub(super) type Corners = [u16; 3];
+pub(crate) type Corners = [u16; 3];
 
 /// A block in the file: its vertices, then the corners of its triangles.
 #[derive(Debug, Clone, Copy)]
@@ -28,7 +28,7 @@ pub(super) struct Block {
 ///
 /// Memory: 48 bytes for each block of about two thousand triangles.
 #[derive(Debug)]
-pub(super) struct Blocks {
+pub(crate) struct Blocks {
     file: TemporaryFile,
     /// Whether coordinates are stored as integers of 32 bits.
     is_integer: bool,
@@ -52,13 +52,18 @@ impl Blocks {
         self.triangles
     }
 
+    /// Number of blocks.
+    pub(crate) fn len(&self) -> usize {
+        self.blocks.len()
+    }
+
     /// The box of a block.
     pub(super) fn bounds(&self, block: usize) -> &Box2 {
         &self.blocks[block].bounds
     }
 
     /// The blocks whose boxes satisfy a condition, which must hold for a box if it holds for a part of it.
-    pub(super) fn that(&self, condition: impl Fn(&Box2) -> bool + Copy) -> impl Iterator<Item = usize> {
+    pub(crate) fn that(&self, condition: impl Fn(&Box2) -> bool + Copy) -> impl Iterator<Item = usize> {
         let groups = (0..self.groups.len()).filter(move |&group| condition(&self.groups[group]));
         groups.flat_map(|group| self.group(group)).filter(move |&block| condition(self.bounds(block)))
     }
@@ -88,7 +93,7 @@ impl Blocks {
     }
 
     /// Replaces `loaded` with a block.
-    pub(super) fn read(&self, block: usize, loaded: &mut LoadedBlock) -> Result<()> {
+    pub(crate) fn read(&self, block: usize, loaded: &mut LoadedBlock) -> Result<()> {
         let Block { at, vertices, triangles, .. } = self.blocks[block];
         let vertex_len = if self.is_integer { size_of::<[i32; 3]>() } else { size_of::<Point>() };
         let vertices_len = vertices as usize * vertex_len;
@@ -112,7 +117,7 @@ impl Blocks {
 
 /// A block in memory; reusable.
 #[derive(Debug, Default)]
-pub(super) struct LoadedBlock {
+pub(crate) struct LoadedBlock {
     bytes: Vec<u8>,
     vertices: Vec<Point>,
     corners: Vec<Corners>,
@@ -121,13 +126,13 @@ pub(super) struct LoadedBlock {
 impl LoadedBlock {
     /// The vertices.
     #[inline]
-    pub(super) fn vertices(&self) -> &[Point] {
+    pub(crate) fn vertices(&self) -> &[Point] {
         &self.vertices
     }
 
     /// The corners of each triangle.
     #[inline]
-    pub(super) fn corners(&self) -> &[Corners] {
+    pub(crate) fn corners(&self) -> &[Corners] {
         &self.corners
     }
 

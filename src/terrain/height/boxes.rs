@@ -5,17 +5,17 @@ use spmesh_stream::model::points::Point2;
 
 /// A closed box in the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Box2 {
-    pub(super) min: Point2,
-    pub(super) max: Point2,
+pub(crate) struct Box2 {
+    pub(crate) min: Point2,
+    pub(crate) max: Point2,
 }
 
 impl Box2 {
-    pub(super) const NONE: Box2 = Box2 { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
+    pub(crate) const NONE: Box2 = Box2 { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
 
     /// The box of some points, which are no NaN.
     #[inline]
-    pub(super) fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Box2 {
+    pub(crate) fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Box2 {
         let Box2 { min: [mut left, mut low], max: [mut right, mut high] } = Box2::NONE;
         // A minimum that heeds NaN, as that of `f64`, takes longer.
         for &[x, y, _] in points {
@@ -28,7 +28,7 @@ impl Box2 {
     }
 
     /// The least box around both.
-    pub(super) fn with(&self, other: &Box2) -> Box2 {
+    pub(crate) fn with(&self, other: &Box2) -> Box2 {
         Box2 {
             min: [0, 1].map(|axis| self.min[axis].min(other.min[axis])),
             max: [0, 1].map(|axis| self.max[axis].max(other.max[axis])),
@@ -41,8 +41,13 @@ impl Box2 {
         (self.min[0] <= x) & (x <= self.max[0]) & (self.min[1] <= y) & (y <= self.max[1])
     }
 
+    /// Whether both have a place in common.
+    pub(super) fn meets(&self, other: &Box2) -> bool {
+        (0..2).all(|axis| self.min[axis] <= other.max[axis] && other.min[axis] <= self.max[axis])
+    }
+
     /// Whether its sides have lengths, which are finite.
-    pub(super) fn has_sides(&self) -> bool {
+    pub(crate) fn has_sides(&self) -> bool {
         (0..2).all(|axis| (self.max[axis] - self.min[axis]).is_finite())
     }
 

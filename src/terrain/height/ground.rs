@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::block_writer::BlockWriter;
-use super::blocks::{Blocks, Triangle};
+use super::blocks::{Blocks, LoadedBlock, Triangle};
 use super::boxes::Box2;
 use crate::surface::is_counterclockwise;
 use spmesh_base::error::{Error, Result};
@@ -141,8 +141,21 @@ impl Ground {
     }
 
     /// Its triangles.
-    pub(super) fn blocks(&self) -> &Blocks {
+    pub(crate) fn blocks(&self) -> &Blocks {
         &self.blocks
+    }
+
+    /// Calls `found` with its triangles that may meet a box: all that do.
+    ///
+    /// # Errors
+    /// If the temporary file fails.
+    pub(crate) fn for_each_near(&self, bounds: &Box2, mut found: impl FnMut(Triangle)) -> Result<()> {
+        let mut block = LoadedBlock::default();
+        for number in self.blocks.that(|of_block| of_block.meets(bounds)) {
+            self.blocks.read(number, &mut block)?;
+            block.triangles().filter(|triangle| Box2::of(triangle).meets(bounds)).for_each(&mut found);
+        }
+        Ok(())
     }
 
     /// Number of its triangles.

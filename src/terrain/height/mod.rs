@@ -18,6 +18,8 @@ mod points;
 mod surface;
 mod text;
 
+pub(crate) use blocks::{Blocks, LoadedBlock, Triangle};
+pub(crate) use boxes::Box2;
 pub use files::{Counts, FileOptions, HeightPlace, write_heights};
 pub(crate) use files::{rewrite, stored_point};
 pub use ground::Ground;

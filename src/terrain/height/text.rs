@@ -57,8 +57,8 @@ pub fn write_text_heights<W: Write>(
 /// Memory: `options.memory`, and that of [`Ground`].
 ///
 /// # Errors
-/// Usage, if the coordinate reference systems differ, points have such an attribute, or heights should replace
-/// z; malformed, if the stream is; if reading or writing fails.
+/// Usage, if the coordinate reference systems differ, points have such an attribute, or heights should
+/// replace z; malformed, if the stream is; if reading or writing fails.
 pub fn write_stream_heights<W: Write>(
     ground: &Ground,
     file: &StreamFile,

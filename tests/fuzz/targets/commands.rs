@@ -19,7 +19,7 @@ use spmesh_pipeline::plan::{Naming, NodeReport, Plan, Planning, hash_of_file, pl
 use spmesh_pipeline::reduce::Duplicates;
 use spmesh_spacetime::flags::dd4;
 use spmesh_splines::flags::{configgen, splinefit};
-use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spheight};
+use spmesh_terrain::flags::{spcanopy, spconstrain, spdem, spdiff, spheight, spsimplify};
 use spmesh_view::flags::spview;
 use tempfile::TempDir;
 
@@ -97,6 +97,9 @@ pub const SURFACE: &[&str] = &[
     "spconstrain --lines DATA/lines.txt HERE/in.spm -o HERE/out.spm",
     "spheight --threads 1 --ground HERE/in.spm DATA/hextest.las -o HERE/out.las",
     "spcanopy --threads 1 --columns 9 --ground HERE/in.spm DATA/hextest.las -o HERE/out.tif",
+    "spdiff --threads 1 --levels 0:9:3 HERE/in.spm -o HERE/out.tsv",
+    "spdiff --threads 1 HERE/in.spm HERE/in.spm -o HERE/out.tsv",
+    "spsimplify --threads 1 --tolerance 1 HERE/in.spm -o HERE/out.spm",
     "spview --width 320 HERE/in.spm -o HERE/out.svg",
 ];
 
@@ -305,10 +308,12 @@ fn call_tool(tool: &str, words: &[String]) -> Result<(), String> {
         "spdelaunay2d" => parsed(words, spdelaunay2d::run),
         "spdelaunay3d" => parsed(words, spdelaunay3d::run),
         "spdem" => parsed(words, spdem::run),
+        "spdiff" => parsed(words, spdiff::run),
         "spfinalize" => parsed(words, spfinalize::run),
         "spheight" => parsed(words, spheight::run),
         "splinefit" => parsed(words, splinefit::run),
         "spnode" => parsed(words, spnode::run),
+        "spsimplify" => parsed(words, spsimplify::run),
         "spview" => parsed(words, spview::run),
         "tess3" => parsed(words, tess3::run),
         other => panic!("no tool {other}"),

@@ -4,8 +4,9 @@
 //! Source: the documentation of CHARMM (dynamc), and the notes on the unit cell in that of VMD's plugin.
 
 use super::words::{Words, finite};
-use super::{Content, Frames, check_count};
+use super::{Content, Frames, Positions, check_count};
 use crate::drivers::AnyInput;
+use crate::molecules::periodic_box::PeriodicBox;
 use spmesh_base::error::{Error, Result};
 
 /// Bytes of the first record: `CORD` and twenty integers.
@@ -18,6 +19,9 @@ const FIXED: usize = 8;
 const CELL: usize = 10;
 const FOUR: usize = 11;
 const VERSION: usize = 19;
+
+/// Bytes of a unit cell.
+const CELL_LEN: u32 = 48;
 
 /// Bytes of a line of the title, and most lines.
 const TITLE_LINE_LEN: u64 = 80;
@@ -47,6 +51,8 @@ struct Dcd {
     /// Number of frames so far.
     frames: u64,
     has_cell: bool,
+    /// The numbers of the unit cell of the current frame, if there is one.
+    cell: Vec<f64>,
     has_four: bool,
 }
 
@@ -94,6 +100,7 @@ impl Dcd {
             stated: u64::try_from(numbers[FRAMES]).unwrap_or(0),
             frames: 0,
             has_cell: is_charmm && numbers[CELL] != 0,
+            cell: Vec::new(),
             has_four: is_charmm && numbers[FOUR] != 0,
         })
     }
@@ -112,7 +119,9 @@ impl Dcd {
         }
         self.frames += 1;
         if self.has_cell {
-            self.pass(48)?;
+            start(&mut self.words, CELL_LEN)?;
+            self.cell = self.words.reals(6, 8)?;
+            end(&mut self.words, CELL_LEN)?;
         }
         Ok(true)
     }
@@ -148,8 +157,8 @@ impl Frames for Dcd {
         }
         let [x, y, z] = axes;
         let points = x.into_iter().zip(y).zip(z).map(|((x, y), z)| [x, y, z]).collect();
-        let (points, coordinates) = finite(points)?;
-        Ok(Some(Content::Points(points, coordinates)))
+        let stated = self.cell.first_chunk().and_then(|&cell| box_of(cell));
+        Ok(Some(Content::Points(Positions::new(finite(points)?, stated))))
     }
 
     fn skip(&mut self) -> Result<bool> {
@@ -163,6 +172,21 @@ impl Frames for Dcd {
     fn position(&self) -> Option<String> {
         Some(format!("byte {}", self.words.position()))
     }
+}
+
+/// The box of a unit cell. It has sides and angles, in degrees or, of NAMD and CHARMM, as cosines; recent
+/// versions of CHARMM write a symmetric matrix, of which an angle makes no sense.
+fn box_of(cell: [f64; 6]) -> Option<Result<PeriodicBox>> {
+    let [a, gamma, b, beta, alpha, c] = cell;
+    let angles = [alpha, beta, gamma];
+    if angles.iter().all(|angle| angle.abs() <= 1.0) {
+        let [alpha, beta, gamma] = angles.map(|cosine| cosine.acos().to_degrees());
+        return PeriodicBox::of_unit_cell([a, b, c, alpha, beta, gamma]);
+    }
+    if cell.iter().any(|&number| number < 0.0) || angles.iter().any(|&angle| angle > 180.0) {
+        return PeriodicBox::of_vectors([[a, gamma, beta], [gamma, b, alpha], [beta, alpha, c]]);
+    }
+    PeriodicBox::of_unit_cell([a, b, c, alpha, beta, gamma])
 }
 
 /// The length before a record.
@@ -181,4 +205,24 @@ fn end(words: &mut Words, expected: u32) -> Result<()> {
         return Ok(());
     }
     Err(Error::malformed(format!("found {len} behind a record of {expected} bytes")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::box_of;
+
+    /// As MDAnalysis reads them.
+    #[test]
+    fn unit_cells_have_angles_cosines_or_vectors() {
+        let vectors = |cell| box_of(cell).map(|found| found.unwrap().vectors());
+        let half = [[10.0, 0.0, 0.0], [10.0, 300f64.sqrt(), 0.0], [0.0, 0.0, 30.0]];
+        for cell in [[10.0, 60.0, 20.0, 90.0, 90.0, 30.0], [10.0, 0.5, 20.0, 0.0, 0.0, 30.0]] {
+            let found = vectors(cell).unwrap();
+            assert!(found.as_flattened().iter().zip(half.as_flattened()).all(|(c, d)| (c - d).abs() < 1e-13));
+        }
+        let symmetric = vectors([10.0, -2.0, 20.0, 3.0, 4.0, 30.0]).unwrap();
+        assert_eq!(symmetric, [[10.0, -2.0, 3.0], [-2.0, 20.0, 4.0], [3.0, 4.0, 30.0]]);
+        assert_eq!(vectors([0.0; 6]), None);
+        assert!(box_of([f64::NAN; 6]).unwrap().is_err());
+    }
 }

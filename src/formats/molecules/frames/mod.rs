@@ -21,6 +21,7 @@ pub use range::FrameRange;
 use crate::detect;
 use crate::drivers::{AnyInput, Format};
 use crate::molecules::model::{Model, Structure};
+use crate::molecules::periodic_box::{PeriodicBox, StatedBox};
 use crate::molecules::selection::Selection;
 use crate::molecules::{finished, opened, plain_with_head};
 use spmesh_base::error::{Error, Result};
@@ -47,11 +48,33 @@ pub(crate) trait Frames: Send {
 #[derive(Debug)]
 pub enum Content {
     /// Positions of atoms that another file names.
-    Points(Vec<Point3>, Coordinates),
+    Points(Positions),
     /// A model of a structure whose residues are known.
     Model(Model),
     /// A structure with one model.
     Structure(Box<Structure>),
+}
+
+/// Positions of atoms, as a structure stores them, and the periodic box.
+#[derive(Debug)]
+pub struct Positions {
+    points: Vec<Point3>,
+    coordinates: Coordinates,
+    periodic_box: StatedBox,
+}
+
+impl Positions {
+    fn new(
+        (points, coordinates): (Vec<Point3>, Coordinates),
+        stated: Option<Result<PeriodicBox>>,
+    ) -> Positions {
+        let periodic_box = stated.map(|stated| stated.map_err(|fault| fault.to_string()));
+        Positions { points, coordinates, periodic_box }
+    }
+
+    fn of_model(model: Model, coordinates: Coordinates) -> Positions {
+        Positions { points: model.points, coordinates, periodic_box: model.periodic_box }
+    }
 }
 
 /// A frame.
@@ -108,7 +131,10 @@ impl FrameReader {
         range: FrameRange,
         topology: Option<&Structure>,
     ) -> Result<FrameReader> {
-        let topology = topology.map(|topology| first_model(topology.clone()));
+        // Atoms are those of the frames.
+        let of_frames =
+            |topology: &Structure| Structure { name: name.clone(), ..first_model(topology.clone()) };
+        let topology = topology.map(of_frames);
         let (head, input) = plain_with_head(input, &name)?;
         let format = format.map_or_else(|| detect::detect(&head), Ok).map_err(|e| e.of_input(&name))?;
         let Some(open) = format.row().frames else {
@@ -185,13 +211,13 @@ impl FrameReader {
         let content = match (content, atoms) {
             (Content::Structure(structure), Some(_)) => {
                 let coordinates = structure.coordinates;
-                let points = first_model(*structure).models.swap_remove(0).points;
-                Content::Points(points, coordinates)
+                let model = first_model(*structure).models.swap_remove(0);
+                Content::Points(Positions::of_model(model, coordinates))
             }
             (content, _) => content,
         };
-        if let (Content::Points(points, _), Some(atoms)) = (&content, atoms) {
-            check_count(points.len() as u64, atoms)
+        if let (Content::Points(positions), Some(atoms)) = (&content, atoms) {
+            check_count(positions.points.len() as u64, atoms)
                 .map_err(|e| e.at(format!("frame {place}")).of_input(&self.name))?;
         }
         let number = match &content {
@@ -247,10 +273,11 @@ impl Frame {
         let Frame { number, content, .. } = self;
         let structure = match content {
             Content::Structure(own) => structure.insert(first_model(*own)),
-            Content::Points(points, coordinates) => {
+            Content::Points(Positions { points, coordinates, periodic_box }) => {
                 let structure = structure.as_mut().expect("points have a topology");
                 structure.coordinates = coordinates;
-                structure.models[0].points = points;
+                let model = &mut structure.models[0];
+                (model.points, model.periodic_box) = (points, periodic_box);
                 structure
             }
             Content::Model(model) => {
@@ -274,7 +301,7 @@ impl Frames for InMemory {
     fn next(&mut self, atoms: Option<u64>) -> Result<Option<Content>> {
         let Some(model) = self.models.pop_front() else { return Ok(None) };
         Ok(Some(match atoms {
-            Some(_) => Content::Points(model.points, self.coordinates),
+            Some(_) => Content::Points(Positions::of_model(model, self.coordinates)),
             None => Content::Model(model),
         }))
     }

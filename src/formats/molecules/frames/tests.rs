@@ -64,6 +64,71 @@ fn all_formats_have_the_same_frames() {
     }
 }
 
+/// The vectors of the boxes of all frames.
+fn boxes(mut reader: FrameReader) -> Vec<[Point3; 3]> {
+    let (mut state, mut boxes) = (reader.topology().cloned(), Vec::new());
+    while let Some(frame) = reader.next_frame().unwrap() {
+        let stated = &frame.put(&mut state).models[0].periodic_box;
+        boxes.push(stated.as_ref().unwrap().as_ref().unwrap().vectors());
+    }
+    boxes
+}
+
+/// The sample with another box in its first frame, of these vectors in nm.
+fn with_box(ending: &str, vectors: [f32; 9]) -> Vec<u8> {
+    let mut bytes = bytes(ending);
+    let [ax, ay, az, bx, by, bz, cx, cy, cz] = vectors;
+    let (place, new): (_, Vec<u8>) = match ending {
+        "xtc" => (16, vectors.iter().flat_map(|c| c.to_be_bytes()).collect()),
+        "trr" => (84, vectors.iter().flat_map(|c| c.to_be_bytes()).collect()),
+        "gro" => {
+            let text = String::from_utf8(bytes).unwrap();
+            let numbers = [ax, by, cz, ay, az, bx, bz, cx, cy].map(|c| format!("{c:10.5}"));
+            return text.replacen("   6.00000   6.00000   6.00000", &numbers.concat(), 1).into_bytes();
+        }
+        _ => {
+            let length = |[x, y, z]: [f32; 3]| 10.0 * f64::from(x).hypot(y.into()).hypot(z.into());
+            let [a, b, c] = [[ax, ay, az], [bx, by, bz], [cx, cy, cz]];
+            let cosine = |p: [f32; 3], q: [f32; 3]| {
+                100.0 * (0..3).map(|i| f64::from(p[i] * q[i])).sum::<f64>() / length(p) / length(q)
+            };
+            let cosines = [cosine(b, c), cosine(a, c), cosine(a, b)];
+            let [alpha, beta, gamma] = cosines.map(|cosine| cosine.acos().to_degrees());
+            let cell = [length(a), gamma, length(b), beta, alpha, length(c)];
+            let title = 92 + 8 + u32::from_le_bytes(*bytes[92..].first_chunk().unwrap()) as usize;
+            (title + 12 + 4, cell.iter().flat_map(|c| c.to_le_bytes()).collect())
+        }
+    };
+    bytes[place..place + new.len()].copy_from_slice(&new);
+    bytes
+}
+
+#[test]
+fn each_frame_has_the_box_that_it_states() {
+    let topology = topology();
+    for vectors in
+        [[4.0, 0.0, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 6.5], [4.0, 0.0, 0.0, -1.0, 5.0, 0.0, 2.0, 1.5, 6.5]]
+    {
+        for ending in FORMATS {
+            let found = boxes(reader(with_box(ending, vectors), ":", Some(&topology)).unwrap());
+            let expected = vectors.map(|c| 10.0 * f64::from(c));
+            let first = found[0].as_flattened();
+            assert!(first.iter().zip(expected).all(|(c, d)| (c - d).abs() < 1e-5), "{ending}: {first:?}");
+            let cube = [[60.0, 0.0, 0.0], [0.0, 60.0, 0.0], [0.0, 0.0, 60.0]];
+            assert_eq!(found[1..], [cube; FRAMES - 1], "{ending}");
+        }
+    }
+    // Numbers that fill their columns touch, and zeros are no box.
+    let touching = with_box("gro", [1000.5, 0.0, 0.0, -1000.25, 2000.0, 0.0, 0.0, 0.0, 3000.0]);
+    assert_eq!(boxes(reader(touching, "0", None).unwrap())[0][1], [-10_002.5, 20_000.0, 0.0]);
+    for ending in ["xtc", "trr", "gro"] {
+        let mut frames = reader(with_box(ending, [0.0; 9]), "0", Some(&topology)).unwrap();
+        let mut state = Some(topology.clone());
+        let frame = frames.next_frame().unwrap().unwrap();
+        assert_eq!(frame.put(&mut state).models[0].periodic_box, None);
+    }
+}
+
 /// Byte orders of DCD are those of machines.
 #[test]
 fn dcd_is_read_in_both_byte_orders() {

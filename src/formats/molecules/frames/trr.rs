@@ -4,8 +4,9 @@
 //! Source: the reference manual of GROMACS, "File formats", trr, and the order of fields in its `trrio`.
 
 use super::words::{Words, of_nanometres};
-use super::{Content, Frames, check_count};
+use super::{Content, Frames, Positions, check_count};
 use crate::drivers::AnyInput;
+use crate::molecules::periodic_box::PeriodicBox;
 use spmesh_base::error::{Error, Result};
 
 /// First number of a frame.
@@ -76,11 +77,14 @@ impl Frames for Trr {
         if len != 3 * found * width {
             return Err(Error::malformed(format!("found {len} bytes of coordinates for {found} atoms")));
         }
-        self.words.skip(parts[..COORDINATES].iter().sum())?;
+        self.words.skip(parts[..BOX].iter().sum())?;
+        let vectors = if parts[BOX] == 9 * width { self.words.reals(9, width)? } else { Vec::new() };
+        let rest = parts[BOX..COORDINATES].iter().sum::<u64>();
+        self.words.skip(rest - width * vectors.len() as u64)?;
         let reals = self.words.reals(3 * found, width)?;
         self.words.skip(parts[COORDINATES + 1..].iter().sum())?;
-        let (points, coordinates) = of_nanometres(&reals)?;
-        Ok(Some(Content::Points(points, coordinates)))
+        let stated = PeriodicBox::of_nanometres(&vectors);
+        Ok(Some(Content::Points(Positions::new(of_nanometres(&reals)?, stated))))
     }
 
     fn skip(&mut self) -> Result<bool> {

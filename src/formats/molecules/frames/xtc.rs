@@ -8,8 +8,9 @@
 //! `molly` 0.7.0 decodes it too, but panics on damaged frames.
 
 use super::words::{Words, of_nanometres};
-use super::{Content, Frames, check_count};
+use super::{Content, Frames, Positions, check_count};
 use crate::drivers::AnyInput;
+use crate::molecules::periodic_box::PeriodicBox;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::Coordinates;
 use spmesh_stream::model::points::Point3;
@@ -17,9 +18,6 @@ use spmesh_stream::model::points::Point3;
 /// First numbers of a frame: that of the format, and that with lengths of 64 bits for large frames.
 const MAGIC: u32 = 1995;
 const MAGIC_LARGE: u32 = 2023;
-
-/// Bytes of time and box.
-const BOX_LEN: u64 = 4 + 9 * 4;
 
 /// Frames of so many atoms are not compressed.
 const ATOMS_PLAIN: u64 = 9;
@@ -49,6 +47,8 @@ struct Xtc {
 /// The start of a frame.
 struct Head {
     atoms: u64,
+    /// The vectors of the box in nm.
+    vectors: Vec<f64>,
     /// Whether its length has 64 bits.
     is_large: bool,
 }
@@ -57,12 +57,14 @@ impl Xtc {
     fn head(&mut self) -> Result<Option<Head>> {
         let Some(magic) = self.words.start(&[MAGIC, MAGIC_LARGE])? else { return Ok(None) };
         let atoms = self.words.i32()?;
-        self.words.skip(4 + BOX_LEN)?;
+        // Step and time.
+        self.words.skip(8)?;
+        let vectors = self.words.reals(9, 4)?;
         let again = self.words.i32()?;
         let count = u64::try_from(atoms).ok().filter(|_| atoms == again);
         let atoms = count
             .ok_or_else(|| Error::malformed(format!("found {atoms} and {again} as numbers of atoms")))?;
-        Ok(Some(Head { atoms, is_large: magic == MAGIC_LARGE }))
+        Ok(Some(Head { atoms, vectors, is_large: magic == MAGIC_LARGE }))
     }
 
     /// Bytes of the compressed coordinates.
@@ -99,12 +101,12 @@ impl Frames for Xtc {
     fn next(&mut self, atoms: Option<u64>) -> Result<Option<Content>> {
         let Some(head) = self.head()? else { return Ok(None) };
         check_count(head.atoms, atoms.unwrap_or(head.atoms))?;
-        let (points, coordinates) = if head.atoms <= ATOMS_PLAIN {
+        let points = if head.atoms <= ATOMS_PLAIN {
             of_nanometres(&self.words.reals(3 * head.atoms, 4)?)?
         } else {
             self.compressed(&head)?
         };
-        Ok(Some(Content::Points(points, coordinates)))
+        Ok(Some(Content::Points(Positions::new(points, PeriodicBox::of_nanometres(&head.vectors)))))
     }
 
     fn skip(&mut self) -> Result<bool> {

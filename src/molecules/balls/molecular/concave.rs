@@ -231,7 +231,9 @@ impl Polygon {
             let [u, v] = self.corners[(i + 1) % self.corners.len()];
             let size = (u - x).hypot(v - y);
             let [p, q] = [(u - x) / size, (v - y) / size];
-            let side = Side { offset: x * q - y * p, from: x * p + y * q, to: u * p + v * q };
+            // Directions in space are not wanted here.
+            let frame = [[0.0; 3]; 2];
+            let side = Side { offset: x * q - y * p, from: x * p + y * q, to: u * p + v * q, frame };
             (size > 0.0).then_some(side)
         })
     }

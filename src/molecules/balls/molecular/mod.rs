@@ -11,7 +11,11 @@
 
 mod concave;
 mod cone;
+mod mesh;
 mod probe;
+mod reach;
+
+pub use mesh::molecular_mesh;
 
 use std::num::NonZeroUsize;
 
@@ -54,13 +58,18 @@ const BLOCK: usize = 1024;
 /// ```
 pub fn molecular_surface(balls: Balls<'_>, probe: f64, threads: NonZeroUsize) -> Result<Vec<Cell>> {
     super::check(balls)?;
-    let least = balls.radii.iter().copied().fold(f64::INFINITY, f64::min);
-    if !(0.0..=least).contains(&probe) {
-        let message =
-            format!("{probe} is no radius of a probe: expected 0 to {least}, the least of the balls");
-        return Err(Error::usage(message));
-    }
+    check_probe(balls, probe)?;
     molecular_surface_in_tiles(balls, probe, threads, TILE_MAX)
+}
+
+fn check_probe(balls: Balls<'_>, probe: f64) -> Result<()> {
+    let least = balls.radii.iter().copied().fold(f64::INFINITY, f64::min);
+    if (0.0..=least).contains(&probe) {
+        return Ok(());
+    }
+    Err(Error::usage(format!(
+        "{probe} is no radius of a probe: expected 0 to {least}, the least of the balls"
+    )))
 }
 
 /// [`molecular_surface`] with at most `tile_max` balls in a tile, for a `probe` in its domain. This changes

@@ -111,7 +111,7 @@ fn check_step(balls: Balls<'_>, step: f64) -> Result<()> {
     Err(Error::usage(format!("a step of {step:e} is too fine: at least {:e} fits", greatest / FINEST)))
 }
 
-fn check_count(points: &[Point3]) -> Result<()> {
+pub(super) fn check_count(points: &[Point3]) -> Result<()> {
     if points.len() > VERTICES_MAX {
         return Err(Error::usage("more than 2^31 - 1 vertices: take a coarser resolution"));
     }

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 
 use clap::Args;
 
-use crate::tess3::{BallOptions, ContactFilter, Level, NamedRadii, Product};
+use crate::tess3::{BallOptions, Between, ContactFilter, Level, Maxima, NamedRadii, Product};
 use spmesh_base::error::{Error, Result};
 use spmesh_shell::named;
 
@@ -38,10 +38,17 @@ pub(super) struct BallFlags {
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes", "ses"])]
     contact_areas: bool,
 
+    /// Write a table of buried areas: for each pair of chains the area of --sasa that each loses to the other
+    /// (Å²), computed for the two alone. --between tells other pairs; with --per residue or atom, rows are
+    /// what loses area
+    #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes", "ses"])]
+    #[arg(conflicts_with = "contact_areas")]
+    buried_areas: bool,
+
     /// Write a table of pockets and voids, the largest first: spaces outside all balls whose exits narrow; a
     /// void has no exit (Edelsbrunner et al. 1998, as CASTp). With --per, a table of what is around each
     #[arg(long, conflicts_with_all = ["table", "contacts", "alpha", "filtration", "sasa", "volumes"])]
-    #[arg(conflicts_with_all = ["ses", "contact_areas"])]
+    #[arg(conflicts_with_all = ["ses", "contact_areas", "buried_areas"])]
     pockets: bool,
 
     /// Rows of --pockets are the mouths, the largest of each pocket first; with --per, the atoms, residues or
@@ -65,7 +72,23 @@ pub(super) struct BallFlags {
     #[arg(long, value_enum, value_name = "LEVEL")]
     per: Option<Level>,
 
-    /// Only contacts of at least this area (Å²); with --per, the sum
+    /// Add columns to --sasa --per residue, chain or molecule: areas of polar and of apolar (carbon) atoms,
+    /// and of the main and side chains of polymers
+    #[arg(long)]
+    by_kind: bool,
+
+    /// Add columns to --sasa and --volumes of atoms: the derivatives of the area (Å) and the volume (Å²) of
+    /// the whole by the coordinates of each atom
+    #[arg(long)]
+    gradients: bool,
+
+    /// Add a column to --sasa --per residue: the area over that of the amino acid in Gly-X-Gly, by Tien et
+    /// al. 2013 (theoretical) or Miller et al. 1987
+    #[arg(long, value_name = "tien|miller", hide_possible_values = true)]
+    #[arg(value_parser = named(&[("tien", Maxima::Tien), ("miller", Maxima::Miller)]))]
+    relative: Option<Maxima>,
+
+    /// Only contacts, or buried areas, of at least this area (Å²); with --per, the sum
     #[arg(long, value_name = "AREA", value_parser = parse_positive)]
     min_area: Option<f64>,
 
@@ -73,15 +96,10 @@ pub(super) struct BallFlags {
     #[arg(long, value_name = "DISTANCE", value_parser = parse_positive)]
     within: Option<f64>,
 
-    /// Only contacts between different residues or chains
-    #[arg(
-        long,
-        value_parser = named(&[("residues", Level::Residue), ("chains", Level::Chain)]),
-        value_name = "residues|chains",
-        requires = "contact_areas",
-        hide_possible_values = true
-    )]
-    between: Option<Level>,
+    /// Only contacts, or buried areas, between different residues, chains or classes (see --classes); or
+    /// between residues of a list, such as A:10-25,B/ATP (chain, numbers, name), and all others
+    #[arg(long, value_parser = parse_between, value_name = "residues|chains|classes|LIST")]
+    between: Option<Between>,
 }
 
 impl BallFlags {
@@ -89,6 +107,8 @@ impl BallFlags {
     pub(super) fn product(&self) -> Option<Product> {
         if self.contact_areas {
             Some(Product::ContactAreas)
+        } else if self.buried_areas {
+            Some(Product::BuriedAreas)
         } else if self.pockets {
             Some(Product::Pockets)
         } else if self.ses {
@@ -100,13 +120,14 @@ impl BallFlags {
 
     /// The options.
     pub(super) fn options(&self, product: Product, threads: NonZeroUsize) -> Result<Option<BallOptions>> {
-        let takes_weights = matches!(product, Product::Filtration | Product::Mesh);
+        let is_of_cells = matches!(product, Product::SiteCells(_) | Product::SiteFaces);
+        let takes_weights = is_of_cells || matches!(product, Product::Filtration | Product::Mesh);
         let has_weights = takes_weights && self.radii.is_some();
         self.check_contacts_only()?;
         if self.mouths && !self.pockets {
             return Err(Error::usage("--mouths goes with --pockets"));
         }
-        if self.per.is_some() && (product == Product::Filtration || has_weights) {
+        if self.per.is_some() && !is_of_cells && (product == Product::Filtration || has_weights) {
             let what = if product == Product::Filtration { "--filtration" } else { "a mesh" };
             return Err(Error::usage(format!("--per does not go with {what}")));
         }
@@ -114,9 +135,15 @@ impl BallFlags {
             return self.check_idle(product).map(|()| None);
         }
         let level = self.level();
+        self.check_kinds(level)?;
         if self.contact_areas && level == Level::Molecule {
             return Err(Error::usage(
                 "--contact-areas needs --per atom, residue or chain: a molecule has no pairs",
+            ));
+        }
+        if self.buried_areas && (level == Level::Molecule || self.between == Some(Between::Residues)) {
+            return Err(Error::usage(
+                "--buried-areas needs --per atom, residue or chain, and --between chains, classes or a list",
             ));
         }
         let NamedRadii { radii, text } = NamedRadii::load(self.radii.as_deref().unwrap_or("own"))?;
@@ -127,10 +154,13 @@ impl BallFlags {
             level,
             areas: self.sasa || self.ses,
             volumes: self.volumes || self.ses,
+            by_kind: self.by_kind,
+            gradients: self.gradients,
+            relative: self.relative,
             contacts: ContactFilter {
                 min_area: self.min_area.unwrap_or(0.0),
                 within: self.within,
-                between: self.between,
+                between: self.between.clone(),
             },
             threads,
             mouths: self.mouths,
@@ -142,6 +172,16 @@ impl BallFlags {
         Ok(Some(options))
     }
 
+    /// The level that is asked for.
+    pub(super) fn stated_level(&self) -> Option<Level> {
+        self.per
+    }
+
+    /// Whether derivatives are asked for.
+    pub(super) fn has_gradients(&self) -> bool {
+        self.gradients
+    }
+
     /// Refuses flags of tables for a mesh.
     pub(super) fn check_for_mesh(&self) -> Result<()> {
         match (self.per, self.volumes) {
@@ -149,6 +189,7 @@ impl BallFlags {
             (Some(_), _) => {
                 Err(Error::usage("--per is for tables; a mesh states the serial numbers of atoms"))
             }
+            _ if self.gradients => Err(Error::usage("--gradients is a table: give a name that ends in .tsv")),
             (_, true) => {
                 Err(Error::usage("--volumes is a table: give a name that ends in .tsv, or --sasa alone"))
             }
@@ -156,27 +197,60 @@ impl BallFlags {
         }
     }
 
-    /// Refuses flags of balls where there are none.
-    fn check_idle(&self, product: Product) -> Result<()> {
-        let message = if self.radii.is_some() {
-            "--radii goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or --filtration"
-        } else if self.probe.is_some() {
-            match product {
-                Product::Filtration => "--probe needs --radii",
-                Product::Mesh => {
-                    "--probe needs --radii, or one of --sasa, --volumes, --ses, --contact-areas and --pockets"
-                }
-                _ => {
-                    "--probe goes with meshes, --sasa, --volumes, --ses, --contact-areas, --pockets or \
-                     --filtration"
-                }
-            }
-        } else if self.per.is_some() {
-            "--per goes with --sasa, --volumes, --ses, --contact-areas or --pockets"
+    /// Refuses flags of tables where atoms have one value each.
+    pub(super) fn check_for_atoms(&self) -> Result<()> {
+        let message = if self.mouths || self.pockets && self.per.is_some() {
+            "spheres are of pockets: leave out --mouths and --per"
+        } else if self.sasa && self.volumes {
+            "an atom has one value: leave out --sasa or --volumes"
+        } else if self.by_kind || self.gradients {
+            "--by-kind and --gradients are for tables: give a name that ends in .tsv"
+        } else if self.per == Some(Level::Molecule) {
+            "--per molecule leaves atoms no value of their own: give a name that ends in .tsv"
         } else {
             return Ok(());
         };
         Err(Error::usage(message))
+    }
+
+    /// Refuses flags of balls where there are none.
+    fn check_idle(&self, product: Product) -> Result<()> {
+        let is_of_cells = matches!(product, Product::SiteCells(_) | Product::SiteFaces);
+        let message = if self.radii.is_some() {
+            "--radii goes with meshes, --sasa, --volumes, --ses, --contact-areas, --buried-areas, --pockets, \
+             --cells or --filtration"
+        } else if self.probe.is_some() {
+            match product {
+                Product::Filtration | Product::SiteCells(_) | Product::SiteFaces => "--probe needs --radii",
+                Product::Mesh => {
+                    "--probe needs --radii, or one of --sasa, --volumes, --ses, --contact-areas, --buried-areas \
+                     and --pockets"
+                }
+                _ => {
+                    "--probe goes with meshes, --sasa, --volumes, --ses, --contact-areas, --buried-areas, \
+                     --pockets or --filtration"
+                }
+            }
+        } else if self.per.is_some() && !is_of_cells {
+            "--per goes with --sasa, --volumes, --ses, --contact-areas, --buried-areas, --pockets or --cells"
+        } else {
+            return Ok(());
+        };
+        Err(Error::usage(message))
+    }
+
+    /// Refuses columns of areas where there are none.
+    fn check_kinds(&self, level: Level) -> Result<()> {
+        if self.by_kind && !(self.sasa && level != Level::Atom) {
+            return Err(Error::usage("--by-kind goes with --sasa --per residue, chain or molecule"));
+        }
+        if self.gradients && !((self.sasa || self.volumes) && level == Level::Atom) {
+            return Err(Error::usage("--gradients goes with --sasa and --volumes of atoms"));
+        }
+        if self.relative.is_some() && !(self.sasa && level == Level::Residue) {
+            return Err(Error::usage("--relative goes with --sasa --per residue"));
+        }
+        Ok(())
     }
 
     /// Refuses flags that choose contacts where there are none. (To the parser, a flag that conflicts with
@@ -187,14 +261,24 @@ impl BallFlags {
             ("--within", self.within.is_some()),
             ("--between", self.between.is_some()),
         ];
+        if self.buried_areas && self.within.is_none() {
+            return Ok(());
+        }
         match flags.into_iter().find(|(_, is_given)| *is_given && !self.contact_areas) {
-            Some((flag, _)) => Err(Error::usage(format!("{flag} goes with --contact-areas"))),
+            Some(("--within", _)) => Err(Error::usage("--within goes with --contact-areas")),
+            Some((flag, _)) => {
+                Err(Error::usage(format!("{flag} goes with --contact-areas or --buried-areas")))
+            }
             None => Ok(()),
         }
     }
 
     fn level(&self) -> Level {
-        self.per.unwrap_or(if self.pockets { Level::Molecule } else { Level::Atom })
+        self.per.unwrap_or(match (self.pockets, self.buried_areas) {
+            (true, _) => Level::Molecule,
+            (_, true) => Level::Chain,
+            _ => Level::Atom,
+        })
     }
 
     fn text(&self, options: &BallOptions, radii: &str) -> String {
@@ -204,8 +288,11 @@ impl BallFlags {
             ("volumes", self.volumes),
             ("ses", self.ses),
             ("contact-areas", self.contact_areas),
+            ("buried-areas", self.buried_areas),
             ("pockets", self.pockets),
             ("mouths", self.mouths),
+            ("by-kind", self.by_kind),
+            ("gradients", self.gradients),
         ];
         for (name, is_given) in products {
             text += &if is_given { format!(" --{name}") } else { String::new() };
@@ -215,8 +302,11 @@ impl BallFlags {
         for (name, value) in [("min-area", self.min_area), ("within", self.within)] {
             text += &value.map_or(String::new(), |value| format!(" --{name} {value}"));
         }
-        if let Some(between) = options.contacts.between {
-            let _ = write!(text, " --between {}s", between.name());
+        if let Some(between) = &options.contacts.between {
+            let _ = write!(text, " --between {between}");
+        }
+        if let Some(maxima) = options.relative {
+            let _ = write!(text, " --relative {}", maxima.name());
         }
         text
     }
@@ -232,6 +322,15 @@ fn parse_probe(text: &str) -> std::result::Result<u32, String> {
     } else {
         Err(format!("{text:?} is not a radius of 0 to {PROBE_MAX} Å with at most three decimals"))
     }
+}
+
+fn parse_between(text: &str) -> std::result::Result<Between, String> {
+    Ok(match text {
+        "residues" => Between::Residues,
+        "chains" => Between::Chains,
+        "classes" => Between::Classes,
+        list => Between::Listed(list.parse()?),
+    })
 }
 
 pub(super) fn parse_positive(text: &str) -> std::result::Result<f64, String> {

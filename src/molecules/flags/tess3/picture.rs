@@ -29,7 +29,13 @@ const COLOURS: Names<ColourBy> =
     &[("element", ColourBy::Element), ("chain", ColourBy::Chain), ("pocket", ColourBy::Pocket)];
 
 /// The forms that endings of names stand for.
-const FORMS: Names<PictureForm> = &[("ply", PictureForm::Ply), ("vtu", PictureForm::Vtu)];
+const FORMS: Names<PictureForm> = &[
+    ("ply", PictureForm::Ply),
+    ("vtu", PictureForm::Vtu),
+    ("pdb", PictureForm::Pdb),
+    ("cif", PictureForm::Mmcif),
+    ("defattr", PictureForm::Defattr),
+];
 
 impl PictureFlags {
     /// The mesh that the ending of the output asks for; `None` for a table.
@@ -39,9 +45,24 @@ impl PictureFlags {
         product: Product,
         balls: &BallFlags,
     ) -> Result<Option<PictureOptions>> {
-        let is_of_balls = matches!(product, Product::Cells | Product::ContactAreas | Product::Pockets);
-        let Some(form) = of_ending(FORMS, output).filter(|_| is_of_balls) else {
-            let reason = "needs -o FILE.ply or FILE.vtu, and --sasa, --contact-areas or --pockets";
+        let takes = |form: &PictureForm| match form {
+            PictureForm::Ply | PictureForm::Vtu => {
+                matches!(
+                    product,
+                    Product::Cells | Product::Surface | Product::ContactAreas | Product::Pockets
+                )
+            }
+            PictureForm::Pdb => matches!(product, Product::Cells | Product::Surface | Product::Pockets),
+            PictureForm::Mmcif | PictureForm::Defattr => matches!(product, Product::Cells | Product::Surface),
+        };
+        let form = of_ending(FORMS, output).filter(takes);
+        if let Some(form) = form.filter(|form| form.is_of_atoms()) {
+            self.refuse("goes with -o FILE.ply or FILE.vtu")?;
+            balls.check_for_atoms()?;
+            return Ok(Some(PictureOptions { form, resolution: RESOLUTION, colours: ColourBy::Element }));
+        }
+        let Some(form) = form else {
+            let reason = "needs -o FILE.ply or FILE.vtu, and --sasa, --ses, --contact-areas or --pockets";
             return self.refuse(reason).map(|()| None);
         };
         balls.check_for_mesh()?;

@@ -19,7 +19,7 @@ pub(super) fn format(
 ) -> Result<TableFormat> {
     if !product.is_table() {
         let message = "--format goes with tables: --table, --contacts, --sasa, --volumes, --ses, \
-                       --contact-areas or --pockets";
+                       --contact-areas, --buried-areas, --pockets or --cells";
         return if flag.is_some() { Err(Error::usage(message)) } else { Ok(TableFormat::default()) };
     }
     let of_ending = output.and_then(TableFormat::of);

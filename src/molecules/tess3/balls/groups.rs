@@ -4,58 +4,62 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::Level;
-use crate::tess3::tables::{AtomNames, push_residue};
+use crate::tess3::identity::Named;
 use data_encoding::HEXLOWER;
 use sha2::{Digest, Sha256};
 use spmesh_base::error::Result;
-use spmesh_formats::molecules::{AtomView, Radii, Selected};
+use spmesh_formats::molecules::{AtomView, Class, Name, Radii, Selected};
 
 /// The groups of the selected atoms, numbered as they first appear.
-pub(super) struct Groups {
+pub(in crate::tess3) struct Groups {
     /// For each atom its group; empty if each atom is one.
-    of_atoms: Vec<u32>,
+    pub(super) of_atoms: Vec<u32>,
     /// Number of atoms of each group; empty if each atom is one.
-    pub(super) sizes: Vec<u32>,
-    names: Names,
-}
-
-enum Names {
-    Atoms(AtomNames),
-    Texts(Vec<String>),
+    pub(in crate::tess3) sizes: Vec<u32>,
+    named: Vec<Named>,
 }
 
 impl Groups {
-    pub(super) fn new(selected: &Selected<'_>, level: Level) -> Groups {
+    pub(in crate::tess3) fn new(selected: &Selected<'_>, level: Level) -> Groups {
         if level == Level::Atom {
-            let names = Names::Atoms(AtomNames::new(selected));
-            return Groups { of_atoms: Vec::new(), sizes: Vec::new(), names };
+            return Groups { of_atoms: Vec::new(), sizes: Vec::new(), named: Vec::new() };
         }
-        let mut groups = Groups { of_atoms: Vec::new(), sizes: Vec::new(), names: Names::Texts(Vec::new()) };
-        let mut known: HashMap<Key, u32> = HashMap::new();
-        let mut texts = Vec::new();
+        Groups::by(selected, |atom| key(atom, level))
+    }
+
+    /// The groups of atoms with the same key.
+    pub(super) fn by(selected: &Selected<'_>, key: impl Fn(&AtomView<'_>) -> Key) -> Groups {
+        let mut groups = Groups { of_atoms: Vec::new(), sizes: Vec::new(), named: Vec::new() };
+        let mut known: HashMap<Key, (u32, Name)> = HashMap::new();
         for index in 0..selected.points().len() {
             let Some(atom) = selected.atom(index) else { continue };
-            let group = *known.entry(key(&atom, level)).or_insert_with(|| {
-                texts.push(name(&atom, level));
+            let subchain = atom.residue().subchain;
+            let &mut (group, first) = known.entry(key(&atom)).or_insert_with(|| {
+                groups.named.push(Named::atom(index as u32));
                 groups.sizes.push(0);
-                texts.len() as u32 - 1
+                (groups.sizes.len() as u32 - 1, subchain)
             });
+            groups.named[group as usize].is_one_part &= subchain == first;
             groups.of_atoms.push(group);
             groups.sizes[group as usize] += 1;
         }
-        groups.names = Names::Texts(texts);
         groups
     }
 
-    pub(super) fn of(&self, atom: u32) -> u32 {
+    /// Exchanges the numbers of two groups, of which there are no others.
+    pub(super) fn swap(&mut self) {
+        self.of_atoms.iter_mut().for_each(|group| *group = 1 - *group);
+        self.sizes.reverse();
+        self.named.reverse();
+    }
+
+    pub(in crate::tess3) fn of(&self, atom: u32) -> u32 {
         self.of_atoms.get(atom as usize).copied().unwrap_or(atom)
     }
 
-    pub(super) fn name(&self, group: u32) -> &str {
-        match &self.names {
-            Names::Atoms(names) => names.name(group as usize),
-            Names::Texts(texts) => &texts[group as usize],
-        }
+    /// What identifies a group.
+    pub(in crate::tess3) fn named(&self, group: u32) -> Named {
+        self.named.get(group as usize).copied().unwrap_or(Named::atom(group))
     }
 }
 
@@ -64,6 +68,9 @@ impl Groups {
 pub(super) enum Key {
     Residue(u32),
     Chain(u32),
+    Class(Class),
+    /// Whether a list of residues has it.
+    Listed(bool),
     All,
 }
 
@@ -72,18 +79,6 @@ pub(super) fn key(atom: &AtomView<'_>, level: Level) -> Key {
         Level::Residue => Key::Residue(atom.atom.residue),
         Level::Chain => Key::Chain(atom.residue().chain_number),
         Level::Atom | Level::Molecule => Key::All,
-    }
-}
-
-fn name(atom: &AtomView<'_>, level: Level) -> String {
-    match level {
-        Level::Atom | Level::Molecule => "all".to_string(),
-        Level::Chain => atom.chain().to_string(),
-        Level::Residue => {
-            let mut text = String::new();
-            push_residue(&mut text, atom);
-            text
-        }
     }
 }
 

@@ -1,23 +1,35 @@
 //! Atoms as balls: exposed areas, volumes and contacts of their cells, as tables.
 
+mod accessibility;
+mod burials;
 mod groups;
+mod parts;
 mod pictures;
 mod pockets;
 mod tables;
+mod values;
 
+pub use accessibility::Maxima;
 pub use groups::NamedRadii;
+pub use parts::Between;
 pub use pictures::{ColourBy, PictureForm, PictureOptions};
 
 use std::io::Write;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
+use self::burials::BurialTable;
 use self::pictures::Picture;
 use self::pockets::PocketTable;
+use super::identity::Origin;
 use super::{Product, Report};
-use crate::balls::{Balls, Cells, measure, molecular_surface, pockets};
-use groups::Groups;
+use crate::balls::{
+    Balls, Cell, Cells, PeriodicCells, contacts_between, measure, measure_in_box, molecular_surface, pockets,
+};
+use crate::cells::SiteFace;
+pub(super) use groups::Groups;
 use spmesh_base::error::{Error, Result};
+use spmesh_delaunay::predicates::Point3;
 use spmesh_formats::molecules::{AtomView, Radii, RadiusOrigin, Selected};
 use spmesh_formats::sink::TableSink;
 use tables::{CellTable, ContactTable};
@@ -38,6 +50,12 @@ pub struct BallOptions {
     pub areas: bool,
     /// Whether rows of cells have the volume.
     pub volumes: bool,
+    /// Whether areas are also divided into polar and apolar, main chain and side chain.
+    pub by_kind: bool,
+    /// Whether rows have the derivatives of all areas, and of all volumes, by the place of the atom.
+    pub gradients: bool,
+    /// With which areas of residues theirs are compared.
+    pub relative: Option<Maxima>,
     /// Which contacts have rows.
     pub contacts: ContactFilter,
     /// Rows of pockets are about their mouths.
@@ -53,14 +71,14 @@ pub struct BallOptions {
 }
 
 /// Which contacts have rows.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ContactFilter {
     /// Least area of a row, in Å².
     pub min_area: f64,
     /// Greatest distance of the centres of two atoms, in Å.
     pub within: Option<f64>,
     /// What must differ between the two atoms.
-    pub between: Option<Level>,
+    pub between: Option<Between>,
 }
 
 /// What a row of a table is about.
@@ -91,16 +109,19 @@ impl Level {
 }
 
 /// Selected atoms as balls.
+#[derive(Clone, Copy)]
 pub(super) struct Molecule<'s> {
-    pub(super) number: i64,
+    pub(super) origin: Origin<'s>,
     pub(super) selected: &'s Selected<'s>,
     /// World units per stored unit.
     pub(super) scale: f64,
+    /// The vectors of the periodic box that repeats them, if there is one, in stored units.
+    pub(super) periodic_box: Option<[Point3; 3]>,
 }
 
 impl Molecule<'_> {
     /// Radii of all atoms with the probe, in stored units: integers where coordinates are.
-    fn radii(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
+    pub(super) fn radii(&self, options: &BallOptions, report: &mut Report) -> Result<Vec<f64>> {
         let Some(atoms) = options.radii.of_atoms(self.selected) else {
             let message = "points have no elements, and so no radii: give a structure (PDB, mmCIF, XYZ)";
             return Err(Error::usage(message));
@@ -145,6 +166,13 @@ impl Molecule<'_> {
     ) -> Result<()> {
         let radii = self.radii_of_cells(options, report)?;
         let balls = Balls { centres: self.selected.points(), radii: &radii };
+        if picture.form.is_of_atoms() {
+            if product == Product::Pockets {
+                return values::write_spheres(self, options, balls, output);
+            }
+            let cells = self.cells(product, options, balls)?;
+            return values::write(self, options, picture.form, &cells, output);
+        }
         report.left_out = Picture { molecule: self, options, picture, balls }.write(product, output)?;
         Ok(())
     }
@@ -171,29 +199,69 @@ impl Molecule<'_> {
             }
             .write(&found, open()?);
         }
-        let is_contacts = product == Product::ContactAreas;
-        let Cells { cells, contacts } = if product == Product::Surface {
-            let cells = molecular_surface(balls, self.length(options.probe), options.threads)?;
-            Cells { cells, ..Cells::default() }
-        } else {
-            measure(balls, is_contacts.then_some(0.0), options.threads)?
-        };
+        if product == Product::BuriedAreas {
+            return BurialTable { molecule: self, options }.write(balls, open);
+        }
+        if product == Product::ContactAreas {
+            return self.write_contacts(balls, options, report, open);
+        }
+        let cells = self.cells(product, options, balls)?;
         report.without_cell = cells.iter().filter(|cell| cell.volume == 0.0).count() as u64;
         let groups = Groups::new(self.selected, options.level);
-        if is_contacts {
-            ContactTable { molecule: self, options, groups: &groups }.write(&contacts, open()?)
+        CellTable { molecule: self, options, groups: &groups }.write(balls, &cells, open()?)
+    }
+
+    /// What is measured of each atom.
+    fn cells(&self, product: Product, options: &BallOptions, balls: Balls<'_>) -> Result<Vec<Cell>> {
+        if product == Product::Surface {
+            molecular_surface(balls, self.length(options.probe), options.threads)
+        } else if let Some(vectors) = self.periodic_box {
+            Ok(measure_in_box(balls, vectors, None, options.threads)?.cells)
         } else {
-            CellTable { molecule: self, options, groups: &groups }.write(&cells, open()?)
+            Ok(measure(balls, None, options.threads)?.cells)
         }
+    }
+
+    /// Writes contacts: all, or those between parts alone.
+    fn write_contacts<'o>(
+        &self,
+        balls: Balls<'_>,
+        options: &BallOptions,
+        report: &mut Report,
+        open: impl FnOnce() -> Result<&'o mut TableSink>,
+    ) -> Result<()> {
+        let between = options.contacts.between.as_ref();
+        let parts = between.map(|between| between.parts(self.selected)).transpose()?;
+        let groups = Groups::new(self.selected, options.level);
+        let table = ContactTable { molecule: self, options, groups: &groups };
+        let without = |cells: &[Cell]| cells.iter().filter(|cell| cell.volume == 0.0).count() as u64;
+        if let Some(vectors) = self.periodic_box {
+            let PeriodicCells { cells, contacts } =
+                measure_in_box(balls, vectors, Some(0.0), options.threads)?;
+            report.without_cell = without(&cells);
+            let differ = |face: &SiteFace| {
+                let [p, q] = face.sites.map(|ball| ball as usize);
+                parts.as_ref().is_none_or(|parts| parts[p] != parts[q])
+            };
+            return table.write(contacts.into_iter().filter(differ), open()?);
+        }
+        if let Some(parts) = parts {
+            let found = contacts_between(balls, &parts, options.threads)?;
+            return table.write(table.faces(found.iter()), open()?);
+        }
+        let Cells { cells, contacts } = measure(balls, Some(0.0), options.threads)?;
+        report.without_cell = without(&cells);
+        table.write(table.faces(contacts.iter()), open()?)
     }
 }
 
 impl BallOptions {
     /// The line with the names of the columns of a table.
-    pub(super) fn columns(&self, product: Product) -> String {
+    pub(super) fn columns(&self, product: Product, is_periodic: bool) -> String {
         match product {
             Product::Pockets => self::pockets::columns(self),
-            Product::ContactAreas => tables::contact_columns(self),
+            Product::ContactAreas => tables::contact_columns(self, is_periodic),
+            Product::BuriedAreas => burials::columns(self),
             _ => tables::cell_columns(self),
         }
     }

@@ -3,9 +3,12 @@
 use std::collections::HashMap;
 use std::io::Write;
 
-use super::tables::is_wanted;
+use super::tables::distance_of;
 use super::{BallOptions, Molecule};
-use crate::balls::{Balls, Cell, FINEST, faces, linings, measure, pockets, surface};
+use crate::balls::{
+    Balls, Cell, FINEST, Surface, faces, linings, measure, molecular_mesh, molecular_surface, pockets,
+    surface,
+};
 use crate::tess3::Product;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point3;
@@ -17,7 +20,7 @@ use spmesh_stream::model::attributes::{Attribute, Attributes, NumberType};
 const VOID: u8 = 0;
 const POCKET: u8 = 1;
 
-/// A mesh instead of a table.
+/// A mesh, or atoms, instead of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PictureOptions {
     /// The file format.
@@ -35,6 +38,19 @@ pub enum PictureForm {
     Vtu,
     /// Binary PLY.
     Ply,
+    /// PDB, with values of atoms as temperature factors, or with spheres of pockets.
+    Pdb,
+    /// mmCIF, with values of atoms as temperature factors.
+    Mmcif,
+    /// Values of atoms as attributes of ChimeraX.
+    Defattr,
+}
+
+impl PictureForm {
+    /// Whether it has atoms, not a mesh.
+    pub fn is_of_atoms(self) -> bool {
+        matches!(self, PictureForm::Pdb | PictureForm::Mmcif | PictureForm::Defattr)
+    }
 }
 
 /// What colours tell.
@@ -69,8 +85,11 @@ impl Picture<'_> {
         if product == Product::ContactAreas {
             return self.contacts(output).map(|()| 0);
         }
+        if product == Product::Surface {
+            return self.molecular_surface(output).map(|()| 0);
+        }
         let cells = measure(self.balls, None, self.options.threads)?.cells;
-        self.check_size(&cells)?;
+        self.check_size(&cells, 1.0)?;
         self.surface(product == Product::Pockets, &cells, output)
     }
 
@@ -86,10 +105,41 @@ impl Picture<'_> {
             let none = vec![0; surface.triangles.len()];
             (surface, none)
         };
+        let left_out = surface.left_out as u64;
         if only_pockets {
             surface.retain(|triangle| of_triangles[triangle] > 0);
             of_triangles.retain(|&pocket| pocket > 0);
         }
+        self.put_surface(&surface, by_pocket.then_some(&of_triangles), only_pockets, cells, output)?;
+        Ok(left_out)
+    }
+
+    /// The surface over which the probe rolls.
+    fn molecular_surface(&self, output: &mut impl Write) -> Result<()> {
+        let probe = self.molecule.length(self.options.probe);
+        let cells = molecular_surface(self.balls, probe, self.options.threads)?;
+        // Each cube at the surface has some vertices on its edges.
+        self.check_size(&cells, 4.0)?;
+        // Without a probe it is that of the balls.
+        let surface = if probe > 0.0 {
+            molecular_mesh(self.balls, probe, self.step(), self.options.threads)?
+        } else {
+            surface(self.balls, self.step(), self.options.threads)?
+        };
+        self.put_surface(&surface, None, false, &cells, output)
+    }
+
+    /// Writes a surface; its triangles may have pockets.
+    fn put_surface(
+        &self,
+        surface: &Surface,
+        of_triangles: Option<&Vec<u32>>,
+        only_pockets: bool,
+        cells: &[Cell],
+        output: &mut impl Write,
+    ) -> Result<()> {
+        let by_pocket = of_triangles.is_some();
+        let pocket = |triangle: usize| of_triangles.map_or(0, |pockets| pockets[triangle]);
         let atoms = Atoms::new(self);
         let colour = |ball: u32, pocket: u32| {
             if by_pocket { of_number(pocket) } else { atoms.colour(ball, self.picture.colours) }
@@ -110,7 +160,8 @@ impl Picture<'_> {
             ]
             .concat(),
         )?;
-        for (&ball, &pocket) in surface.balls.iter().zip(&of_triangles) {
+        for (triangle, &ball) in surface.balls.iter().enumerate() {
+            let pocket = pocket(triangle);
             of_cells.put(&colour(ball, pocket));
             of_cells.put(&atoms.serial(ball));
             of_cells.put(&atoms.row(ball));
@@ -120,14 +171,18 @@ impl Picture<'_> {
             }
         }
         let corners = surface.triangles.as_flattened();
-        self.put(&surface.points, Shape::Triangles, corners, [of_points, of_cells], output)?;
-        Ok(surface.left_out as u64)
+        self.put(&surface.points, Shape::Triangles, corners, [of_points, of_cells], output)
     }
 
     /// The faces between atoms.
     fn contacts(&self, output: &mut impl Write) -> Result<()> {
+        let between = self.options.contacts.between.as_ref();
+        let parts = between.map(|between| between.parts(self.molecule.selected)).transpose()?;
         let faces = faces(self.balls, self.step(), |contact| {
-            is_wanted(self.molecule, &self.options.contacts, contact)
+            let [p, q] = contact.balls.map(|ball| ball as usize);
+            let distance = distance_of(self.molecule, contact.balls) * self.molecule.scale;
+            parts.as_ref().is_none_or(|parts| parts[p] != parts[q])
+                && self.options.contacts.within.is_none_or(|most| distance <= most)
                 && contact.area * self.molecule.scale.powi(2) >= self.options.contacts.min_area
         })?;
         let atoms = Atoms::new(self);
@@ -202,7 +257,7 @@ impl Picture<'_> {
         let mesh = Mesh { points: &points, shape, corners, of_points: of_points.0, of_cells: of_cells.0 };
         match self.picture.form {
             PictureForm::Vtu => mesh.write_vtu(output),
-            PictureForm::Ply => mesh.write_ply(output),
+            _ => mesh.write_ply(output),
         }
     }
 
@@ -217,10 +272,12 @@ impl Picture<'_> {
         Err(Error::usage(format!("--resolution {resolution} is too fine: here the least is {least:.4} Å")))
     }
 
-    fn check_size(&self, cells: &[Cell]) -> Result<()> {
+    /// Refuses too many vertices; the mesh has `density` times those of triangles with sides of the
+    /// resolution.
+    fn check_size(&self, cells: &[Cell], density: f64) -> Result<()> {
         let area: f64 = cells.iter().map(|cell| cell.area).sum();
         // Of triangles with sides of the resolution, each vertex has two.
-        let vertices = area / (0.75f64.sqrt() * self.step() * self.step());
+        let vertices = density * area / (0.75f64.sqrt() * self.step() * self.step());
         if vertices <= VERTICES_MAX {
             return Ok(());
         }
@@ -244,7 +301,7 @@ impl Picture<'_> {
             PictureForm::Vtu => {
                 vec![Attribute { components: 3, ..Attribute::new("Normals", NumberType::F32) }]
             }
-            PictureForm::Ply => ["nx", "ny", "nz"].map(|name| Attribute::new(name, NumberType::F32)).to_vec(),
+            _ => ["nx", "ny", "nz"].map(|name| Attribute::new(name, NumberType::F32)).to_vec(),
         };
         attributes.extend([colour_attribute(), atoms.serial_attribute("serial")]);
         attributes

@@ -5,19 +5,16 @@ use std::collections::BTreeSet;
 use super::groups::Groups;
 use super::{BallOptions, Level, Molecule};
 use crate::balls::Pocket;
+use crate::tess3::identity::{self, Origin};
 use spmesh_base::error::Result;
 use spmesh_formats::sink::TableSink;
 
 pub(super) fn columns(options: &BallOptions) -> String {
+    let start = format!("{} pocket {}", Origin::COLUMNS, if options.mouths { "mouth" } else { "kind" });
     match (options.mouths, options.level) {
-        (true, Level::Molecule) => "model pocket mouth area atoms".into(),
-        (true, Level::Atom) => "model pocket mouth atom serial".into(),
-        (true, level) => format!("model pocket mouth {}", level.name()),
-        (false, Level::Molecule) => {
-            "model pocket kind volume area mouths mouth_area depth atoms tetrahedra".into()
-        }
-        (false, Level::Atom) => "model pocket kind atom serial".into(),
-        (false, level) => format!("model pocket kind {}", level.name()),
+        (true, Level::Molecule) => format!("{start} area atoms"),
+        (false, Level::Molecule) => format!("{start} volume area mouths mouth_area depth atoms tetrahedra"),
+        (_, level) => format!("{start} {}", identity::columns(level, "", "").join(" ")),
     }
 }
 
@@ -47,7 +44,7 @@ impl PocketTable<'_> {
     }
 
     fn start_row(&self, number: u32, pocket: &Pocket, rows: &mut TableSink) -> Result<()> {
-        rows.integer(self.molecule.number)?;
+        self.molecule.origin.start_row(rows)?;
         rows.integer(number)?;
         rows.field(if pocket.mouths.is_empty() { "void" } else { "pocket" });
         Ok(())
@@ -78,7 +75,7 @@ impl PocketTable<'_> {
     fn write_mouths(&self, number: u32, pocket: &Pocket, rows: &mut TableSink) -> Result<()> {
         for (place, mouth) in (1u32..).zip(&pocket.mouths) {
             let start = |rows: &mut TableSink| {
-                rows.integer(self.molecule.number)?;
+                self.molecule.origin.start_row(rows)?;
                 rows.integer(number)?;
                 rows.integer(place)
             };
@@ -102,10 +99,7 @@ impl PocketTable<'_> {
     }
 
     fn end_group(&self, group: u32, rows: &mut TableSink) -> Result<()> {
-        rows.field(self.groups.name(group));
-        if self.level == Level::Atom {
-            rows.integer(self.molecule.selected.label(group as usize))?;
-        }
+        self.groups.named(group).write(self.molecule.selected, self.level, self.level, rows)?;
         rows.end()
     }
 }

@@ -141,7 +141,9 @@ impl Input {
     /// What a user may not expect of the file.
     fn notices(&self, sweep: &Sweep) -> Vec<String> {
         match self {
-            Input::Structure(structure) => structure.notices(&sweep.options.selection),
+            Input::Structure(structure) => {
+                structure.notices(&sweep.options.selection, sweep.options.periodic.is_some())
+            }
             Input::Frames(_) => Vec::new(),
         }
     }
@@ -166,7 +168,10 @@ fn ending(options: &Options) -> String {
         Product::Cells => "cells",
         Product::Surface => "surface",
         Product::ContactAreas => "contact-areas",
+        Product::BuriedAreas => "buried-areas",
         Product::Pockets => "pockets",
+        Product::SiteCells(_) => "voronoi-cells",
+        Product::SiteFaces => "voronoi-faces",
     };
     format!(".{table}.{}", options.format.ending())
 }

@@ -4,6 +4,7 @@
 
 mod file;
 mod rows;
+mod whole;
 
 use std::collections::{HashMap, HashSet};
 use std::fs;
@@ -17,6 +18,8 @@ use spmesh_base::error::Result;
 use spmesh_formats::drivers::Format;
 use spmesh_formats::ledger::{Batch, Ledger, Left, News, Outcome};
 use spmesh_formats::molecules::Structure;
+use spmesh_formats::sink::TableFormat;
+use whole::Whole;
 
 /// A batch of files, and what to do with each of them.
 #[derive(Debug, Clone)]
@@ -31,6 +34,8 @@ pub struct Sweep {
     pub options: Options,
     /// Number of files in parallel.
     pub threads: usize,
+    /// One table of all rows, for which the outputs in the folder are parts ([`TableFormat::Rows`]).
+    pub table: Option<(PathBuf, TableFormat)>,
 }
 
 /// Triangulates all files, the largest first, and reports each to `listener`. Also returns the sums over all
@@ -53,14 +58,19 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<(Outco
     let left = ledger.left_to_do(&file::is_whole, &mut || listener(News::Done))?;
     let jobs = jobs(left, &names, &ledger, sweep);
     jobs.iter().try_for_each(|job| ledger.check_free(&file::usual_output(job, sweep)))?;
+    let table = sweep.table.as_ref();
+    let mut whole = table.map(|(path, format)| Whole::new(sweep, *format, path, &ledger)).transpose()?;
     let running = ledger.start(jobs.iter().flat_map(|job| file::earlier_outputs(job, sweep)))?;
     let mut stats = Stats::default();
     let rows = |job: &Job<'_>, end: &file::End| {
         end.result.iter().flatten().for_each(|model| stats.add(&model.report));
+        let part = end.result.iter().flatten().next().map(|model| model.output.clone());
+        whole.iter_mut().zip(part).for_each(|(whole, part)| whole.add(job.file, part));
         rows::of(job.file, end, sweep)
     };
     let outcome =
         running.run(sweep.threads, &jobs, |job, taken| file::run(job, sweep, taken), rows, listener)?;
+    whole.map_or(Ok(()), Whole::write)?;
     Ok((outcome, stats))
 }
 

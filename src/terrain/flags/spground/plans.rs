@@ -50,7 +50,7 @@ impl PlanFlags {
     /// The wanted tiles; `None` without a plan.
     ///
     /// # Errors
-    /// Those of plans; usage, if a file is not in the plan, or has changed, or the plan is of some points only.
+    /// Those of plans; usage, if a file is not in the plan or has changed, or it is of some points only.
     pub(super) fn around(&self, flags: &Flags) -> Result<Option<Around>> {
         let Some(path) = &self.plan else {
             let roots = self.roots.roots()?;
