@@ -68,6 +68,31 @@ fn knots_end_where_residuals_are_noise() {
 }
 
 #[test]
+fn knots_end_where_residuals_are_rounding_errors() {
+    // The side of the square, a corner, and the coefficients of the plane. Where coordinates have few digits,
+    // values along a slope have.
+    let planes = [
+        (1.0, 0.0, [0.0, 3.0, -1.0]),
+        (1.0, 0.0, [0.1, 0.0, 0.0]),
+        (1e3, 0.0, [1e9, 2.0, 1.0]),
+        (1e-3, 5e5, [0.0, 1.0, 1.0]),
+    ];
+    for (number, (side, corner, [c, a, b])) in planes.into_iter().enumerate() {
+        let moved = |[x, y, _]: &[f64; 3]| {
+            let [x, y] = [corner + side * x, corner + side * y];
+            [x, y, c + a * x + b * y]
+        };
+        let points: Vec<[f64; 3]> = sample(2_000, 17, |_, _, _| 0.0).iter().map(moved).collect();
+        let found = stats(&[], text(&points).as_bytes());
+        assert_eq!(found["stop"], "rounding", "{number}: {found}");
+        assert!(found["functions"].as_u64().unwrap() < 1_000, "{found}");
+    }
+    let points = text(&sample(500, 17, |x, y, _| x + y));
+    let (_, message) = outcome(&run("splinefit", &["fit"], points.as_bytes()));
+    assert!(message.contains("what is left are rounding errors of the values"), "{message}");
+}
+
+#[test]
 fn errors_fall_with_the_cube_of_the_distance_where_there_is_no_noise() {
     let of = |count| {
         let points = sample(count, 3, |x, y, _| franke(x, y));
@@ -141,6 +166,7 @@ fn very_different_sides_are_made_equal() {
         assert!(message.contains("the sides of the box of points tell"), "{message}");
         let off = rms(&found.stdout, &scaled(&sites, by));
         assert!(off < 1.1 * square, "{by}: {off}, {square}");
+        passes_audit(&found.stdout);
     }
     // Ten times slower along 30 degrees.
     let along = |x: f64, y: f64| (20.0 * (y * 0.75f64.sqrt() - 0.5 * x)).sin() + x;
@@ -149,6 +175,31 @@ fn very_different_sides_are_made_equal() {
     let of = |flags: &[&str]| rms(&output(&[&["fit", "-q"], flags].concat(), points.as_bytes()), &sites);
     assert!(of(&["--anisotropy", "8:30"]) < 0.5 * of(&[]));
     assert_eq!(of(&["--anisotropy", "1"]), of(&[]));
+}
+
+fn passes_audit(spline: &[u8]) {
+    let (code, message) = outcome(&run("spinfo", &["--audit"], spline));
+    assert_eq!(code, Some(0), "{message}");
+}
+
+#[test]
+fn stretched_splines_pass_the_audit() {
+    for (number, origin) in [(18, [0.0, 0.0]), (19, [5e5, -3e6])] {
+        let points = sample(200, number, |x, y, random| franke(x, y) + 0.01 * noise(random));
+        let moved = points.iter().map(|[x, y, z]| [origin[0] + 300.0 * x, origin[1] + 200.0 * y, *z]);
+        let points = text(&moved.collect::<Vec<_>>());
+        for flags in [
+            &["--anisotropy", "3.3"][..],
+            &["--anisotropy", "7:30"],
+            &["--anisotropy", "0.2:-77"],
+            &["--anisotropy", "auto"],
+            &["--anisotropy", "rescale", "--widen", "500"],
+            &["--anisotropy", "2:60", "--step", "40"],
+            &["--anisotropy", "2:60", "--tol", "0.05"],
+        ] {
+            passes_audit(&output(&[&["fit", "-q"], flags].concat(), points.as_bytes()));
+        }
+    }
 }
 
 #[test]

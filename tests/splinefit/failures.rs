@@ -26,7 +26,7 @@ fn each_failure_has_its_exit_code() {
             &["fit"],
             filled.as_bytes(),
             3,
-            "2 points have z = -9999, 1 point has z = 1e30: if that stands for no value",
+            "2 points have z = -9999, 1 point has z = 1e30, far from all others (",
         ),
         (&["fit"], table.as_bytes(), 2, "stdin: line 1 names x, y, lead, zinc: which one is the value?"),
         (&["fit"], b"0 0 1\n1 0 2\n2 0 3\n", 2, "stdin: all observations have the same x or y"),

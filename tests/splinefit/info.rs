@@ -104,7 +104,7 @@ fn control_meshes_of_planes_are_planes() {
 #[test]
 fn control_meshes_are_drawn() {
     let folder = Folder::new();
-    let spline = output(&["fit", "--step", "20"], points(3_000, 2, plane).as_bytes());
+    let spline = output(&["fit"], points(3_000, 2, plane).as_bytes());
     let path = folder.path("control.svg");
     output(&["mesh", "-", "-o", &path], &spline);
     let picture = std::fs::read_to_string(&path).unwrap();

@@ -106,7 +106,7 @@ fn a_plane_is_given_back_without_any_option() {
         assert!((row[2] - plane(row[0], row[1])).abs() < 1e-9, "{row:?}");
     }
     let counted = stats(&[], points(2_000, 1, plane).as_bytes());
-    assert_eq!(counted["degree"], 2);
+    assert_eq!((&counted["stop"], &counted["degree"]), (&"rounding".into(), &2.into()));
     assert_eq!(counted["outside"], 0);
 }
 

@@ -135,12 +135,17 @@ fn constant_elevations_need_no_warning() {
 }
 
 #[test]
-fn a_fit_without_flags_can_be_repeated_with_its_knots_and_numbers() {
+fn the_finest_knots_keep_the_smoothing_of_fewer() {
     let folder = Folder::new();
-    let rough = points(600, 11, |x, y| hills(x, y) + (0.9 * x).sin() * (0.8 * y).cos());
+    // Waves that are half as long are as noise to these points, which are 3.7 apart: fewer knots predict better.
+    let rough = points(600, 11, |x, y| hills(x, y) + (0.45 * x).sin() * (0.4 * y).cos());
     let (points, spline) = (folder.write("points.txt", rough), folder.path("spline.spm"));
     output(&["fit", "-q", &points, "-o", &spline], &[]);
     let found = stats(&[&points], &[]);
+    assert_eq!(found["stop"], "density");
+    // Four knots for each point, each with about two functions.
+    let functions = found["functions"].as_u64().unwrap();
+    assert!(functions > 6 * 600, "{functions}");
     let [lambda, tension] = ["lambda", "tension"].map(|name| found[name].to_string());
     let same = stats(&["--knots", &spline, "--lambda", &lambda, "--tension", &tension, &points], &[]);
     for name in ["residual_rms", "residual_max"] {

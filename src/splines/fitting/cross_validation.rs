@@ -36,15 +36,24 @@ pub fn generalised_cross_validation(equations: &Equations, near: Option<f64>) ->
     search(Limits::of(equations).near(near), |lambda| Ok(Quality::of(equations, lambda)?.score))
 }
 
-/// Chooses as [`generalised_cross_validation`] does, but no lesser `lambda` than `least`.
+/// Chooses as [`generalised_cross_validation`] does, but no lesser `lambda` than `least`, which is tried first.
+/// `visit` gets all trials with their quality.
 ///
 /// Cost: two trials if that one is the best.
 ///
 /// # Errors
 /// Those of [`Equations::solve`], if it fails for every `lambda`.
-pub fn generalised_cross_validation_from(equations: &Equations, least: f64) -> Result<Choice> {
+pub fn generalised_cross_validation_from(
+    equations: &Equations,
+    least: f64,
+    mut visit: impl FnMut(f64, Quality),
+) -> Result<Choice> {
     let limits = Limits { start: least, least, ..Limits::of(equations) };
-    search(limits, |lambda| Ok(Quality::of(equations, lambda)?.score))
+    search(limits, |lambda| {
+        let quality = Quality::of(equations, lambda)?;
+        visit(lambda, quality);
+        Ok(quality.score)
+    })
 }
 
 /// How well a spline of some `lambda` predicts observations, as they tell themselves.

@@ -18,7 +18,7 @@ const DEPTH_MAX: u32 = 30;
 /// Places in a cell from which the local density is estimated, at most: fewer make it uncertain.
 const PLACES_MAX: usize = 24;
 /// Cells between cells of one size and those twice as large, at least.
-const LAYERS: i64 = 2;
+const LAYERS: i64 = 3;
 /// Corners nearer to the border, in sides of their cells, are left out.
 const NEAR: f64 = 0.5;
 /// Attempts to find a step with few enough knots.
@@ -30,6 +30,8 @@ pub struct Density {
     places: Vec<Point2>,
     bounds: [Point2; 2],
     distance: f64,
+    /// Lesser differences of coordinates are rounding errors.
+    rounding: f64,
 }
 
 /// A grid of knots, whose cells follow the density.
@@ -70,7 +72,14 @@ impl Density {
             is_here
         });
         let distance = median.map_or(side, |&(spacing, _)| spacing * side) * share.sqrt();
-        Ok(Density { places, bounds, distance })
+        let rounding = f64::EPSILON * bounds.as_flattened().iter().fold(0.0, |most, x| x.abs().max(most));
+        Ok(Density { places, bounds, distance, rounding })
+    }
+
+    /// The same for knots that are moved to a grid with cells of this side.
+    #[must_use]
+    pub fn on_grid(self, side: f64) -> Density {
+        Density { rounding: self.rounding.max(side), ..self }
     }
 
     /// The typical distance of places: half of them are denser. Units: those of coordinates.
@@ -177,7 +186,7 @@ impl Lattice {
         }
         split.balance();
         let cell = root[0].max(root[1]) * 0.5f64.powi(self.depth as i32);
-        let mut knots = border.knots(|place| {
+        let mut knots = border.knots(density.rounding, |place| {
             let part = |axis: usize| (place[axis] - self.bounds[0][axis]) / root[axis];
             root[0].max(root[1]) * split.side_at([part(0), part(1)]).max(1e-3 * cell / root[0])
         });
@@ -312,14 +321,8 @@ fn unsorted_codes(places: &[Point2], low: Point2, sides: Point2) -> Vec<u64> {
 
 /// The bits of a number with a zero before each.
 fn spaced(x: u64) -> u64 {
-    let steps = [
-        (16, 0x0000_ffff_0000_ffff),
-        (8, 0x00ff_00ff_00ff_00ff),
-        (4, 0x0f0f_0f0f_0f0f_0f0f),
-        (2, 0x3333_3333_3333_3333),
-        (1, 0x5555_5555_5555_5555),
-    ];
-    steps.into_iter().fold(x, |x, (by, mask)| (x | x << by) & mask)
+    // Masks have n zeros before n ones each.
+    [16, 8, 4, 2, 1].into_iter().fold(x, |x, n| (x | x << n) & (u64::MAX / ((1 << n) + 1)))
 }
 
 /// Every second bit of a code.
@@ -420,7 +423,7 @@ mod tests {
         assert!(knots.len() < 3000, "{}", knots.len());
         let inside = |low: f64, high: f64| knots.iter().filter(|k| (low..high).contains(&k[0])).count();
         assert!(inside(0.0, 20.0) > 3 * inside(180.0, 200.0));
-        assert!(inside(150.0, 250.0) >= 20);
+        assert!(inside(150.0, 250.0) >= 20, "{}", inside(150.0, 250.0));
     }
 
     #[test]

@@ -9,8 +9,12 @@ use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2, Predicates2, Si
 const DIRECTIONS: usize = 16;
 /// Corners of the hull that stand out by less than this part of the width are left out.
 const FLAT: f64 = 0.25;
+/// The same for corners of the widened hull.
+const PARALLEL: f64 = 1e-3;
 /// The angle of a bent side with its chord, as a part of the angle between sides, at most.
 const BENT: f64 = 0.25;
+/// Three knots of a side have a height of so many rounding errors, at least.
+const STEEP: f64 = 64.0;
 /// Knots along a side, at most.
 const KNOTS_MAX: usize = 10_000;
 
@@ -25,20 +29,14 @@ impl Border {
     /// The places that are at most `width` from the convex hull of places that span an area; the distance is
     /// up to a third less at corners, and two hundredths along sides.
     pub(super) fn around(places: &[Point2], width: f64) -> Border {
-        let mut corners = hull(places.to_vec());
-        loop {
-            let flattest = (0..corners.len()).map(|at| (height(&corners, at), at));
-            match flattest.min_by(|a, b| a.0.total_cmp(&b.0)) {
-                Some((least, at)) if least < FLAT * width && corners.len() > 3 => drop(corners.remove(at)),
-                _ => break,
-            }
-        }
+        let corners = simplified(hull(places.to_vec()), FLAT * width);
         let turns = (0..DIRECTIONS).map(|i| std::f64::consts::TAU * (i as f64 + 0.5) / DIRECTIONS as f64);
         let steps: Vec<Point2> = turns.map(|turn| [width * turn.cos(), width * turn.sin()]).collect();
         let moved = corners
             .iter()
             .flat_map(|corner| steps.iter().map(move |step| [corner[0] + step[0], corner[1] + step[1]]));
-        Border { corners: hull(moved.collect()), width }
+        // Sides along directions of these polygons are parallel, except for rounding.
+        Border { corners: simplified(hull(moved.collect()), PARALLEL * width), width }
     }
 
     /// How far inside of all sides a place is; negative outside.
@@ -51,8 +49,9 @@ impl Border {
         self.corners.iter().zip(next).map(|(&p, &q)| [p, q])
     }
 
-    /// Knots along the border, as far apart as `size` says for each place.
-    pub(super) fn knots(&self, size: impl Fn(Point2) -> f64) -> Vec<Point2> {
+    /// Knots along the border, as far apart as `size` says for each place, or so far that they are strictly
+    /// convex whatever the errors of their coordinates, which are at most `rounding`.
+    pub(super) fn knots(&self, rounding: f64, size: impl Fn(Point2) -> f64) -> Vec<Point2> {
         let sides: Vec<[Point2; 2]> = self.sides().collect();
         let angles: Vec<f64> = sides.iter().map(|[p, q]| (q[1] - p[1]).atan2(q[0] - p[0])).collect();
         let count = sides.len();
@@ -63,6 +62,9 @@ impl Border {
             let length = (q[0] - p[0]).hypot(q[1] - p[1]);
             // The middle is farther out by a quarter of the width at most.
             let bent = (BENT * least).min(self.width / length);
+            // Knots of a parabola that are h apart have heights of h^2 times this angle over the length.
+            let least = (STEEP * rounding * length / bent).sqrt();
+            let size = |place: Point2| size(place).max(least);
             knots.extend(parts([p, q], &size).into_iter().map(|part| {
                 // A parabola that leaves its chord at this angle.
                 let by = bent * part * (1.0 - part);
@@ -104,10 +106,31 @@ fn above([p, q]: [Point2; 2], place: Point2) -> f64 {
     (x * (place[1] - p[1]) - y * (place[0] - p[0])) / x.hypot(y)
 }
 
-/// The distance of a corner from the chord between its neighbours.
-fn height(corners: &[Point2], at: usize) -> f64 {
+/// Some corners of a convex polygon; all others are at most so far outside of it. At least three are left.
+///
+/// Cost: proportional to the number of corners, because the farthest one from a chord moves along with its
+/// end.
+fn simplified(corners: Vec<Point2>, far: f64) -> Vec<Point2> {
     let count = corners.len();
-    -above([corners[(at + count - 1) % count], corners[(at + 1) % count]], corners[at])
+    if count <= 3 {
+        return corners;
+    }
+    let (mut kept, mut farthest) = (vec![0], 1);
+    for end in 2..=count {
+        let chord = [corners[kept[kept.len() - 1]], corners[end % count]];
+        let out = |at: usize| -above(chord, corners[at]);
+        while farthest + 1 < end && out(farthest + 1) >= out(farthest) {
+            farthest += 1;
+        }
+        if out(farthest) > far {
+            kept.push(end - 1);
+            farthest = end;
+        }
+    }
+    match kept.len() {
+        3.. => kept.into_iter().map(|at| corners[at]).collect(),
+        _ => simplified(corners, 0.5 * far),
+    }
 }
 
 /// The strict corners of the convex hull, counterclockwise (Andrew 1979).
@@ -161,15 +184,16 @@ mod tests {
         let lattice: Vec<Point2> = (0..100).map(|i| [f64::from(i % 10), f64::from(i / 10)]).collect();
         for (places, width) in [(square, 0.05), (strip, 0.02), (disc, 0.1), (lattice, 1.0)] {
             let border = Border::around(&places, width);
+            let rounding = f64::EPSILON * places.as_flattened().iter().fold(0.0, |most, x| x.abs().max(most));
             assert!(is_strictly_convex(&border.corners));
             for size in [width, 0.1 * width, 100.0 * width] {
-                let knots = border.knots(|_| size);
+                let knots = border.knots(rounding, |_| size);
                 assert!(is_strictly_convex(&knots), "{size}: {knots:?}");
                 assert!(places.iter().all(|&place| border.depth(place) > 0.6 * width));
                 // Knots are outside of the polygon, or on it, by a small part of the width.
                 assert!(knots.iter().all(|&knot| (-0.5 * width..1e-9).contains(&border.depth(knot))));
             }
-            let steps = border.knots(|_| 0.1 * width);
+            let steps = border.knots(rounding, |_| 0.1 * width);
             let longest = (1..steps.len())
                 .map(|i| (steps[i][0] - steps[i - 1][0]).hypot(steps[i][1] - steps[i - 1][1]));
             let longest = longest.fold(0.0, f64::max);

@@ -6,7 +6,7 @@
 //! about four knots for each point, with the smoothing chosen over one for each point.
 
 use super::anisotropy::{ASPECT_MAX, Anisotropy, Stretch};
-use super::fit::{check_degree, even_space};
+use super::fit::check_degree;
 use super::frame::Frame;
 use super::layout::Layout;
 use super::options::{Options, Smoothing};
@@ -51,10 +51,16 @@ const KNOTS_PER_PLACE: usize = 16;
 const KNOTS_MIN: f64 = 64.0;
 /// A finer level must make the score less by this part.
 const GAIN: f64 = 0.002;
+/// If the last level makes it less by no more than this part, the next one would by less than the part above:
+/// errors of what knots cannot follow fall to a quarter, at least.
+const GAIN_LAST: f64 = 4.0 * GAIN;
 /// Residuals of neighbours are alike if their correlation is greater, and greater than so many deviations of
 /// a chance.
 const CORRELATION: f64 = 0.05;
 const DEVIATIONS: f64 = 3.0;
+/// Residuals are rounding errors if their root mean square is at most so many units in the last place of
+/// values, and of what coordinates in their last place change them: the equations lose some digits.
+const ROUNDINGS: f64 = 4096.0;
 /// So few places are on a plane, or nearly.
 const PLANE: usize = 3;
 
@@ -80,6 +86,8 @@ pub struct Levels {
 pub enum Stop {
     /// A finer level predicts no better: residuals are noise.
     Noise,
+    /// Residuals are rounding errors of the values.
+    Rounding,
     /// Knots are as dense as points allow.
     Density,
     /// So few points, or options, leave nothing to compare.
@@ -99,6 +107,8 @@ pub struct Level {
     pub score: f64,
     /// The standard deviation of points of weight one.
     pub noise: f64,
+    /// The root of the mean square of residuals; NaN if points are not held in memory.
+    pub residual: f64,
     /// The correlation of residuals of neighbours; NaN if points are not held in memory.
     pub correlation: f64,
 }
@@ -123,6 +133,8 @@ struct Search<'a> {
     order: Vec<u32>,
     /// How far beyond the box of points the domain of the fit reaches.
     reach: f64,
+    /// Residuals up to this one are rounding errors.
+    rounding: f64,
 }
 
 /// Finds knots, in a frame.
@@ -143,14 +155,15 @@ pub(super) fn stretch(points: &Points, options: &Options, done: &dyn Fn(u64)) ->
         let world = Frame::world(points.crs().clone());
         fitting::bounds(&points.in_frame(&world, done)).map_err(|error| error.of_input(points.name()))
     };
+    let margin = options.widen.unwrap_or(0.0);
     match options.anisotropy {
-        Some(Anisotropy::Ratio(ratio, angle)) => Ok(Stretch::new(ratio, angle)),
-        Some(Anisotropy::Rescale) => Stretch::of_box(bounds()?),
+        Some(Anisotropy::Ratio(ratio, angle)) => Ok(Stretch::new(ratio, angle, bounds()?, margin)),
+        Some(Anisotropy::Rescale) => Stretch::of_box(bounds()?, margin),
         Some(Anisotropy::Auto) => likeliest_stretch(points, options, bounds()?, done),
         // Features are given in coordinates that are not stretched.
         None if !options.polylines.is_empty() => Ok(Stretch::NONE),
         None => {
-            let whole = Stretch::of_box(bounds()?)?;
+            let whole = Stretch::of_box(bounds()?, margin)?;
             let is_within = |most: f64| (1.0 / most..=most).contains(&whole.ratio);
             match (is_within(ASPECT), is_within(ASPECT_MAX)) {
                 (true, _) => Ok(Stretch::NONE),
@@ -183,7 +196,9 @@ fn likeliest_stretch(
     bounds: [Point2; 2],
     done: &dyn Fn(u64),
 ) -> Result<Stretch> {
-    let whole = Stretch::of_box(bounds)?;
+    let margin = options.widen.unwrap_or(0.0);
+    let whole = Stretch::of_box(bounds, margin)?;
+    let of = |ratio, angle| Stretch::new(ratio, angle, bounds, margin);
     let score = |stretch| score(stretch, points, options, done);
     let mut best = (score(Stretch::NONE)?, Stretch::NONE);
     let attempt = |stretch: Stretch, best: &mut (f64, Stretch)| -> Result<bool> {
@@ -201,7 +216,7 @@ fn likeliest_stretch(
     let scaled = best.1.ratio;
     if scaled == 1.0 {
         for angle in [0.0, 45.0, 90.0, 135.0] {
-            attempt(Stretch::new(RATIO_FIRST, angle), &mut best)?;
+            attempt(of(RATIO_FIRST, angle), &mut best)?;
         }
         for by in [22.5, 11.25] {
             let angle = best.1.angle;
@@ -209,12 +224,12 @@ fn likeliest_stretch(
                 if best.1.ratio == 1.0 {
                     break;
                 }
-                attempt(Stretch::new(best.1.ratio, angle), &mut best)?;
+                attempt(of(best.1.ratio, angle), &mut best)?;
             }
         }
     }
     for factor in [2.0, 0.5, 2f64.sqrt(), 0.5f64.sqrt()] {
-        while best.1.ratio != 1.0 && attempt(Stretch::new(factor * best.1.ratio, best.1.angle), &mut best)? {}
+        while best.1.ratio != 1.0 && attempt(of(factor * best.1.ratio, best.1.angle), &mut best)? {}
     }
     Ok(best.1)
 }
@@ -227,15 +242,17 @@ impl<'a> Search<'a> {
         done: &'a dyn Fn(u64),
     ) -> Result<Search<'a>> {
         let (mut places, share) = points.places()?;
+        let rounding = ROUNDINGS * f64::EPSILON * magnitude(&places, points.range());
         places.iter_mut().for_each(|place| *place = frame.to_stored(*place));
         let density = Density::of(places, share).map_err(|error| error.of_input(points.name()))?;
+        let density = density.on_grid(frame.grid_step());
         let order = if share == 1.0 { density.order() } else { Vec::new() };
         let is_small = density.places().len() <= REACH_MAX && !order.is_empty();
         let is_plain = options.loss.is_none() && options.polylines.is_empty() && !options.interpolates;
         let is_wide =
             is_small && is_plain && density.part_near_border(NEAR * density.distance()) >= NEAR_PART;
         let reach = if is_wide { REACH * density.extent() } else { 0.0 };
-        Ok(Search { points, options, frame, done, density, order, reach })
+        Ok(Search { points, options, frame, done, density, order, reach, rounding })
     }
 
     fn run(&self) -> Result<Found> {
@@ -284,11 +301,22 @@ impl<'a> Search<'a> {
             };
             let level = self.level(step, &layout, &chosen, &coefficients)?;
             all.push(level);
+            if level.residual <= self.rounding {
+                let (size, levels) = (GridSize { step, ..CHOICE }, self.levels(all, Stop::Rounding));
+                return Ok(Found { layout, size, settled: Some(chosen), levels, inner: None });
+            }
+            let noise = |step, layout, chosen, all| {
+                let (size, levels) = (GridSize { step, ..CHOICE }, self.levels(all, Stop::Noise));
+                Ok(Found { layout, size, settled: Some(chosen), levels, inner: None })
+            };
             match best {
                 Some((known, layout, chosen)) if self.ends_at(&known, level.score) => {
-                    let levels = self.levels(all, Stop::Noise);
-                    let size = GridSize { step: known.step, ..CHOICE };
-                    return Ok(Found { layout, size, settled: Some(chosen), levels, inner: None });
+                    return noise(known.step, layout, chosen, all);
+                }
+                Some((known, ..))
+                    if is_last && level.score >= (1.0 - GAIN_LAST) * known.score && self.is_noise(&level) =>
+                {
+                    return noise(step, layout, chosen, all);
                 }
                 Some((known, ..)) if known.score <= level.score && !is_last => (),
                 _ => best = Some((level, layout, chosen)),
@@ -305,9 +333,13 @@ impl<'a> Search<'a> {
 
     /// Whether the best level so far leaves only noise, which a finer one with this score shows.
     fn ends_at(&self, best: &Level, score: f64) -> bool {
+        score >= (1.0 - GAIN) * best.score && self.is_noise(best)
+    }
+
+    /// Whether residuals of neighbours are unlike each other.
+    fn is_noise(&self, level: &Level) -> bool {
         let by_chance = DEVIATIONS / (self.order.len().max(1) as f64).sqrt();
-        let is_noise = best.correlation.is_nan() || best.correlation < by_chance.max(CORRELATION);
-        score >= (1.0 - GAIN) * best.score && is_noise
+        level.correlation.is_nan() || level.correlation < by_chance.max(CORRELATION)
     }
 
     fn grid(&self, size: GridSize) -> Result<Layout> {
@@ -328,7 +360,7 @@ impl<'a> Search<'a> {
             reach: self.reach,
             knots_max,
         })?;
-        Ok(Layout::of_space(even_space(places, self.options)?, self.frame.clone()))
+        Layout::even(places, self.options, self.frame)
     }
 
     /// The smoothing over some knots, and the coefficients.
@@ -357,29 +389,43 @@ impl<'a> Search<'a> {
         coefficients: &[f64],
     ) -> Result<Level> {
         let quality = chosen.quality.as_ref();
+        let [residual, correlation] = self.residuals(layout, coefficients)?;
         Ok(Level {
             step,
             knots: layout.places(),
             lambda: chosen.lambda,
             score: quality.map_or(f64::INFINITY, |quality| quality.score),
             noise: quality.map_or(f64::NAN, |quality| quality.noise),
-            correlation: self.correlation(layout, coefficients)?,
+            residual,
+            correlation,
         })
     }
 
-    /// The correlation of residuals of points that follow each other in order.
-    fn correlation(&self, layout: &Layout, coefficients: &[f64]) -> Result<f64> {
+    /// The root of the mean square of residuals, and the correlation of those that follow each other in order.
+    fn residuals(&self, layout: &Layout, coefficients: &[f64]) -> Result<[f64; 2]> {
         if self.order.is_empty() {
-            return Ok(f64::NAN);
+            return Ok([f64::NAN; 2]);
         }
-        let mut residuals = vec![0.0; self.order.len()];
+        let (mut residuals, mut square) = (vec![0.0; self.order.len()], 0.0);
         let all = self.points.sites_in_frame(&layout.frame, self.done);
         fitting::for_each_residual(&layout.basis, coefficients, &all, self.options.threads, |found| {
             residuals[found.index as usize] = found.residual * found.weight.sqrt();
+            square += found.residual * found.residual;
         })?;
         let at = |index: u32| residuals[index as usize];
         let products: f64 = self.order.windows(2).map(|pair| at(pair[0]) * at(pair[1])).sum();
         let squares: f64 = residuals.iter().map(|residual| residual * residual).sum();
-        Ok(if squares > 0.0 { products / squares } else { 0.0 })
+        let correlation = if squares > 0.0 { products / squares } else { 0.0 };
+        Ok([(square / self.order.len() as f64).sqrt(), correlation])
     }
+}
+
+/// The greatest magnitude of values, plus that of what they change if coordinates change by their own size.
+fn magnitude(places: &[Point2], [low, high]: [f64; 2]) -> f64 {
+    let far = |axis: usize| {
+        let all = || places.iter().map(|place| place[axis]);
+        let [least, most] = [all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)];
+        least.abs().max(most.abs()) / (most - least)
+    };
+    low.abs().max(high.abs()) + (high - low) * far(0).max(far(1))
 }

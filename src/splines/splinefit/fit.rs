@@ -10,13 +10,12 @@ use super::options::{Options, Smoothing};
 use super::points::{Points, PointsInFrame};
 use super::smoothing_choice::{Problem, SmoothingChoice, choose_smoothing};
 use super::statistics::Statistics;
-use super::{automatic, breaklines, given_knots, statistics};
+use super::{automatic, given_knots, statistics};
 use crate::fitting::{
     self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, Residual, RobustFit, Round,
-    Solution, SplineSpace,
+    Solution,
 };
 use spmesh_base::error::{Error, ErrorKind, Result};
-use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::source::Opened;
 
 /// The default tolerance, as a part of the range of elevations.
@@ -218,11 +217,11 @@ fn search(
         found => found.map_err(|error| error.of_input(points.name()))?,
     };
     let search = Search { goal, rounds: refined.rounds, is_reached: refined.is_reached };
-    let space = match options.polylines.is_empty() {
-        true => refined.space,
-        false => breaklines::space(refined.space.mesh.points(), options)?,
+    let layout = match options.polylines.is_empty() && frame.stretch().is_none() {
+        true => Layout::of_space(refined.space, frame.clone()),
+        false => Layout::even(refined.space.mesh.points().to_vec(), options, frame)?,
     };
-    Ok(Ok((Layout::of_space(space, frame.clone()), search)))
+    Ok(Ok((layout, search)))
 }
 
 /// Whether knots are found without any limits of the user.
@@ -247,15 +246,7 @@ fn even(points: &Points, options: &Options, side: f64, frame: &Frame, done: &dyn
     check_degree(options)?;
     let all = points.in_frame(frame, done);
     let places = fitting::grid_knots(&all, side).map_err(|error| error.of_input(points.name()))?;
-    Ok(Layout::of_space(even_space(places, options)?, frame.clone()))
-}
-
-/// The functions over knots that the program has placed, with the features of the options.
-pub(super) fn even_space(places: Vec<Point2>, options: &Options) -> Result<SplineSpace> {
-    match options.polylines.is_empty() {
-        true => SplineSpace::of(places),
-        false => breaklines::space(&places, options),
-    }
+    Layout::even(places, options, frame)
 }
 
 pub(super) fn check_degree(options: &Options) -> Result<()> {

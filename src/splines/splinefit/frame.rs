@@ -43,6 +43,11 @@ impl Frame {
         self.stretch
     }
 
+    /// The side of cells of the grid that knots are moved to, if coordinates are stretched.
+    pub(super) fn grid_step(&self) -> f64 {
+        self.stretch.map_or(0.0, |stretch| stretch.step())
+    }
+
     /// The frame of stored coordinates if their steps are equal, and of world coordinates otherwise; and the
     /// map from stored points to points of the frame.
     pub(super) fn of(coordinates: Coordinates, crs: Crs) -> (Frame, impl Fn(Point2) -> Point2) {

@@ -3,12 +3,15 @@
 use std::io::Write;
 use std::path::Path;
 
+use super::breaklines;
 use super::certainty::Certainty;
 use super::frame::Frame;
+use super::options::Options;
 use crate::bases::Basis;
 use crate::fitting::SplineSpace;
 use spmesh_base::error::{Error, Result};
 use spmesh_configurations::{Configurations, Knots};
+use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::detect::SPLINEFIT;
 use spmesh_formats::source::{EventSource, Opened, SourceOptions, name_of, open_knots};
 use spmesh_stream::model::functions::Function;
@@ -47,6 +50,16 @@ impl Layout {
     pub(super) fn of_space(space: SplineSpace, frame: Frame) -> Layout {
         let SplineSpace { knots, configurations, functions, basis, .. } = space;
         Layout { frame, knots, configurations, functions, basis }
+    }
+
+    /// The functions over knots that the program has placed, with the features of the options.
+    pub(super) fn even(places: Vec<Point2>, options: &Options, frame: &Frame) -> Result<Layout> {
+        let space = match (frame.stretch(), options.polylines.is_empty()) {
+            (Some(stretch), _) => SplineSpace::displaced(stretch.places(places), stretch.displacement())?,
+            (None, true) => SplineSpace::of(places)?,
+            (None, false) => breaklines::space(&places, options)?,
+        };
+        Ok(Layout::of_space(space, frame.clone()))
     }
 
     /// The same functions in world coordinates, if they are stretched.

@@ -98,7 +98,7 @@ impl Points {
             let flags: String = flags.collect();
             let what = format!(
                 "{}: if that stands for no value, leave these points out with{}",
-                fill_values.counts(),
+                fill_values.finding(),
                 flags.replace(".0", "")
             );
             return Err(Error::malformed(what).of_input(points.name()));

@@ -151,17 +151,20 @@ pub(super) fn choose_smoothing(
 /// likelihood takes each spline for a sample of a distribution, in which hills are as rough as bumps. A
 /// smooth surface that rises by far more than its noise follows the noise. With its quality.
 fn raised(equations: &Equations, likeliest: f64, may_raise: bool) -> Result<(f64, Quality)> {
-    let own = Quality::of(equations, likeliest)?;
+    if !may_raise {
+        return Ok((likeliest, Quality::of(equations, likeliest)?));
+    }
+    let mut trials: Vec<(f64, Quality)> = Vec::new();
+    let best = fitting::generalised_cross_validation_from(equations, likeliest, |lambda, quality| {
+        trials.push((lambda, quality));
+    });
+    // The first trial is the likeliest one.
+    let Some(&own) = trials.first() else { return Ok((likeliest, Quality::of(equations, likeliest)?)) };
     // Without residuals there is no noise to follow.
-    if !may_raise || own.score <= 0.0 || !own.score.is_finite() {
-        return Ok((likeliest, own));
-    }
-    let best = fitting::generalised_cross_validation_from(equations, likeliest)?.best;
-    let gain = equations.normal().count as f64 * (own.score / best.score).ln();
-    match gain > OVERRULING {
-        true => Ok((best.lambda, Quality::of(equations, best.lambda)?)),
-        false => Ok((likeliest, own)),
-    }
+    let Ok(Choice { best, .. }) = best else { return Ok(own) };
+    let gain = equations.normal().count as f64 * (own.1.score / best.score).ln();
+    let found = trials.into_iter().find(|&(lambda, _)| lambda == best.lambda);
+    Ok(found.filter(|_| own.1.score > 0.0 && own.1.score.is_finite() && gain > OVERRULING).unwrap_or(own))
 }
 
 fn tensed(equations: Equations<'_>, tension: f64) -> Equations<'_> {

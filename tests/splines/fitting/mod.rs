@@ -18,4 +18,5 @@ mod random_knots;
 mod refinement;
 mod robustness;
 mod smoothing;
+mod spacing;
 mod undetermined;

@@ -90,6 +90,7 @@ fn of_levels(levels: &Levels, report: &Report, spline: &Spline) -> String {
     let noise = noise.map(|noise| format!(", noise {}", short(noise))).unwrap_or_default();
     let why = match levels.stop {
         Stop::Noise => ": more knots predict no better, what is left is noise",
+        Stop::Rounding => ": what is left are rounding errors of the values",
         Stop::Density => ": as dense as points allow",
         Stop::Given => "",
     };
@@ -239,12 +240,13 @@ fn details(mut details: stats::Report, report: &Report) -> stats::Report {
         let level = |level: &Level| {
             json!({
                 "step": level.step, "knots": level.knots, "lambda": level.lambda, "score": level.score,
-                "noise": level.noise, "correlation": level.correlation,
+                "noise": level.noise, "residual_rms": level.residual, "correlation": level.correlation,
             })
         };
         let all: Value = levels.levels.iter().map(level).collect();
         let stop = match levels.stop {
             Stop::Noise => "noise",
+            Stop::Rounding => "rounding",
             Stop::Density => "density",
             Stop::Given => "given",
         };
