@@ -80,16 +80,16 @@ impl Flags {
             if coefficients.len() != layout.basis.len() {
                 return Ok(Compared { layout, coefficients: None, extent: None, residuals: None });
             }
-            let spline = Spline { layout, coefficients };
+            let spline = Spline::new(layout, coefficients);
             let extent = Extent::of(&spline);
-            let Spline { layout, coefficients } = spline;
+            let Spline { layout, coefficients, .. } = spline;
             return Ok(Compared { layout, coefficients: Some(coefficients), extent, residuals: None });
         }
         let spline = Spline::open(&self.spline)?;
         let options = SourceOptions { reader: &SPLINEFIT, holds_points: true, ..SourceOptions::default() };
-        let points = Points::open(&self.points, &options, None, false, |_| ())?;
+        let points = Points::open(&self.points, &options, None, Vec::new(), false, |_| ())?;
         let found = Statistics::of(&spline, &points, |_| false, self.threads.get(), &|_| ())?;
-        let Spline { layout, coefficients } = spline;
+        let Spline { layout, coefficients, .. } = spline;
         let (extent, residuals) = (found.extent, Some(found));
         Ok(Compared { layout, coefficients: Some(coefficients), extent, residuals })
     }
