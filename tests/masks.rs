@@ -170,28 +170,3 @@ fn polygons_without_an_area_leave_nothing() {
         }
     }
 }
-
-#[test]
-fn polygons_count_for_the_memory() {
-    let folder = Folder::new();
-    let points = folder.write("points.las", LasFile::of(&GROUND).bytes());
-    let ground = mesh(&folder, SYSTEM);
-    // Half of the polygons fit, so these count together.
-    let ring = |left: usize| {
-        let top = (0..160_000).rev().map(|at| format!(",{} 9", left as f64 + f64::from(at) / 80_000.0));
-        format!("POLYGON(({left} 0,{} 0{},{left} 0))", left + 2, top.collect::<String>())
-    };
-    let areas = folder.write("areas.wkt", [ring(0), ring(3), ring(6)].join("\n"));
-    let cases: [&[&str]; 4] = [
-        &["spdem", "--step", "1", "--mask", &areas, &ground, "-o", "/dev/null"],
-        &["spdem", "--contours", "1", "--concave", "9", "--mask", &areas, &ground, "-o", "/dev/null"],
-        &["spdiff", "--level", "3", "--by", &areas, &ground],
-        &["spfinalize", "--threads", "1", "--clip", &areas, &points],
-    ];
-    for case in cases {
-        let arguments = [&case[1..], &["--memory", "44M"]].concat();
-        assert_outcome(case[0], &arguments, b"", 5, "of lines so far, and --memory has room for");
-        let arguments = [&case[1..], &["--memory", "200M"]].concat();
-        assert_outcome(case[0], &arguments, b"", 0, "");
-    }
-}
