@@ -78,7 +78,7 @@ impl Knots {
         for id in places {
             points.extend((present[firsts[id as usize] as usize]..count).map(|_| self.at(id)));
         }
-        Knots::new(points)
+        Ok(Knots::new(points)?.displaced(self.displacement()))
     }
 
     /// The border of the convex hull, counterclockwise; of several knots at one place, only the first.

@@ -10,6 +10,9 @@
 //! that of an ordinary set of distinct points that then move together, and the theory applies unchanged.
 //! Triangles of two copies and another knot are counterclockwise in P(e) and have no area at e = 0.
 //!
+//! Knots of which a linear map is P(e), such as those of a stretched copy of the plane, are displaced by the
+//! same map of (j, j * j): then configurations of one are those of the other ([`Knots::displaced`]).
+//!
 //! Copies lie on a parabola, so no three are on a line. No four are on a circle, because their abscissae
 //! would have to sum to zero.
 
@@ -24,6 +27,33 @@ pub struct Knots {
     points: Vec<Point2>,
     /// Ranks by id; empty if no two knots are at one place.
     ranks: Vec<u32>,
+    displacement: Displacement,
+}
+
+/// How knots are displaced by their rank j: by a linear map of (j, j * j), given by its rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Displacement(pub [[i64; 2]; 2]);
+
+impl Default for Displacement {
+    fn default() -> Displacement {
+        Displacement([[1, 0], [0, 1]])
+    }
+}
+
+impl Displacement {
+    /// The displacement of a knot of some rank, in units of e.
+    pub(super) fn of(self, rank: i64) -> [i64; 2] {
+        self.0.map(|[a, b]| a * rank + b * rank * rank)
+    }
+
+    /// Bits of the greatest factor by which displacements are greater than without a map, at most.
+    pub(super) fn bits(self) -> i32 {
+        if self == Displacement::default() {
+            return 0;
+        }
+        let greatest = self.0.as_flattened().iter().map(|entry| entry.unsigned_abs()).max();
+        65 - greatest.unwrap_or(0).leading_zeros() as i32
+    }
 }
 
 impl Knots {
@@ -52,7 +82,19 @@ impl Knots {
                 copies[first as usize] += 1;
             }
         }
-        Ok(Knots { points, ranks })
+        Ok(Knots { points, ranks, displacement: Displacement::default() })
+    }
+
+    /// The same knots, displaced by another map. Its determinant must be positive, entries less than 2^56, and
+    /// at most two knots at a place.
+    #[must_use]
+    pub fn displaced(self, displacement: Displacement) -> Knots {
+        Knots { displacement, ..self }
+    }
+
+    /// How knots are displaced by their rank.
+    pub(super) fn displacement(&self) -> Displacement {
+        self.displacement
     }
 
     /// Whether all knots, at least one, are at the same place.
@@ -110,9 +152,11 @@ impl Knots {
         if !self.has_copies() {
             return lexicographic(p, q);
         }
+        let [u, v] = [a, b].map(|id| self.displacement.of(i64::from(self.rank(id))));
         lexicographic([p[0]], [q[0]])
-            .then(self.rank(a).cmp(&self.rank(b)))
+            .then(u[0].cmp(&v[0]))
             .then_with(|| lexicographic([p[1]], [q[1]]))
+            .then(u[1].cmp(&v[1]))
     }
 
     /// The error for knots that are all on one line.

@@ -30,7 +30,7 @@ mod symbolic;
 
 pub use centroids::{CentroidMesh, UnionSource, centroid, inverse_union_map, union_map};
 pub use gathering::links;
-pub use knots::Knots;
+pub use knots::{Displacement, Knots};
 pub use lift::Lift;
 pub use rule::Rule;
 pub use spmesh_stream::model::configurations::{Claim, Configurations, FARAWAY, Group, Link, Links};

@@ -1,6 +1,6 @@
 //! Signs for symbolically displaced knots ([`super::knots`]): determinants as polynomials in e.
 
-use super::knots::Knots;
+use super::knots::{Displacement, Knots};
 use num_bigint::BigInt;
 use num_traits::Zero;
 use spmesh_delaunay::delaunay2::MAX_POINTS;
@@ -70,6 +70,7 @@ fn sign<F: Form<N, 2>, const N: usize, const C: usize>(knots: &Knots, from: u32,
         to: to.map(|id| knots.at(id)),
         rank: i64::from(knots.rank(from)),
         ranks: to.map(|id| i64::from(knots.rank(id))),
+        map: knots.displacement(),
     };
     let integers = Integers::of(displaced.from, displaced.to);
     match displaced.bits(integers.bits_of_lengths(), F::DEGREE) {
@@ -89,6 +90,7 @@ struct Displaced<const N: usize> {
     to: [Point2; N],
     rank: i64,
     ranks: [i64; N],
+    map: Displacement,
 }
 
 impl<const N: usize> Displaced<N> {
@@ -96,15 +98,16 @@ impl<const N: usize> Displaced<N> {
     /// one factor is a displacement. `lengths`: bits of differences of coordinates.
     fn bits(&self, lengths: i32, degree: i32) -> i32 {
         let greatest = self.ranks.iter().fold(self.rank, |greatest, rank| greatest.max(*rank));
-        let displacement = 2 * (64 - greatest.leading_zeros() as i32) + 1;
+        let displacement = 2 * (64 - greatest.leading_zeros() as i32) + 1 + self.map.bits();
         // At most 12 products, each of which gives at most 6 to a coefficient: less than 2^7.
         (degree - 1) * lengths.max(displacement) + displacement + 7
     }
 
-    /// Differences of ranks, which are below [`MAX_POINTS`], and of their squares: the derivatives of differences of points.
+    /// The derivatives of differences of points: those of ranks, which are below [`MAX_POINTS`], and of their
+    /// squares, in the default map.
     fn displacement(&self, i: usize) -> [i64; 2] {
-        let (p, q) = (self.ranks[i], self.rank);
-        [p - q, p * p - q * q]
+        let [p, q] = [self.ranks[i], self.rank].map(|rank| self.map.of(rank));
+        [p[0] - q[0], p[1] - q[1]]
     }
 
     fn sign_in<F: Form<N, 2>, const C: usize, const L: usize>(&self, integers: &Integers<N, 2>) -> Sign {
@@ -201,6 +204,7 @@ mod tests {
             to: to.map(|id| knots.at(id)),
             rank: i64::from(knots.rank(from)),
             ranks: to.map(|id| i64::from(knots.rank(id))),
+            map: knots.displacement(),
         }
     }
 

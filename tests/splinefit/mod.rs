@@ -1,6 +1,7 @@
 //! `splinefit`: splines fitted to points, and their values at sites and in cells, against known functions.
 
 mod arrays;
+mod automatic;
 mod collocation;
 mod failures;
 mod features;
@@ -105,7 +106,7 @@ fn a_plane_is_given_back_without_any_option() {
         assert!((row[2] - plane(row[0], row[1])).abs() < 1e-9, "{row:?}");
     }
     let counted = stats(&[], points(2_000, 1, plane).as_bytes());
-    assert_eq!((&counted["is_reached"], &counted["degree"]), (&1.into(), &2.into()));
+    assert_eq!((&counted["stop"], &counted["degree"]), (&"rounding".into(), &2.into()));
     assert_eq!(counted["outside"], 0);
 }
 

@@ -148,7 +148,7 @@ fn smooth_creases(
         is_apart[id as usize] = true;
     });
     let first_middle = apart.len() as u32;
-    let knots = Knots::new(points)?;
+    let knots = Knots::new(points)?.displaced(apart.displacement());
     let mut predicates = FiniteFloatPredicates::default();
     let mut mesh = Constrained::new(&knots, start, &mut predicates);
     let mut rows = Vec::new();

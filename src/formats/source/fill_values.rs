@@ -82,25 +82,37 @@ impl FillValues {
     }
 }
 
+impl FillValues {
+    /// The fill values.
+    pub fn values(&self) -> Vec<f64> {
+        self.far().map(|(value, _)| value).collect()
+    }
+
+    /// How many points have each of them, and how far they are from others.
+    pub fn finding(&self) -> String {
+        let counts = self.far().map(|(value, count)| {
+            let points = if count == 1 { "point has" } else { "points have" };
+            // Debug writes great numbers with an exponent.
+            format!("{count} {points} z = {}", format!("{value:?}").trim_end_matches(".0"))
+        });
+        let counts = counts.collect::<Vec<String>>().join(", ");
+        match self.others {
+            Some([min, max]) => format!("{counts}, far from all others ({min} to {max})"),
+            None => format!("{counts}, and none another one"),
+        }
+    }
+}
+
 /// Says how many there are, and how to drop them.
 impl fmt::Display for FillValues {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let counts: Vec<String> = self
-            .far()
-            .map(|(value, count)| {
-                let points = if count == 1 { "point has" } else { "points have" };
-                // Debug writes great numbers with an exponent.
-                format!("{count} {points} z = {}", format!("{value:?}").trim_end_matches(".0"))
-            })
-            .collect();
-        f.write_str(&counts.join(", "))?;
+        let finding = self.finding();
         match self.others {
             Some([min, max]) => write!(
                 f,
-                ", far from all others ({min} to {max}): if that stands for no value, drop them, as with \
-                 spfinalize --keep-z {min},{max}"
+                "{finding}: if that stands for no value, drop them, as with spfinalize --keep-z {min},{max}"
             ),
-            None => f.write_str(", and none another one: that often stands for no value"),
+            None => write!(f, "{finding}: that often stands for no value"),
         }
     }
 }

@@ -33,17 +33,63 @@ use spmesh_base::random::Random;
 /// # Errors
 /// Those of [`Equations::solve`], if it fails for every `lambda`.
 pub fn generalised_cross_validation(equations: &Equations, near: Option<f64>) -> Result<Choice> {
-    let normal = equations.normal();
-    let count = normal.count as f64;
-    search(Limits::of(equations).near(near), |lambda| {
+    search(Limits::of(equations).near(near), |lambda| Ok(Quality::of(equations, lambda)?.score))
+}
+
+/// Chooses as [`generalised_cross_validation`] does, but no lesser `lambda` than `least`, which is tried first.
+/// `visit` gets all trials with their quality.
+///
+/// Cost: two trials if that one is the best.
+///
+/// # Errors
+/// Those of [`Equations::solve`], if it fails for every `lambda`.
+pub fn generalised_cross_validation_from(
+    equations: &Equations,
+    least: f64,
+    mut visit: impl FnMut(f64, Quality),
+) -> Result<Choice> {
+    let limits = Limits { start: least, least, ..Limits::of(equations) };
+    search(limits, |lambda| {
+        let quality = Quality::of(equations, lambda)?;
+        visit(lambda, quality);
+        Ok(quality.score)
+    })
+}
+
+/// How well a spline of some `lambda` predicts observations, as they tell themselves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quality {
+    /// The effective number of parameters: the trace of the smoothing matrix.
+    pub parameters: f64,
+    /// The score of generalised cross-validation: about the mean square of errors of predictions, which is
+    /// infinite if there are as many parameters as observations. Units: those of values, squared, times
+    /// weights.
+    pub score: f64,
+    /// The standard deviation of an observation of weight one: of the residuals, corrected for the
+    /// parameters.
+    pub noise: f64,
+}
+
+impl Quality {
+    /// The quality for a `lambda`.
+    ///
+    /// Cost: a factorisation and a selected inverse.
+    ///
+    /// # Errors
+    /// Those of [`Equations::solve`].
+    pub fn of(equations: &Equations, lambda: f64) -> Result<Quality> {
         equations.with_factor(lambda, |factor| {
             equations.check(factor, lambda)?;
-            let coefficients = equations.coefficients(factor, lambda);
-            let free = 1.0 - trace_of_quotient(factor, &normal.matrix) / count;
-            let score = normal.residual_square(&coefficients) / count / (free * free);
-            Ok(if free > 0.0 { score } else { f64::INFINITY })
+            let normal = equations.normal();
+            let parameters = trace_of_quotient(factor, &normal.matrix);
+            let square = normal.residual_square(&equations.coefficients(factor, lambda));
+            let (count, free) = (normal.count as f64, normal.count as f64 - parameters);
+            if free <= 0.0 {
+                return Ok(Quality { parameters, score: f64::INFINITY, noise: f64::NAN });
+            }
+            Ok(Quality { parameters, score: square * count / (free * free), noise: (square / free).sqrt() })
         })
-    })
+    }
 }
 
 /// The effective number of parameters for a `lambda`: the trace of the smoothing matrix.
@@ -51,10 +97,7 @@ pub fn generalised_cross_validation(equations: &Equations, near: Option<f64>) ->
 /// # Errors
 /// Those of [`Equations::solve`].
 pub fn degrees_of_freedom(equations: &Equations, lambda: f64) -> Result<f64> {
-    equations.with_factor(lambda, |factor| {
-        equations.check(factor, lambda)?;
-        Ok(trace_of_quotient(factor, &equations.normal().matrix))
-    })
+    Ok(Quality::of(equations, lambda)?.parameters)
 }
 
 /// Observations in folds, to be left out one fold at a time.

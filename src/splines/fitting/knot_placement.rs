@@ -13,7 +13,7 @@ use spmesh_delaunay::predicates::Point2;
 /// Cells along the longer side of the box in the first round.
 const CELLS_FIRST: usize = 4;
 /// How far knots are moved, in cells.
-const MOVED: f64 = 0.2;
+pub(super) const MOVED: f64 = 0.2;
 /// Least number of knots: those of the first grid, and one for each corner that an edge may cut off.
 pub const KNOTS_MIN: usize = (CELLS_FIRST + 1) * (CELLS_FIRST + 1) + 4;
 /// Most cells of a grid.
@@ -62,7 +62,13 @@ pub fn bounds<O: Observations + ?Sized>(observations: &O) -> Result<[Point2; 2]>
             upper = [0, 1].map(|axis| upper[axis].max(one.point[axis]));
         }
     }
-    if index == 0 {
+    check_area([lower, upper], index)?;
+    Ok([lower, upper])
+}
+
+/// Refuses a box of observations that has no area.
+pub(super) fn check_area([lower, upper]: [Point2; 2], count: u64) -> Result<()> {
+    if count == 0 {
         return Err(Error::usage("no observations: nothing can be fitted"));
     }
     if !(lower[0] < upper[0] && lower[1] < upper[1]) {
@@ -71,7 +77,7 @@ pub fn bounds<O: Observations + ?Sized>(observations: &O) -> Result<[Point2; 2]>
             lower[0], lower[1], upper[0], upper[1]
         )));
     }
-    Ok([lower, upper])
+    Ok(())
 }
 
 /// The grid of the first round, with cells that are about square.
@@ -98,12 +104,12 @@ fn grid([lower, upper]: [Point2; 2], cells: [usize; 2]) -> Vec<Point2> {
 }
 
 /// A random number between -1 and 1.
-fn unit(random: &mut Random) -> f64 {
+pub(super) fn unit(random: &mut Random) -> f64 {
     2.0 * (random.bits() as f64 / u64::MAX as f64) - 1.0
 }
 
 /// Linear interpolation; exact at parts zero and one.
-fn between(from: f64, to: f64, part: f64) -> f64 {
+pub(super) fn between(from: f64, to: f64, part: f64) -> f64 {
     if part == 1.0 { to } else { from + part * (to - from) }
 }
 
@@ -177,62 +183,5 @@ pub(super) fn knot_for_residual(mesh: &Mesh, triangle: u32, worst: Point2, rando
     match mesh.border_edges(triangle).find(is_near) {
         Some([p, q]) => [0, 1].map(|axis| p[axis].midpoint(q[axis])),
         None => knot,
-    }
-}
-
-/// Observations per cell of the box, on average.
-const PER_CELL: f64 = 4.0;
-/// The most cells along a side.
-const CELLS_MAX: f64 = 4096.0;
-/// Observations of a cell that count as different places, at most.
-const PLACES_PER_CELL: f64 = 16.0;
-
-/// How observations are spread.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spacing {
-    /// Their typical distance. Units: those of coordinates.
-    pub distance: f64,
-    /// About the number of their places, but of those that are crowded only some.
-    pub places: f64,
-}
-
-/// How observations are spread. Their distance is the root of the area per observation. The area is that of
-/// the cells with observations, of a grid over the box with four of them per cell on average. So gaps do not
-/// count.
-///
-/// Units: those of coordinates. Memory: at most 16 MB. Cost: two passes.
-///
-/// # Errors
-/// Observations that span no area; those of the source.
-pub fn spacing<O: Observations + ?Sized>(observations: &O) -> Result<Spacing> {
-    let [lower, upper] = bounds(observations)?;
-    let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
-    let count = for_each(observations, |_| ())?;
-    let side = (sides[0] * sides[1] * PER_CELL / count as f64).sqrt();
-    let cells = sides.map(|length| (length / side).clamp(1.0, CELLS_MAX).round() as usize);
-    let mut is_used = vec![false; cells[0] * cells[1]];
-    for_each(observations, |point| {
-        let cell = [0, 1].map(|axis| {
-            let part = (point[axis] - lower[axis]) / sides[axis];
-            ((part * cells[axis] as f64) as usize).min(cells[axis] - 1)
-        });
-        is_used[cell[1] * cells[0] + cell[0]] = true;
-    })?;
-    let used = is_used.iter().filter(|&&used| used).count() as f64;
-    let part = used / is_used.len() as f64;
-    let distance = (part * sides[0] * sides[1] / count as f64).sqrt();
-    Ok(Spacing { distance, places: (PLACES_PER_CELL * used).min(count as f64) })
-}
-
-fn for_each<O: Observations + ?Sized>(observations: &O, mut visit: impl FnMut([f64; 2])) -> Result<u64> {
-    let (mut reader, mut batch, mut count) = (observations.read()?, Vec::new(), 0);
-    loop {
-        batch.clear();
-        reader.append(&mut batch)?;
-        if batch.is_empty() {
-            return Ok(count);
-        }
-        count += batch.len() as u64;
-        batch.iter().for_each(|one| visit(one.point));
     }
 }

@@ -100,6 +100,27 @@ pub(super) struct Correction<'a> {
     rest: [[f64; 2]; 2],
 }
 
+/// Coefficients without the linear function that has most of their energy.
+pub(super) fn without_linear(basis: &Basis, energy: &Symmetric, coefficients: &[f64]) -> Vec<f64> {
+    let LinearPart { products, gram: [[a, b], [c, d]] } = LinearPart::of(basis, energy);
+    let [p, q] = products.each_ref().map(|product| dot(product, coefficients));
+    let determinant = a * d - b * c;
+    let shares = [(d * p - b * q) / determinant, (a * q - c * p) / determinant];
+    let [_, x, y] = linear_functions(basis);
+    let linear = x.iter().zip(&y).map(|(x, y)| shares[0] * x + shares[1] * y);
+    coefficients.iter().zip(linear).map(|(c, linear)| c - linear).collect()
+}
+
+/// What the inverse of equations without the linear part has more than F^-1: columns C and a matrix R for
+/// which it is CRC'.
+#[derive(Debug)]
+pub(super) struct OfLinear {
+    /// The columns of F^-1 EX.
+    pub(super) columns: [Vec<f64>; 2],
+    /// `lambda` times the inverse of the rest.
+    pub(super) rest: [[f64; 2]; 2],
+}
+
 impl LinearPart {
     pub(super) fn of(basis: &Basis, energy: &Symmetric) -> LinearPart {
         let [_, slopes @ ..] = linear_functions(basis);
@@ -117,6 +138,13 @@ impl LinearPart {
 }
 
 impl Correction<'_> {
+    /// What the inverse has more than F^-1.
+    pub(super) fn of_inverse(&self) -> OfLinear {
+        let [[a, b], [c, d]] = self.rest;
+        let part = self.lambda / (a * d - b * c);
+        OfLinear { columns: self.solved.clone(), rest: [[part * d, -part * b], [-part * c, part * a]] }
+    }
+
     /// Turns a solution with F into that of the equations without the linear part.
     pub(super) fn apply(&self, solution: &mut [f64]) {
         let [[a, b], [c, d]] = self.rest;

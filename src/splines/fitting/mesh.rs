@@ -3,7 +3,7 @@
 use crate::bases::Basis;
 use spmesh_base::error::{Error, Result};
 use spmesh_configurations::special::{Features, Function, features};
-use spmesh_configurations::{self as configurations, Configurations, Knots, Rule};
+use spmesh_configurations::{self as configurations, Configurations, Displacement, Knots, Rule};
 use spmesh_delaunay::delaunay2::{Kernel, Triangulation};
 use spmesh_delaunay::predicates::{Point2, area};
 
@@ -118,13 +118,25 @@ impl SplineSpace {
         SplineSpace::with_features(places, Features::default())
     }
 
+    /// The space over distinct places, whose border is pulled apart as that of a linear map of them is.
+    ///
+    /// # Errors
+    /// Those of [`SplineSpace::of`].
+    pub fn displaced(places: Vec<Point2>, displacement: Displacement) -> Result<SplineSpace> {
+        SplineSpace::new(places, Features::default(), displacement)
+    }
+
     /// The space over distinct places, with features between some of them.
     ///
     /// # Errors
     /// Those of [`SplineSpace::of`].
     pub fn with_features(places: Vec<Point2>, sharp: Features) -> Result<SplineSpace> {
+        SplineSpace::new(places, sharp, Displacement::default())
+    }
+
+    fn new(places: Vec<Point2>, sharp: Features, displacement: Displacement) -> Result<SplineSpace> {
         let mesh = Mesh::of(places)?;
-        let places = Knots::new(mesh.points().to_vec())?;
+        let places = Knots::new(mesh.points().to_vec())?.displaced(displacement);
         let corners = [sharp.corners, mesh.hull().to_vec()].concat();
         let special = features(&places, &Features { corners, ..sharp })?;
         let mut all = special.generate(&Rule::Delaunay, 1)?;

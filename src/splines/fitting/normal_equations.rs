@@ -32,6 +32,14 @@ pub struct NormalEquations {
     pub count: u64,
     /// Number of observations outside of the domain of the basis, which are left out.
     pub outside: u64,
+    /// The typical distance of observations, if their density varies; otherwise it is the root of the area of
+    /// one. Units: those of coordinates.
+    pub distance: Option<f64>,
+}
+
+/// The area of the domain of a basis.
+pub fn domain_area(basis: &Basis) -> f64 {
+    polygon::area(&basis.domain_corners())
 }
 
 impl NormalEquations {
@@ -64,13 +72,14 @@ impl NormalEquations {
     /// 1 / (1 + lambda k^4 A / W). Here k is pi over the spacing, and n observations have a spacing of
     /// sqrt(A / n).
     pub fn default_lambda(&self, basis: &Basis) -> f64 {
-        let area = polygon::area(&basis.domain_corners());
-        self.weight * area / (self.count as f64 * std::f64::consts::PI.powi(2)).powi(2)
+        let area = self.area_per_observation(basis);
+        self.weight * area / (self.count as f64 * std::f64::consts::PI.powi(4))
     }
 
-    /// The area of the domain per observation.
+    /// The area of the domain per observation, or the square of their typical distance.
     pub fn area_per_observation(&self, basis: &Basis) -> f64 {
-        polygon::area(&basis.domain_corners()) / self.count as f64
+        let even = || domain_area(basis) / self.count as f64;
+        self.distance.map_or_else(even, |distance| distance * distance)
     }
 
     /// Refuses equations without observations, and values whose squares exceed f64.
@@ -214,6 +223,7 @@ impl Parts {
             weight: totals.weight,
             count: totals.count,
             outside: totals.outside,
+            distance: None,
         }
     }
 }

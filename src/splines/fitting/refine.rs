@@ -115,7 +115,10 @@ impl Goal {
     }
 
     /// Refuses goals out of range.
-    pub(super) fn check(&self) -> Result<()> {
+    ///
+    /// # Errors
+    /// A tolerance, a number of knots or a smoothing that is too small.
+    pub fn check(&self) -> Result<()> {
         if self.tolerance.is_nan() || self.tolerance <= 0.0 {
             return Err(Error::usage(format!("tolerance {}: expected a number above zero", self.tolerance)));
         }

@@ -93,6 +93,22 @@ impl<'a> SelectedInverse<'a> {
     }
 }
 
+/// The entries of F^-1 at the places of entries of a matrix, which must be places of entries of F.
+///
+/// Cost and accuracy: as [`trace_of_quotient`].
+pub(super) fn selected(factor: &Factor, places: &Symmetric) -> Symmetric {
+    let inverse = SelectedInverse::of(factor.blocks());
+    let (scale, place) = (factor.scale(), |function| factor.place(function));
+    let mut found = places.clone();
+    for row in 0..places.len() {
+        for at in places.offsets[row]..places.offsets[row + 1] {
+            let column = places.columns[at];
+            found.values[at] = scale[row] * scale[column] * inverse.at(place(row), place(column));
+        }
+    }
+    found
+}
+
 /// The trace of F^-1 N for a factored matrix F. The entries of N must be at places of entries of F.
 ///
 /// Cost: that of about two factorisations. Accuracy: rounding errors, and the ridge of the factors.
@@ -255,6 +271,9 @@ mod tests {
             let expected: f64 = pairs.map(|(i, j)| inverse[i][j] * part.at(i, j)).sum();
             let found = trace_of_quotient(&factor, &part);
             assert!((found - expected).abs() < 1e-10 * count as f64, "{side}: {found}, {expected}");
+            let entries = selected(&factor, &whole);
+            let off = (0..count).flat_map(|i| entries.row(i).map(move |(j, found)| (i, j, found)));
+            assert!(off.into_iter().all(|(i, j, found)| (found - inverse[i][j]).abs() < 1e-11));
             assert!((factor.log_determinant() - logarithm).abs() < 1e-10 * count as f64);
         }
     }

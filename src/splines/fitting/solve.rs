@@ -186,6 +186,20 @@ impl<'a> Equations<'a> {
         }
     }
 
+    /// The matrix of the equations for a `lambda`, without what the linear part of the energy changes.
+    pub(super) fn matrix(&self, lambda: f64) -> Symmetric {
+        let energy = self.energy.filter(|_| lambda > 0.0);
+        energy.map_or_else(|| self.normal.matrix.clone(), |energy| self.normal.matrix.plus(lambda, energy))
+    }
+
+    /// What observations add to the equations of some coefficients: the gradient of half the sum of squares,
+    /// downwards.
+    pub(super) fn forces(&self, coefficients: &[f64]) -> Vec<f64> {
+        let rest: Vec<f64> =
+            coefficients.iter().zip(&self.trend.coefficients).map(|(c, trend)| c - trend).collect();
+        self.right.iter().zip(self.normal.matrix.times(&rest)).map(|(right, done)| right - done).collect()
+    }
+
     /// What the linear part of the energy changes, if it has one.
     pub(super) fn correction(&self, factor: &Factor, lambda: f64) -> Option<Correction<'_>> {
         self.linear.as_ref().map(|part| part.correction(factor, lambda))

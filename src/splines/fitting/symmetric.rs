@@ -100,7 +100,7 @@ impl Symmetric {
     }
 
     /// This matrix plus `factor` times another of the same size; it has the entries of both.
-    pub(super) fn plus(&self, factor: f64, other: &Symmetric) -> Symmetric {
+    pub fn plus(&self, factor: f64, other: &Symmetric) -> Symmetric {
         debug_assert_eq!(self.len(), other.len());
         let mut sum = Symmetric { offsets: vec![0], columns: Vec::new(), values: Vec::new() };
         for row in 0..self.len() {

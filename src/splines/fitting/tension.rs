@@ -31,6 +31,10 @@ use spmesh_base::error::{Error, Result};
 /// membrane with the second, and waves longer than three with the third.
 pub const TENSIONS: [f64; 3] = [0.0, 1.0, 2.0];
 
+/// The least `lambda` of the likelihood, in units of the default one, if the typical distance of observations
+/// is known: where they are denser, they tell more.
+const FLOOR: f64 = 1e-3;
+
 /// An energy with its tension.
 #[derive(Debug)]
 pub struct Tense {
@@ -59,6 +63,10 @@ pub fn choose_tension(
 ) -> Result<Tense> {
     let (mut likelihood, area) = (Likelihood::default(), normal.area_per_observation(basis));
     let plain = Limits::of(&Equations::new(basis, normal, Some(&bending))?);
+    let plain = match normal.distance {
+        Some(_) => Limits { least: FLOOR * plain.start, ..plain },
+        None => plain,
+    };
     let (mut best, mut of_plate, mut slopes) = (None::<Tense>, plain.start, None);
     for &tension in tensions {
         check(tension)?;

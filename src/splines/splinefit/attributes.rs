@@ -23,6 +23,10 @@ pub enum Attribute {
     /// Curvature of the section across the steepest descent; flow diverges where it is positive. Units: 1
     /// over the unit of coordinates.
     TangentialCurvature,
+    /// The standard error of the value. Units: those of elevations.
+    StandardError,
+    /// The standard deviation of another point of weight one from the value. Units: those of elevations.
+    PredictionError,
     /// Both derivatives, by x and by y. Units: those of elevations over those of coordinates.
     Gradient,
     /// The second derivatives, by xx, xy and yy. Units: those of elevations over the square of those of
@@ -39,9 +43,16 @@ impl Attribute {
             Attribute::Aspect => &["aspect"],
             Attribute::ProfileCurvature => &["profile_curvature"],
             Attribute::TangentialCurvature => &["tangential_curvature"],
+            Attribute::StandardError => &["standard_error"],
+            Attribute::PredictionError => &["prediction_error"],
             Attribute::Gradient => &["dx", "dy"],
             Attribute::Hessian => &["dxx", "dxy", "dyy"],
         }
+    }
+
+    /// Whether it needs the [`Certainty`](super::Certainty) of a spline.
+    pub fn is_error(self) -> bool {
+        matches!(self, Attribute::StandardError | Attribute::PredictionError)
     }
 
     /// Whether the attribute is a single number.
@@ -55,7 +66,7 @@ impl Attribute {
         let [r, s, t] = jet.hessian;
         let square = p * p + q * q;
         match self {
-            Attribute::Value => jet.value,
+            Attribute::Value | Attribute::StandardError | Attribute::PredictionError => jet.value,
             Attribute::Gradient => p,
             Attribute::Hessian => r,
             Attribute::Slope => slope(jet.gradient),

@@ -29,7 +29,7 @@ impl ControlMesh {
     /// # Errors
     /// Usage, if all sites are on one line.
     pub fn of(spline: &Spline) -> Result<ControlMesh> {
-        let Spline { layout, coefficients } = spline;
+        let Spline { layout, coefficients, .. } = spline;
         let site = |function: usize| layout.frame.to_world(layout.basis.greville(function));
         let sites: Vec<Point2> = (0..layout.basis.len()).map(site).collect();
         let mesh = delaunay2::triangulate(&sites).map_err(Error::of_computation)?;

@@ -2,18 +2,20 @@
 
 use std::io::Write;
 
+use super::anisotropy::Stretch;
+use super::automatic::{Found, Levels};
 use super::frame::Frame;
 use super::layout::{Layout, Spline};
 use super::options::{Options, Smoothing};
 use super::points::{Points, PointsInFrame};
 use super::smoothing_choice::{Problem, SmoothingChoice, choose_smoothing};
 use super::statistics::Statistics;
-use super::{breaklines, given_knots, statistics};
+use super::{automatic, given_knots, statistics};
 use crate::fitting::{
     self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, Residual, RobustFit, Round,
-    Solution, Spacing, SplineSpace,
+    Solution,
 };
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, ErrorKind, Result};
 use spmesh_formats::source::Opened;
 
 /// The default tolerance, as a part of the range of elevations.
@@ -24,35 +26,6 @@ const ROUNDING: f64 = 1e-9;
 pub(super) const KNOTS_MAX: usize = 20_000;
 /// ...but at most one knot per this number of points: two or three functions belong to a knot.
 const POINTS_PER_KNOT: u64 = 4;
-/// If a search without limits of the user would need more knots, a grid predicts better and takes less time.
-const KNOTS_MAX_FIRST: usize = 5_000;
-/// This grid: terrain needs several functions for each point.
-const FINE: GridSize = GridSize { step: 0.5, knots_max: 600_000.0 };
-/// Knots of a grid for each place of points, at most: four where no part of the box is empty. Without this
-/// limit, a thousand points at one place, with some far away, would take as many knots as a million points.
-const KNOTS_PER_PLACE: f64 = 16.0;
-/// The grid over which the smoothing is chosen, which takes many solutions. What these knots cannot follow
-/// counts as noise, and a little more smoothing predicts a little better.
-const CHOICE: GridSize = GridSize { step: 1.0, knots_max: 100_000.0 };
-/// The grid of robust fits, which take many solutions, too.
-const ROBUST: GridSize = GridSize { step: 0.7, knots_max: 300_000.0 };
-
-/// The size of a grid of knots.
-#[derive(Debug, Clone, Copy)]
-struct GridSize {
-    /// Sides of its cells, in distances of points...
-    step: f64,
-    /// ...unless it had more knots than this.
-    knots_max: f64,
-}
-
-impl GridSize {
-    /// The side of cells over a box with this area, for points that are spread like this.
-    fn side(&self, area: f64, spread: Spacing) -> f64 {
-        let knots_max = self.knots_max.min(KNOTS_PER_PLACE * spread.places);
-        (self.step * spread.distance).max((area / knots_max).sqrt())
-    }
-}
 
 /// A spline that was fitted.
 #[derive(Debug)]
@@ -69,8 +42,16 @@ pub struct Fitted {
 pub struct Report {
     /// Points of the input.
     pub points: u64,
-    /// The search for knots; `None` if they were given or on a grid.
+    /// Their places, and the deviation of points of one place, if any have the same.
+    pub sites: Option<(u64, Option<f64>)>,
+    /// The search for knots within a tolerance or a number of knots, if there was one.
     pub search: Option<Search>,
+    /// The levels of knots, if there was no other search, and knots were not given.
+    pub levels: Option<Levels>,
+    /// How coordinates were stretched, if they were.
+    pub stretch: Option<Stretch>,
+    /// Why a search for knots failed, if levels replace it.
+    pub failure: Option<String>,
     /// The smoothing and the reason for it; `None` if values were interpolated.
     pub chosen: Option<SmoothingChoice>,
     /// Of a robust fit: the standard deviation of a point of weight one, and whether coefficients converged.
@@ -88,8 +69,6 @@ pub struct Search {
     pub rounds: Vec<Round>,
     /// Whether all residuals are within the tolerance.
     pub is_reached: bool,
-    /// Whether knots on a grid replaced those of the search, because the tolerance was not reached.
-    pub is_replaced: bool,
 }
 
 /// Fits a spline to points. `done` gets the number of points read so far, in all passes together.
@@ -111,38 +90,91 @@ pub fn fit(
                     --interpolate, or --lambda and --robust";
         return Err(Error::usage(what));
     }
-    let (mut layout, mut found) = match (knots, options.step) {
-        (Some((source, name)), _) => (given_knots::layout(source, &name, options)?, None),
-        (None, Some(side)) => (even(points, options, side, done)?, None),
-        (None, None) => search(points, options, done).map(|(layout, search)| (layout, Some(search)))?,
+    let are_given = knots.is_some();
+    let is_own_choice = are_given || options.step.is_some() || !is_automatic(options);
+    let stretch = match options.anisotropy {
+        None if is_own_choice => Stretch::NONE,
+        _ => automatic::stretch(points, options, done)?,
     };
-    let mut settled = None;
-    if let Some(search) = found.as_mut().filter(|search| !search.is_reached && is_automatic(options))
-        && let Some(finer) = finer_grid(points, options, layout.places(), done)?
-    {
-        search.is_replaced = true;
-        (layout, settled) = finer;
-    }
+    let world = Frame::stretched(points.crs().clone(), stretch);
+    let Placed { mut layout, search, found, failure } = placed(points, knots, options, &world, done)?;
+    let (levels, settled, inner) = match found {
+        Some((levels, settled, inner)) => (Some(levels), settled, inner),
+        None => (None, None, None),
+    };
+    let distance = levels.as_ref().map(|levels| levels.distance);
+    let options = &Options { distance, ..options.clone() };
     layout.frame.join(points.crs())?;
     let frame = layout.frame.clone();
-    let all = points.in_frame(&frame, done);
-    let are_given = found.is_none() && options.step.is_none();
+    // Robust weights are those of points, and interpolation takes the first one of each place.
+    let is_merged = levels.is_some() && options.loss.is_none();
+    let all = if is_merged { points.sites_in_frame(&frame, done) } else { points.in_frame(&frame, done) };
     let (coefficients, chosen, robust) = match options.interpolates {
         true => (interpolate(&layout, &all)?, None, None),
         false => {
-            let with = settled.as_ref().map(|chosen| settled_by(chosen, options));
-            let fitted = approximate(&layout, &all, with.as_ref().unwrap_or(options), are_given);
-            let (coefficients, chosen, robust) = fitted.map_err(|error| error.of_input(points.name()))?;
-            let choice = settled.and_then(|chosen| chosen.choice).or(chosen.choice);
-            (coefficients, Some(SmoothingChoice { choice, ..chosen }), robust)
+            let (coefficients, mut chosen, robust) = approximate(&layout, &all, settled, options, are_given)
+                .map_err(|error| error.of_input(points.name()))?;
+            chosen.tension *= unit_of_tension(inner.as_ref().unwrap_or(&layout), points, options);
+            (coefficients, Some(chosen), robust)
         }
     };
-    let spline = Spline { layout, coefficients };
+    let (layout, coefficients) = match inner {
+        Some(inner) => restricted(layout, &coefficients, inner, points, options)?,
+        None => (layout, coefficients),
+    };
+    let spline = Spline::new(layout.unstretched()?, coefficients);
     let is_rejected = |found: &Residual| robust.as_ref().is_some_and(|fit| fit.is_rejected(found));
     let residuals = Statistics::of(&spline, points, is_rejected, options.threads, done)?;
     let scale = robust.as_ref().map(|fit| (fit.scale, fit.has_converged));
-    let report = Report { points: points.count(), search: found, chosen, scale, residuals };
+    let stretch = (stretch.ratio != 1.0).then_some(stretch);
+    let sites = points.sites().filter(|_| is_merged).map(|sites| (sites.count(), sites.pure_error));
+    let report =
+        Report { points: points.count(), sites, search, levels, stretch, failure, chosen, scale, residuals };
     Ok(Fitted { spline, report, robust })
+}
+
+/// Knots with their functions, and where they come from.
+struct Placed {
+    layout: Layout,
+    search: Option<Search>,
+    /// The levels of automatic knots, their smoothing, and the knots of the smaller domain in the end.
+    found: Option<(Levels, Option<SmoothingChoice>, Option<Layout>)>,
+    /// Why a search failed.
+    failure: Option<String>,
+}
+
+fn placed(
+    points: &Points,
+    knots: Option<(Opened, String)>,
+    options: &Options,
+    world: &Frame,
+    done: &dyn Fn(u64),
+) -> Result<Placed> {
+    let of = |layout| Placed { layout, search: None, found: None, failure: None };
+    let failure = match (knots, options.step) {
+        (Some((source, name)), _) => return given_knots::layout(source, &name, options).map(of),
+        (None, Some(side)) => return even(points, options, side, world, done).map(of),
+        (None, None) if is_automatic(options) => None,
+        (None, None) => match search(points, options, world, done)? {
+            Ok((layout, search)) => return Ok(Placed { search: Some(search), ..of(layout) }),
+            Err(reason) => Some(reason),
+        },
+    };
+    let Found { layout, settled, levels, inner, .. } = automatic::find(points, options, world, done)?;
+    Ok(Placed { layout, search: None, found: Some((levels, settled, inner)), failure })
+}
+
+/// The spline on the smaller domain of other knots.
+fn restricted(
+    layout: Layout,
+    coefficients: &[f64],
+    inner: Layout,
+    points: &Points,
+    options: &Options,
+) -> Result<(Layout, Vec<f64>)> {
+    let sites = points.places()?.0.into_iter().map(|place| layout.frame.to_stored(place));
+    let found = fitting::projected((&layout.basis, coefficients), &inner.basis, sites, options.threads)?;
+    Ok((Layout { frame: layout.frame, ..inner }, found))
 }
 
 impl Fitted {
@@ -157,11 +189,16 @@ impl Fitted {
     }
 }
 
-/// Searches for knots.
-fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Layout, Search)> {
+/// Searches for knots. The inner error is the reason why a search in range found none: its knots can be where
+/// points do not determine a spline.
+fn search(
+    points: &Points,
+    options: &Options,
+    frame: &Frame,
+    done: &dyn Fn(u64),
+) -> Result<std::result::Result<(Layout, Search), String>> {
     check_degree(options)?;
-    let most = if is_automatic(options) { KNOTS_MAX_FIRST } else { KNOTS_MAX };
-    let own_max = (points.count() / POINTS_PER_KNOT).min(most as u64) as usize;
+    let own_max = (points.count() / POINTS_PER_KNOT).min(KNOTS_MAX as u64) as usize;
     // At a constant elevation, residuals are its rounding errors.
     let [low, high] = points.range();
     let rounding = ROUNDING * low.abs().max(high.abs());
@@ -173,15 +210,18 @@ fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Lay
             options.max_knots.unwrap_or(own_max.max(KNOTS_MIN)),
         )
     };
-    let frame = Frame::world(points.crs().clone());
-    let all = points.in_frame(&frame, done);
-    let refined = fitting::refine(&all, &goal, options.threads).map_err(|e| e.of_input(points.name()))?;
-    let search = Search { goal, rounds: refined.rounds, is_reached: refined.is_reached, is_replaced: false };
-    let space = match options.polylines.is_empty() {
-        true => refined.space,
-        false => breaklines::space(refined.space.mesh.points(), options)?,
+    let all = points.in_frame(frame, done);
+    goal.check()?;
+    let refined = match fitting::refine(&all, &goal, options.threads) {
+        Err(error) if error.kind() == ErrorKind::Usage => return Ok(Err(error.to_string())),
+        found => found.map_err(|error| error.of_input(points.name()))?,
     };
-    Ok((Layout::of_space(space, frame), search))
+    let search = Search { goal, rounds: refined.rounds, is_reached: refined.is_reached };
+    let layout = match options.polylines.is_empty() && frame.stretch().is_none() {
+        true => Layout::of_space(refined.space, frame.clone()),
+        false => Layout::even(refined.space.mesh.points().to_vec(), options, frame)?,
+    };
+    Ok(Ok((layout, search)))
 }
 
 /// Whether knots are found without any limits of the user.
@@ -189,65 +229,27 @@ fn is_automatic(options: &Options) -> bool {
     options.tolerance.is_none() && options.max_knots.is_none()
 }
 
-/// Knots on a grid that follows from the distance of points, with the smoothing chosen over another one, if
-/// it is to be chosen; `None` if the grid had fewer than `known` knots.
-fn finer_grid(
-    points: &Points,
-    options: &Options,
-    known: usize,
-    done: &dyn Fn(u64),
-) -> Result<Option<(Layout, Option<SmoothingChoice>)>> {
-    let frame = Frame::world(points.crs().clone());
-    let all = points.in_frame(&frame, done);
-    let [lower, upper] = fitting::bounds(&all).map_err(|error| error.of_input(points.name()))?;
-    let (area, spread) = ((upper[0] - lower[0]) * (upper[1] - lower[1]), fitting::spacing(&all)?);
-    let grid = |size: GridSize| {
-        let side = size.side(area, spread);
-        if area / (side * side) < known as f64 {
-            return Ok(None);
-        }
-        even(points, options, side, done).map(Some)
-    };
-    if options.loss.is_some() || options.interpolates {
-        return Ok(grid(ROBUST)?.map(|layout| (layout, None)));
-    }
-    let settled = match options.smoothing {
-        Some(Smoothing::Lambda(_)) => None,
-        _ => grid(CHOICE)?.map(|coarse| chosen_over(&coarse, points, options, done)).transpose()?,
-    };
-    Ok(grid(FINE)?.map(|layout| (layout, settled)))
-}
-
-/// The smoothing chosen over these knots.
-fn chosen_over(
-    layout: &Layout,
-    points: &Points,
-    options: &Options,
-    done: &dyn Fn(u64),
-) -> Result<SmoothingChoice> {
-    let problem = choose_smoothing(layout, &points.in_frame(&layout.frame, done), options, false);
-    Ok(problem.map_err(|error| error.of_input(points.name()))?.chosen)
-}
-
 fn settled_by(chosen: &SmoothingChoice, options: &Options) -> Options {
     let smoothing = Some(Smoothing::Lambda(chosen.lambda));
     Options { smoothing, tension: Some(chosen.tension), ..options.clone() }
 }
 
-/// Places knots on a grid with cells of a given side.
-fn even(points: &Points, options: &Options, side: f64, done: &dyn Fn(u64)) -> Result<Layout> {
-    check_degree(options)?;
-    let frame = Frame::world(points.crs().clone());
-    let all = points.in_frame(&frame, done);
-    let places = fitting::grid_knots(&all, side).map_err(|error| error.of_input(points.name()))?;
-    let space = match options.polylines.is_empty() {
-        true => SplineSpace::of(places)?,
-        false => breaklines::space(&places, options)?,
-    };
-    Ok(Layout::of_space(space, frame))
+/// The documented unit of tensions, one over the root of the area of a point, in units of a fit that knows
+/// the typical distance of points.
+fn unit_of_tension(layout: &Layout, points: &Points, options: &Options) -> f64 {
+    let Some(distance) = options.distance else { return 1.0 };
+    (fitting::domain_area(&layout.basis) / points.count() as f64).sqrt() / distance
 }
 
-fn check_degree(options: &Options) -> Result<()> {
+/// Places knots on a grid with cells of a given side.
+fn even(points: &Points, options: &Options, side: f64, frame: &Frame, done: &dyn Fn(u64)) -> Result<Layout> {
+    check_degree(options)?;
+    let all = points.in_frame(frame, done);
+    let places = fitting::grid_knots(&all, side).map_err(|error| error.of_input(points.name()))?;
+    Layout::even(places, options, frame)
+}
+
+pub(super) fn check_degree(options: &Options) -> Result<()> {
     match options.degree.filter(|&degree| degree != 2) {
         Some(degree) => Err(Error::usage(format!(
             "knots for splines of degree {degree} must be given as configurations: use configgen"
@@ -256,14 +258,19 @@ fn check_degree(options: &Options) -> Result<()> {
     }
 }
 
-/// Coefficients by least squares, with smoothing or robust weights.
+/// Coefficients by least squares, with robust weights or a smoothing, which may be settled.
 fn approximate(
     layout: &Layout,
     all: &PointsInFrame,
+    settled: Option<SmoothingChoice>,
     options: &Options,
     are_given: bool,
 ) -> Result<(Vec<f64>, SmoothingChoice, Option<RobustFit>)> {
-    let problem = choose_smoothing(layout, all, options, are_given)?;
+    let with = settled.as_ref().map(|chosen| settled_by(chosen, options));
+    let mut problem = choose_smoothing(layout, all, with.as_ref().unwrap_or(options), are_given)?;
+    if let Some(settled) = settled {
+        problem.chosen = settled;
+    }
     let Some(loss) = options.loss else {
         let Solution { coefficients, has_converged } = problem.solve(&layout.basis)?;
         return Ok((coefficients, SmoothingChoice { is_solved: has_converged, ..problem.chosen }, None));

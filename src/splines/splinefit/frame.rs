@@ -1,5 +1,6 @@
 //! The coordinate frame of knots: stored coordinates and world coordinates.
 
+use super::anisotropy::Stretch;
 use crate::bases::Jet;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::predicates::Point2;
@@ -16,17 +17,35 @@ pub struct Frame {
     pub crs: Crs,
     /// Units of x and y that one unit of values is.
     unit_of_z: f64,
+    /// During a fit, how stored coordinates are stretched.
+    stretch: Option<Stretch>,
 }
 
 impl Frame {
     fn new(coordinates: Coordinates, crs: Crs) -> Frame {
         let unit_of_z = System::of(&crs).vertical_ratio().unwrap_or(1.0);
-        Frame { coordinates, crs, unit_of_z }
+        Frame { coordinates, crs, unit_of_z, stretch: None }
     }
 
     /// The frame of world coordinates.
     pub fn world(crs: Crs) -> Frame {
         Frame::new(Coordinates::F64, crs)
+    }
+
+    /// The frame of stretched world coordinates, in which a spline is fitted.
+    pub(super) fn stretched(crs: Crs, stretch: Stretch) -> Frame {
+        let stretch = (stretch.ratio != 1.0).then_some(stretch);
+        Frame { stretch, ..Frame::world(crs) }
+    }
+
+    /// How coordinates are stretched.
+    pub(super) fn stretch(&self) -> Option<Stretch> {
+        self.stretch
+    }
+
+    /// The side of cells of the grid that knots are moved to, if coordinates are stretched.
+    pub(super) fn grid_step(&self) -> f64 {
+        self.stretch.map_or(0.0, |stretch| stretch.step())
     }
 
     /// The frame of stored coordinates if their steps are equal, and of world coordinates otherwise; and the
@@ -45,7 +64,7 @@ impl Frame {
     #[inline]
     pub fn to_stored(&self, world: Point2) -> Point2 {
         match self.coordinates {
-            Coordinates::F64 => world,
+            Coordinates::F64 => self.stretch.map_or(world, |stretch| stretch.apply(world)),
             Coordinates::I32 { scale, offset } => {
                 [0, 1].map(|axis| (world[axis] - offset[axis]) / scale[axis])
             }
@@ -96,7 +115,7 @@ impl Frame {
         match (&self.crs, crs) {
             (_, Crs::Unknown) => Ok(()),
             (Crs::Unknown, known) => {
-                *self = Frame::new(self.coordinates, known.clone());
+                *self = Frame { stretch: self.stretch, ..Frame::new(self.coordinates, known.clone()) };
                 Ok(())
             }
             (own, other) if own == other => Ok(()),

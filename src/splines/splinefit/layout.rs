@@ -3,11 +3,15 @@
 use std::io::Write;
 use std::path::Path;
 
+use super::breaklines;
+use super::certainty::Certainty;
 use super::frame::Frame;
+use super::options::Options;
 use crate::bases::Basis;
 use crate::fitting::SplineSpace;
 use spmesh_base::error::{Error, Result};
 use spmesh_configurations::{Configurations, Knots};
+use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::detect::SPLINEFIT;
 use spmesh_formats::source::{EventSource, Opened, SourceOptions, name_of, open_knots};
 use spmesh_stream::model::functions::Function;
@@ -37,6 +41,8 @@ pub struct Spline {
     pub layout: Layout,
     /// A coefficient for each function. Units: those of elevations.
     pub coefficients: Vec<f64>,
+    /// How sure it is, for attributes that are errors.
+    pub certainty: Option<Certainty>,
 }
 
 impl Layout {
@@ -44,6 +50,25 @@ impl Layout {
     pub(super) fn of_space(space: SplineSpace, frame: Frame) -> Layout {
         let SplineSpace { knots, configurations, functions, basis, .. } = space;
         Layout { frame, knots, configurations, functions, basis }
+    }
+
+    /// The functions over knots that the program has placed, with the features of the options.
+    pub(super) fn even(places: Vec<Point2>, options: &Options, frame: &Frame) -> Result<Layout> {
+        let space = match (frame.stretch(), options.polylines.is_empty()) {
+            (Some(stretch), _) => SplineSpace::displaced(stretch.places(places), stretch.displacement())?,
+            (None, true) => SplineSpace::of(places)?,
+            (None, false) => breaklines::space(&places, options)?,
+        };
+        Ok(Layout::of_space(space, frame.clone()))
+    }
+
+    /// The same functions in world coordinates, if they are stretched.
+    pub(super) fn unstretched(self) -> Result<Layout> {
+        let Some(stretch) = self.frame.stretch() else { return Ok(self) };
+        let Layout { frame, knots, configurations, functions, .. } = self;
+        let knots = Knots::new(knots.points().iter().map(|&stored| stretch.undo(stored)).collect())?;
+        let basis = Basis::of_functions(&knots, &configurations, &functions)?;
+        Ok(Layout { frame: Frame::world(frame.crs), knots, configurations, functions, basis })
     }
 
     /// Builds a layout from a set of knots. Of several degrees, it takes the configurations for splines of
@@ -120,6 +145,11 @@ impl Layout {
 }
 
 impl Spline {
+    /// A spline without errors.
+    pub fn new(layout: Layout, coefficients: Vec<f64>) -> Spline {
+        Spline { layout, coefficients, certainty: None }
+    }
+
     /// Opens a file ("-" is standard input).
     ///
     /// # Errors
@@ -135,7 +165,7 @@ impl Spline {
             let what = format!("{found} coefficients for {needed} functions: one each is needed");
             return Err(Error::malformed(what).of_input(name_of(path)));
         }
-        Ok(Spline { layout, coefficients })
+        Ok(Spline::new(layout, coefficients))
     }
 
     /// One function of the basis of a file ("-" is standard input), which may be configurations without
@@ -154,7 +184,7 @@ impl Spline {
                 return Err(Error::usage(what).of_input(name_of(path)));
             }
         }
-        Ok(Spline { layout, coefficients })
+        Ok(Spline::new(layout, coefficients))
     }
 
     /// Writes the spline as a stream, whose blocks may be compressed.

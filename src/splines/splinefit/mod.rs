@@ -3,18 +3,24 @@
 //! | files | what they do |
 //! |---|---|
 //! | `options`, `fit` | a fit from points and knots to coefficients, and its report |
-//! | `points` | points of files as observations, in world or knot coordinates |
+//! | `automatic` | knots that follow density and noise |
+//! | `points`, `sites` | points of files as observations, in world or knot coordinates |
 //! | `given_knots`, `breaklines` | knots from files, and features between them |
 //! | `smoothing_choice` | the choice of the smoothing parameter |
+//! | `anisotropy` | coordinates in which values vary alike in all directions |
 //! | `frame`, `layout` | the coordinate frame of knots; knots with configurations and basis |
 //! | `statistics` | residuals, as numbers and as lists |
+//! | `certainty` | standard errors |
 //! | `extent` | the least and greatest value of a spline |
 //! | `attributes`, `values`, `raster`, `table` | values and derivatives, at sites and in cells |
 //! | `summary`, `smoothness` | the domain, condition and smoothness of functions |
 //! | `control` | control meshes |
 
+mod anisotropy;
 mod attributes;
+mod automatic;
 mod breaklines;
+mod certainty;
 mod control;
 mod extent;
 mod fit;
@@ -24,6 +30,7 @@ mod layout;
 mod options;
 mod points;
 mod raster;
+mod sites;
 mod smoothing_choice;
 mod smoothness;
 mod statistics;
@@ -31,7 +38,10 @@ mod summary;
 mod table;
 mod values;
 
+pub use anisotropy::{Anisotropy, Stretch};
 pub use attributes::Attribute;
+pub use automatic::{Level, Levels, Stop};
+pub use certainty::Certainty;
 pub use control::ControlMesh;
 pub use extent::{EXCESS_MAX, Excess, Extent};
 pub use fit::{Fitted, Report, Search, fit};

@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::str::FromStr;
 
+use super::anisotropy::Anisotropy;
 use crate::fitting::Loss;
 use spmesh_formats::source::Polyline;
 
@@ -25,12 +26,20 @@ pub struct Options {
     pub max_knots: Option<usize>,
     /// Side of the cells of a grid of knots, which replaces the search. Units: those of the world.
     pub step: Option<f64>,
+    /// How values vary with directions, unless knots are given. If `None`, alike, or as the sides of the box
+    /// of the points if these are very different.
+    pub anisotropy: Option<Anisotropy>,
+    /// How far the domain reaches beyond the hull of the points, for knots that follow from their density; by
+    /// default half their typical distance. Units: those of the world.
+    pub widen: Option<f64>,
     /// Polylines along which splines are not smooth; for knots without configurations.
     pub polylines: Vec<Polyline>,
     /// The name of their file in messages.
     pub polylines_name: String,
     /// Degree of splines, for knots with configurations of several degrees.
     pub degree: Option<usize>,
+    /// The typical distance of points, if it is known; otherwise the root of the area of a point.
+    pub distance: Option<f64>,
     /// Seed of folds.
     pub seed: u64,
     /// Threads that evaluate functions.
@@ -47,9 +56,12 @@ impl Default for Options {
             tolerance: None,
             max_knots: None,
             step: None,
+            anisotropy: None,
+            widen: None,
             polylines: Vec::new(),
             polylines_name: String::new(),
             degree: None,
+            distance: None,
             seed: 1,
             threads: NonZeroUsize::MIN,
         }

@@ -4,8 +4,9 @@ use std::cell::Cell;
 use std::path::PathBuf;
 
 use super::frame::Frame;
-use crate::fitting::{Observation, ObservationReader, Observations};
-use spmesh_base::error::{Error, Result};
+use super::sites::Sites;
+use crate::fitting::{self, Observation, ObservationReader, Observations};
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::source::{FillValues, Input, PointReader, SourceOptions};
 use spmesh_stream::model::bounds::Point;
@@ -20,6 +21,8 @@ const HELD_SELDOM: usize = 1 << 20;
 const SAMPLE: usize = 1 << 12;
 /// The part of elevations that is cut off at each end of their range.
 const OUTSIDE: f64 = 0.02;
+/// Places from which the density of points is found, at most.
+const PLACES_MAX: u64 = 1 << 22;
 /// Points per batch of held points.
 const BATCH: usize = 1 << 14;
 
@@ -32,6 +35,12 @@ pub struct Points {
     /// A sample of elevations, sorted.
     sample: Vec<f64>,
     count: u64,
+    /// Points of one place merged, if there are any.
+    sites: Option<Sites>,
+    /// Elevations that stand for none.
+    no_data: Vec<f64>,
+    /// How many points of the current pass had one of them.
+    dropped: Cell<u64>,
 }
 
 impl Points {
@@ -43,16 +52,26 @@ impl Points {
     ///
     /// # Errors
     /// As [`Input::open`]; no elevation; another number of weights; malformed, if elevations are
-    /// [`FillValues`].
+    /// [`FillValues`] which `no_data` does not name.
     pub fn open(
         paths: &[PathBuf],
         options: &SourceOptions,
         weights: Option<Vec<f64>>,
+        no_data: Vec<f64>,
         often: bool,
         mut done: impl FnMut(u64),
     ) -> Result<Points> {
         let input = Input::open(paths, &SourceOptions { dims: 2, ..options.clone() })?;
-        let mut points = Points { input, weights, held: None, sample: Vec::new(), count: 0 };
+        let mut points = Points {
+            input,
+            weights,
+            held: None,
+            sample: Vec::new(),
+            count: 0,
+            sites: None,
+            no_data,
+            dropped: Cell::new(0),
+        };
         let mut held = Some(Vec::new());
         let (mut reader, mut batch) = (points.read_world()?, Vec::new());
         let held_max = if often { HELD_OFTEN } else { HELD_SELDOM };
@@ -75,8 +94,16 @@ impl Points {
         drop(reader);
         points.check_weights(count)?;
         if !fill_values.is_empty() {
-            return Err(Error::malformed(fill_values.to_string()).of_input(points.name()));
+            let flags = fill_values.values().into_iter().map(|value| format!(" --no-data {value:?}"));
+            let flags: String = flags.collect();
+            let what = format!(
+                "{}: if that stands for no value, leave these points out with{}",
+                fill_values.finding(),
+                flags.replace(".0", "")
+            );
+            return Err(Error::malformed(what).of_input(points.name()));
         }
+        points.sites = held.as_deref().and_then(Sites::of);
         (points.held, points.sample, points.count) = (held, sample.in_order(), count);
         Ok(points)
     }
@@ -88,7 +115,8 @@ impl Points {
                     let message = format!("{} weights for {count} points: one each is needed", weights.len());
                     let error = Error::usage(message).of_input(self.name());
                     // The weights may be those of all points of the file.
-                    let dropped = [self.input.withheld_notice(), self.input.invalid_notice()];
+                    let dropped =
+                        [self.input.withheld_notice(), self.input.invalid_notice(), self.no_data_notice()];
                     Err(dropped.iter().flatten().fold(error, |error, notice| error.noting(notice)))
                 }
             }
@@ -103,8 +131,44 @@ impl Points {
 
     /// Notices about the files for the user.
     pub fn notices(&self) -> Vec<String> {
-        let dropped = self.input.withheld_notice().into_iter().chain(self.input.invalid_notice());
-        self.input.notices().iter().cloned().chain(dropped).collect()
+        let dropped = [self.input.withheld_notice(), self.input.invalid_notice(), self.no_data_notice()];
+        self.input.notices().iter().cloned().chain(dropped.into_iter().flatten()).collect()
+    }
+
+    fn no_data_notice(&self) -> Option<String> {
+        let values: Vec<String> = self.no_data.iter().map(f64::to_string).collect();
+        let points = counted(self.dropped.get(), "point", "points");
+        (!values.is_empty()).then(|| format!("left out {points} without data (z = {})", values.join(" or ")))
+    }
+
+    /// The points of one place merged; `None` if there are none, or points are too many to be held.
+    pub fn sites(&self) -> Option<&Sites> {
+        self.sites.as_ref()
+    }
+
+    /// The places of points, without copies, and the part of all that they are: one, if points are held.
+    ///
+    /// # Errors
+    /// If points cannot be read.
+    pub(super) fn places(&self) -> Result<(Vec<Point2>, f64)> {
+        if let Some(held) = self.sites.as_ref().map(|sites| &sites.merged).or(self.held.as_ref()) {
+            return Ok((held.iter().map(|one| one.point).collect(), 1.0));
+        }
+        let stride = self.count.div_ceil(PLACES_MAX).max(1) as usize;
+        let (mut reader, mut batch, mut places, mut first) = (self.read_world()?, Vec::new(), Vec::new(), 0);
+        loop {
+            reader.append(&mut batch)?;
+            if batch.is_empty() {
+                return Ok((places, 1.0 / stride as f64));
+            }
+            let skipped = (stride - first % stride) % stride;
+            places.extend(batch.iter().skip(skipped).step_by(stride).map(|one| one.point));
+            // The hull is that of all points.
+            let all: Vec<Point2> = batch.iter().map(|one| one.point).collect();
+            places.extend(fitting::hull_corners(&all));
+            first += batch.len();
+            batch.clear();
+        }
     }
 
     /// The coordinate reference system.
@@ -126,7 +190,12 @@ impl Points {
 
     /// The points in a frame; `done` gets the number of points read so far, in all passes together.
     pub fn in_frame<'a>(&'a self, frame: &'a Frame, done: &'a dyn Fn(u64)) -> PointsInFrame<'a> {
-        PointsInFrame { points: self, frame, read: Cell::new(0), done }
+        PointsInFrame { points: self, frame, is_merged: false, read: Cell::new(0), done }
+    }
+
+    /// The same, with the points of one place merged into one with their mean and weight.
+    pub fn sites_in_frame<'a>(&'a self, frame: &'a Frame, done: &'a dyn Fn(u64)) -> PointsInFrame<'a> {
+        PointsInFrame { is_merged: true, ..self.in_frame(frame, done) }
     }
 
     /// A pass in world coordinates.
@@ -134,7 +203,10 @@ impl Points {
         if let Some(held) = &self.held {
             return Ok(Box::new(Held(held)));
         }
+        self.dropped.set(0);
         let elevations = Elevations::of(&self.input)?.into_reader()?;
+        let (no_data, dropped) = (&self.no_data[..], &self.dropped);
+        let elevations = Box::new(WithData { reader: elevations, no_data, dropped });
         let weights = self.weights.as_deref();
         Ok(Box::new(Weighed { reader: elevations, weights, next: 0 }))
     }
@@ -184,6 +256,39 @@ impl ObservationReader for Held<'_> {
     }
 }
 
+/// Points of files without those that have no data.
+struct WithData<'a> {
+    reader: Box<dyn ObservationReader + 'a>,
+    no_data: &'a [f64],
+    dropped: &'a Cell<u64>,
+}
+
+impl ObservationReader for WithData<'_> {
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
+        let first = observations.len();
+        // A batch of no data is not the end.
+        loop {
+            self.reader.append(observations)?;
+            let read = observations.len() - first;
+            if read == 0 || self.no_data.is_empty() {
+                return Ok(());
+            }
+            let mut rest = observations.split_off(first);
+            rest.retain(|one| !self.no_data.iter().any(|&value| is_about(one.value, value)));
+            self.dropped.set(self.dropped.get() + (read - rest.len()) as u64);
+            observations.append(&mut rest);
+            if observations.len() > first {
+                return Ok(());
+            }
+        }
+    }
+}
+
+/// Files write fill values with six digits.
+fn is_about(found: f64, value: f64) -> bool {
+    (found - value).abs() <= 1e-6 * value.abs()
+}
+
 /// Points that are decoded, with weights.
 struct Weighed<'a> {
     reader: Box<dyn ObservationReader + 'a>,
@@ -211,13 +316,18 @@ impl ObservationReader for Weighed<'_> {
 pub struct PointsInFrame<'a> {
     points: &'a Points,
     frame: &'a Frame,
+    is_merged: bool,
     read: Cell<u64>,
     done: &'a dyn Fn(u64),
 }
 
 impl Observations for PointsInFrame<'_> {
     fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
-        Ok(Box::new(Moved { all: self, reader: self.points.read_world()? }))
+        let reader = match &self.points.sites {
+            Some(sites) if self.is_merged => Box::new(Held(&sites.merged)),
+            _ => self.points.read_world()?,
+        };
+        Ok(Box::new(Moved { all: self, reader }))
     }
 }
 

@@ -35,7 +35,8 @@ impl Spline {
 }
 
 /// Writes a raster of one number per cell, at the centres of cells; cells outside of the domain have no data.
-/// Returns the number of cells without data, and what the user should know of the coordinate reference system.
+/// Returns the number of cells without data, and what the user should know of the coordinate reference
+/// system.
 ///
 /// # Errors
 /// Usage, for an attribute of several numbers; if writing fails.
@@ -212,7 +213,7 @@ impl<'a> Bands<'a> {
 
     fn sweep(&self, first: usize, values: &mut [f64]) -> Result<()> {
         let (grid, columns) = (self.grid, self.grid.columns as usize);
-        let Spline { layout, coefficients } = self.spline;
+        let Spline { layout, coefficients, .. } = self.spline;
         let step = grid.step / layout.frame.step();
         let raster = Raster {
             origin: layout.frame.to_stored(grid.center(0, first as u32)),

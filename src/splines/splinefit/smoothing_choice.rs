@@ -5,7 +5,7 @@ use super::options::{Options, Smoothing};
 use super::points::PointsInFrame;
 use crate::bases::Basis;
 use crate::fitting::{
-    self, Choice, Equations, Method, NormalEquations, RobustStart, Solution, Symmetric, Tense,
+    self, Choice, Equations, Method, NormalEquations, Quality, RobustStart, Solution, Symmetric, Tense,
 };
 use spmesh_base::error::{Error, Result};
 
@@ -22,6 +22,29 @@ pub struct SmoothingChoice {
     pub is_solved: bool,
     /// The trials of the choice; `lambda` in world coordinates.
     pub choice: Option<Choice>,
+    /// Whether generalised cross-validation asked for more smoothing than the likelihood.
+    pub is_raised: bool,
+    /// How well it predicts, if `lambda` was chosen for all points at once.
+    pub quality: Option<Quality>,
+}
+
+/// Generalised cross-validation overrules the likelihood if it is surer than by chance: the logarithm of the
+/// ratio of scores, times the number of points, is then about a difference of Akaike's criterion.
+const OVERRULING: f64 = 6.0;
+
+impl SmoothingChoice {
+    /// A smoothing without a reason.
+    pub(super) fn given(lambda: f64, tension: f64) -> SmoothingChoice {
+        SmoothingChoice {
+            lambda,
+            tension,
+            undetermined: None,
+            is_solved: true,
+            choice: None,
+            is_raised: false,
+            quality: None,
+        }
+    }
 }
 
 /// Normal equations with a chosen `lambda`.
@@ -38,8 +61,7 @@ pub(super) struct Problem {
 impl Problem {
     pub(super) fn solve(&self, basis: &Basis) -> Result<Solution> {
         let equations = Equations::new(basis, &self.normal, self.energy.as_ref())?;
-        let equations = if self.chosen.tension > 0.0 { equations.in_tension() } else { equations };
-        equations.solution(self.lambda)
+        tensed(equations, self.chosen.tension).solution(self.lambda)
     }
 }
 
@@ -61,7 +83,7 @@ pub(super) fn choose_smoothing(
     are_given: bool,
 ) -> Result<Problem> {
     let (basis, threads) = (&layout.basis, options.threads);
-    let normal = NormalEquations::of(basis, all, threads)?;
+    let normal = NormalEquations { distance: options.distance, ..NormalEquations::of(basis, all, threads)? };
     check_tension(basis, options, are_given)?;
     let mut start = None;
     let undetermined = match options.smoothing {
@@ -82,6 +104,7 @@ pub(super) fn choose_smoothing(
         Some(Smoothing::Folds(count)) => Some(Method::Folds { count, seed: options.seed }),
     };
     let own = options.tension.unwrap_or(0.0);
+    let (mut is_raised, mut quality) = (false, None);
     let (energy, lambda, tension, choice) = match (bending, method, options.smoothing) {
         (Some(bending), Some(Method::Likelihood), _) if options.loss.is_none() => {
             let tensions: &[f64] = match options.tension {
@@ -91,7 +114,12 @@ pub(super) fn choose_smoothing(
             };
             let Tense { energy, tension, choice } =
                 fitting::choose_tension(basis, &normal, bending, tensions)?;
-            (Some(energy), choice.best.lambda, tension, Some(choice))
+            let equations = tensed(Equations::new(basis, &normal, Some(&energy))?, tension);
+            let may_raise = options.smoothing.is_none() && options.distance.is_some();
+            let (lambda, known) = raised(&equations, choice.best.lambda, may_raise)?;
+            (is_raised, quality) = (lambda > choice.best.lambda, Some(known));
+            drop(equations);
+            (Some(energy), lambda, tension, Some(choice))
         }
         (Some(bending), Some(method), _) => {
             let choice = if options.loss.is_some() {
@@ -100,7 +128,10 @@ pub(super) fn choose_smoothing(
                 start = Some(robust);
                 choice
             } else {
-                fitting::choose(&normal, basis, all, &bending, method, threads)?
+                let choice = fitting::choose(&normal, basis, all, &bending, method, threads)?;
+                let equations = Equations::new(basis, &normal, Some(&bending))?;
+                quality = Some(Quality::of(&equations, choice.best.lambda)?);
+                choice
             };
             (Some(bending), choice.best.lambda, 0.0, Some(choice))
         }
@@ -111,8 +142,33 @@ pub(super) fn choose_smoothing(
         (bending, ..) => (bending, 0.0, 0.0, None),
     };
     let choice = choice.map(|choice| in_world(choice, area));
-    let chosen = SmoothingChoice { lambda: lambda * area, tension, undetermined, is_solved: true, choice };
+    let given = SmoothingChoice::given(lambda * area, tension);
+    let chosen = SmoothingChoice { undetermined, choice, is_raised, quality, ..given };
     Ok(Problem { normal, energy, lambda, chosen, start })
+}
+
+/// The likeliest `lambda`, or the one of generalised cross-validation if that is greater for a reason: the
+/// likelihood takes each spline for a sample of a distribution, in which hills are as rough as bumps. A
+/// smooth surface that rises by far more than its noise follows the noise. With its quality.
+fn raised(equations: &Equations, likeliest: f64, may_raise: bool) -> Result<(f64, Quality)> {
+    if !may_raise {
+        return Ok((likeliest, Quality::of(equations, likeliest)?));
+    }
+    let mut trials: Vec<(f64, Quality)> = Vec::new();
+    let best = fitting::generalised_cross_validation_from(equations, likeliest, |lambda, quality| {
+        trials.push((lambda, quality));
+    });
+    // The first trial is the likeliest one.
+    let Some(&own) = trials.first() else { return Ok((likeliest, Quality::of(equations, likeliest)?)) };
+    // Without residuals there is no noise to follow.
+    let Ok(Choice { best, .. }) = best else { return Ok(own) };
+    let gain = equations.normal().count as f64 * (own.1.score / best.score).ln();
+    let found = trials.into_iter().find(|&(lambda, _)| lambda == best.lambda);
+    Ok(found.filter(|_| own.1.score > 0.0 && own.1.score.is_finite() && gain > OVERRULING).unwrap_or(own))
+}
+
+fn tensed(equations: Equations<'_>, tension: f64) -> Equations<'_> {
+    if tension > 0.0 { equations.in_tension() } else { equations }
 }
 
 fn in_world(mut choice: Choice, area: f64) -> Choice {

@@ -94,6 +94,12 @@ impl Spline {
         }
         Some(match attribute {
             Attribute::Value => Jet::constant(basis.value(&self.coefficients, at, scratch)),
+            Attribute::StandardError | Attribute::PredictionError => {
+                let certainty = self.certainty.as_ref()?;
+                let error = certainty.standard_error(basis.at(at, scratch));
+                let noise = if attribute == Attribute::PredictionError { certainty.noise } else { 0.0 };
+                Jet::constant(error.hypot(noise))
+            }
             Attribute::Gradient | Attribute::Hessian => {
                 frame.jet_to_world(basis.jet(&self.coefficients, at, scratch))
             }

@@ -1,6 +1,5 @@
 //! `sptiles`: flags, and the counts of `--stats`.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -11,9 +10,9 @@ use crate::tiles::{LevelStats, Options, Scheme, Target, write};
 use spmesh_pipeline::reduce::Duplicates;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::progress::Progress;
+use spmesh_shell::resources::{TempDirFlag, ThreadsFlag};
 use spmesh_shell::{
-    Common, Mesh, Names, Needs, Report, StatsFlag, advise_on_memory, named, notice, parse_size,
-    parse_threads, peak_memory, threads,
+    Common, Mesh, Names, Needs, Report, StatsFlag, advise_on_memory, named, notice, parse_size, peak_memory,
 };
 
 const TOOL: &str = "sptiles";
@@ -94,13 +93,11 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M")]
     memory: u64,
 
-    /// Threads [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    threads: ThreadsFlag,
 
-    /// Folder for temporary files [default: the system's]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    temp_dir: TempDirFlag,
 
     #[command(flatten)]
     stats: StatsFlag,
@@ -116,14 +113,14 @@ pub struct Flags {
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     let started = Instant::now();
-    let threads = threads(flags.threads).get();
+    let threads = flags.threads.get().get();
     Meshing::check_half(flags.memory, threads)?;
     let meshing = Meshing {
         // Vertices of a mesh are distinct.
         duplicates: Duplicates::Error,
         memory: flags.memory / 2,
         threads,
-        temp_dir: flags.temp_dir.clone(),
+        temp_dir: flags.temp_dir.to_owned(),
     };
     let options = Options {
         scheme: flags.scheme,

@@ -5,7 +5,7 @@ use spmesh_reference::sets::Random;
 use spmesh_splines::bases::Basis;
 use spmesh_splines::fitting::{self, Equations, NormalEquations, Observation, Symmetric, thin_plate};
 
-fn noisy(count: usize) -> Vec<Observation> {
+pub(super) fn noisy(count: usize) -> Vec<Observation> {
     let mut random = Random::new(5);
     let mut all = scattered(count, 8, |[x, y]| (5.0 * x).sin() + y);
     all.iter_mut().for_each(|one| {
@@ -20,7 +20,7 @@ fn solved(rows: &[Vec<f64>], rights: &[Vec<f64>]) -> Vec<Vec<f64>> {
     rights.iter().map(|right| solve_dense(rows.to_vec(), right.clone())).collect()
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
@@ -77,7 +77,7 @@ fn in_space_of_observations(
 
 /// An energy less the part that linear functions have: E - EX S^-1 X'E, where the columns of X are the slopes
 /// and S = X'EX. Linear functions have none then.
-fn without_linear_part(energy: &mut [Vec<f64>], slopes: [&Vec<f64>; 2]) {
+pub(super) fn without_linear_part(energy: &mut [Vec<f64>], slopes: [&Vec<f64>; 2]) {
     let products = slopes.map(|x| energy.iter().map(|row| dot(row, x)).collect::<Vec<f64>>());
     let [a, b, d] = [[0, 0], [0, 1], [1, 1]].map(|[i, j]| dot(slopes[i], &products[j]));
     let determinant = a * d - b * b;

@@ -3,6 +3,7 @@
 mod bases;
 mod choices;
 mod clamped;
+mod covariance;
 mod elevations;
 mod energies;
 mod failures;

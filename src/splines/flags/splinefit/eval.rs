@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::eval_format::{FORMATS, Form, KINDS, format_of};
-use super::{Threads, check_stdin, say};
-use crate::splinefit::{Attribute, Layout, Spline};
+use super::fit::read_weights;
+use super::{check_stdin, say};
+use crate::splinefit::{Attribute, Certainty, Layout, Points, Spline};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_formats::detect::SPLINEFIT;
@@ -14,6 +15,7 @@ use spmesh_formats::raster::{Grid, RasterFormat, write_prj};
 use spmesh_formats::sink::MatrixFormat;
 use spmesh_formats::source::{Input, InvalidAdvice, SourceOptions};
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
+use spmesh_shell::resources::ThreadsFlag;
 use spmesh_shell::{Common, named, progress::Progress};
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -73,6 +75,14 @@ pub(super) struct Flags {
     #[arg(long, value_name = "KIND", default_value = "value", value_parser = named(KINDS))]
     kind: Attribute,
 
+    /// The points that the spline was fitted to, for the kinds standard-error and prediction-error
+    #[arg(long, value_name = "POINTS", num_args = 1.., conflicts_with_all = ["basis_function", "collocation"])]
+    points: Vec<PathBuf>,
+
+    /// The weights of these points in the fit
+    #[arg(long, value_name = "FILE", requires = "points")]
+    weights: Option<PathBuf>,
+
     /// Evaluate this function of the basis instead of the spline; functions are numbered from 0
     #[arg(long, value_name = "J")]
     basis_function: Option<u32>,
@@ -87,7 +97,7 @@ pub(super) struct Flags {
     format: Option<Form>,
 
     #[command(flatten)]
-    threads: Threads,
+    threads: ThreadsFlag,
 
     #[command(flatten)]
     cells: CellFlags,
@@ -98,8 +108,10 @@ pub(super) struct Flags {
 
 impl Flags {
     pub(super) fn run(&self, common: &Common) -> Result<()> {
+        self.check_points()?;
         let sites = self.at.as_ref().map(|path| ("--at", path.as_path()));
-        check_stdin([("the spline", self.spline.as_path())].into_iter().chain(sites))?;
+        let points = self.points.iter().map(|path| ("--points", path.as_path()));
+        check_stdin([("the spline", self.spline.as_path())].into_iter().chain(sites).chain(points))?;
         let form = format_of(&self.output, self.format, self.at.is_some(), self.collocation)?;
         match (&self.at, form) {
             (Some(sites), Form::Matrix(format)) => self.matrix(common, sites, format),
@@ -108,17 +120,39 @@ impl Flags {
         }
     }
 
-    fn spline(&self) -> Result<Spline> {
-        match self.basis_function {
-            Some(function) => Spline::open_function(&self.spline, function),
-            None => Spline::open(&self.spline),
+    fn check_points(&self) -> Result<()> {
+        match (self.kind.is_error(), self.points.is_empty()) {
+            (true, true) => Err(Error::usage(
+                "errors follow from the points that the spline was fitted to: give them with --points",
+            )),
+            (false, false) => {
+                Err(Error::usage("--points is for --kind standard-error and prediction-error: leave it out"))
+            }
+            _ => Ok(()),
         }
+    }
+
+    fn spline(&self, common: &Common) -> Result<Spline> {
+        let spline = match self.basis_function {
+            Some(function) => return Spline::open_function(&self.spline, function),
+            None => Spline::open(&self.spline)?,
+        };
+        if !self.kind.is_error() {
+            return Ok(spline);
+        }
+        let weights = self.weights.as_ref().map(|path| read_weights(path)).transpose()?;
+        let options = SourceOptions { reader: &SPLINEFIT, holds_points: true, ..SourceOptions::default() };
+        let points = Points::open(&self.points, &options, weights, Vec::new(), true, |_| ())?;
+        points.notices().iter().for_each(|text| say(common, text));
+        let certainty = Certainty::of(&spline, &points, self.threads.get())?;
+        say(common, &format!("noise {:.4e}, lambda {:.4e}", certainty.noise, certainty.smoothing.lambda));
+        Ok(Spline { certainty: Some(certainty), ..spline })
     }
 
     fn sites(&self, common: &Common, sites: &Path, is_array: bool) -> Result<()> {
         self.raster.check_unused()?;
         let mut output = Output::create(&self.output, is_array)?;
-        let spline = self.spline()?;
+        let spline = self.spline(common)?;
         let sites = open_sites(sites)?;
         let mut progress = Progress::new(common, "evaluating", sites.description().stated_points);
         let (attribute, done) = (self.kind, |count| progress.set(count));
@@ -154,7 +188,7 @@ impl Flags {
     fn cells(&self, common: &Common, form: Form) -> Result<()> {
         let attribute = self.kind;
         let mut output = self.output(form, attribute)?;
-        let spline = self.spline()?;
+        let spline = self.spline(common)?;
         let grid = self.cells.grid(spline.crs(), || spline.window())?;
         let mut progress = Progress::counting("rows", common, "evaluating", Some(grid.rows.into()));
         let done = |row| progress.set(row);

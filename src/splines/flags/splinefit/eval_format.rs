@@ -16,6 +16,8 @@ pub(super) const KINDS: Names<Attribute> = &[
     ("aspect", Attribute::Aspect),
     ("profile-curvature", Attribute::ProfileCurvature),
     ("tangential-curvature", Attribute::TangentialCurvature),
+    ("standard-error: The standard error of the value, with --points", Attribute::StandardError),
+    ("prediction-error: The same, with the noise of a point", Attribute::PredictionError),
     ("gradient: Both derivatives: dx, dy", Attribute::Gradient),
     ("hessian: The second derivatives: dxx, dxy, dyy", Attribute::Hessian),
 ];

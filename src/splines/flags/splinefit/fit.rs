@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::{Threads, check_stdin, report, say};
+use super::{check_stdin, report, say};
 use crate::fitting::Loss;
-use crate::splinefit::{Fitted, Options, Points, Smoothing};
+use crate::splinefit::{Anisotropy, Fitted, Options, Points, Smoothing};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_formats::detect::SPLINEFIT;
@@ -20,18 +20,21 @@ use spmesh_formats::source::{
 use spmesh_shell::compression::Compression;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
+use spmesh_shell::resources::ThreadsFlag;
 use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{Common, StatsFlag, named, open_held, parse_box, progress::Progress, refuse_terminal};
 use spmesh_stream::model::bounds::Bounds;
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
-Without --knots, the program searches for knots. It starts with a coarse grid over the box of the points. \
-Each round adds knots where residuals exceed --tol [default: 0.25 % of the range of most elevations], up to \
---max-knots [default: one for 4 points, at most 20,000]. Without both flags, the search ends at 5,000 knots; \
-if residuals still exceed the tolerance, the knots are those of a grid with about four for each point (at \
-most 600,000), which predicts terrain best. The smoothing is chosen over a quarter of them (at most \
-100,000); robust fits have half of them. With --step, knots form a grid with cells of this side. Points as \
+Without flags of knots, knots follow the density of points, over their convex hull. They become denser, level by \
+level, until a finer level predicts no better and residuals of neighbours are unlike each other: what is left \
+is noise. If no level is enough, there are about four knots for each point (at most 600,000), and the smoothing \
+is chosen over a quarter of them. Points of one place count as one, with their mean and weight.
+
+With --tol or --max-knots, a search starts with a coarse grid over the box of the points. Each round adds knots \
+where residuals exceed --tol [default: 0.25 % of the range of most elevations], up to --max-knots [default: one \
+for 4 points, at most 20,000]. With --step, knots form a grid with cells of this side. Points as \
 knots are for splines of degree 2 over their convex hull: the border is pulled apart.
 
 Without --lambda, given knots get the coefficients of least squares. Coefficients that the points leave \
@@ -84,6 +87,18 @@ pub(super) struct Flags {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = parse_positive)]
     #[arg(conflicts_with_all = ["tol", "max_knots"])]
     step: Option<f64>,
+
+    /// Values vary RATIO times more slowly along ANGLE (degrees counterclockwise from x) than across; auto
+    /// finds both, rescale makes the box of the points square [default: 1, or rescale if the sides of the box
+    /// differ more than 100-fold, or more than 3-fold and this predicts better]
+    #[arg(long, value_name = "RATIO[:ANGLE]|auto|rescale", allow_negative_numbers = true)]
+    #[arg(conflicts_with_all = ["knots", "features"])]
+    anisotropy: Option<Anisotropy>,
+
+    /// How far the domain reaches beyond the convex hull of the points [default: half their typical distance]
+    #[arg(long, value_name = "D", allow_negative_numbers = true, value_parser = parse_tension)]
+    #[arg(conflicts_with_all = ["knots", "step", "tol", "max_knots"])]
+    widen: Option<f64>,
 
     /// How much to smooth: a number, reml (restricted maximum likelihood), gcv (generalised
     /// cross-validation), or cv or cv:FOLDS (cross-validation)
@@ -142,6 +157,10 @@ pub(super) struct Flags {
     #[arg(long)]
     skip_invalid: bool,
 
+    /// Leave out points with this elevation, which stands for none; may be repeated
+    #[arg(long, value_name = "Z", allow_negative_numbers = true, value_parser = parse_finite)]
+    no_data: Vec<f64>,
+
     /// Seed of folds
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
@@ -150,7 +169,7 @@ pub(super) struct Flags {
     text: TextFlags,
 
     #[command(flatten)]
-    threads: Threads,
+    threads: ThreadsFlag,
 
     #[command(flatten)]
     compression: Compression,
@@ -225,6 +244,9 @@ impl Flags {
             tolerance: self.tol,
             max_knots: self.max_knots,
             step: self.step,
+            widen: self.widen,
+            anisotropy: self.anisotropy,
+            distance: None,
             polylines,
             polylines_name: self.features.as_deref().map(name_of).unwrap_or_default(),
             degree: self.degree,
@@ -255,7 +277,7 @@ impl Flags {
         let is_search = self.knots.is_none() && self.step.is_none();
         let often = is_search || self.robust.is_some();
         let mut progress = Progress::new(common, "reading", None);
-        Points::open(&self.inputs, &source, weights, often, |count| progress.set(count))
+        Points::open(&self.inputs, &source, weights, self.no_data.clone(), often, |count| progress.set(count))
     }
 
     fn knots(&self, common: &Common) -> Result<Option<(Opened, String)>> {
@@ -286,7 +308,7 @@ fn read_features(path: &Path) -> Result<(Vec<Polyline>, LineSystem, Option<Strin
     read_polylines(path)
 }
 
-fn read_weights(path: &Path) -> Result<Vec<f64>> {
+pub(super) fn read_weights(path: &Path) -> Result<Vec<f64>> {
     let (input, name) = open_held(path)?;
     match read_values(input).map_err(|error| error.of_input(&name))? {
         Values::Numbers(numbers) => Ok(numbers),
@@ -299,6 +321,11 @@ fn read_weights(path: &Path) -> Result<Vec<f64>> {
 fn parse_tension(text: &str) -> std::result::Result<f64, String> {
     let number = text.parse().ok().filter(|&number: &f64| number >= 0.0 && number.is_finite());
     number.ok_or_else(|| format!("{text:?} is not a finite number from zero on"))
+}
+
+fn parse_finite(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| format!("{text:?} is not a finite number"))
 }
 
 fn parse_positive(text: &str) -> std::result::Result<f64, String> {

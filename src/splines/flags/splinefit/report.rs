@@ -5,7 +5,10 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use crate::fitting::{Choice, FailedTrial};
-use crate::splinefit::{EXCESS_MAX, Extent, Fitted, PERCENTILES, Report, Spline, Statistics};
+use crate::splinefit::{
+    EXCESS_MAX, Extent, Fitted, Level, Levels, PERCENTILES, Report, SmoothingChoice, Spline, Statistics,
+    Stop, Stretch,
+};
 use spmesh_base::error::counted;
 use spmesh_shell::peak_memory;
 use spmesh_shell::stats::{self, Row};
@@ -18,22 +21,35 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
         let (tolerance, most) = (search.goal.tolerance, search.goal.max_knots);
         let knots = spline.layout.places();
         let above = search.rounds.last().map_or(0, |round| round.above);
-        notices.push(match (search.is_replaced, search.is_reached) {
-            (true, _) => format!(
-                "{knots} knots on a grid, {functions} functions: a search for at most {most} knots left \
-                 {above} residuals above the tolerance {}",
-                short(tolerance)
-            ),
-            (false, is_reached) => format!(
-                "{knots} knots (at most {most}), {functions} functions, tolerance {}: {}",
-                short(tolerance),
-                if is_reached {
-                    "reached".into()
-                } else {
-                    format!("{} farther off", counted(above, "point is", "points are"))
-                }
-            ),
-        });
+        let outcome = match search.is_reached {
+            true => "reached".into(),
+            false => format!("{} farther off", counted(above, "point is", "points are")),
+        };
+        notices.push(format!(
+            "{knots} knots (at most {most}), {functions} functions, tolerance {}: {outcome}",
+            short(tolerance)
+        ));
+    }
+    if let Some(reason) = &report.failure {
+        notices.push(format!("the search for knots failed, so they follow the density of points: {reason}"));
+    }
+    if let Some(Stretch { ratio, angle, .. }) = report.stretch {
+        notices.push(format!(
+            "values vary {} times more slowly along {angle} degrees than across, as --anisotropy or the sides of the \
+             box of points tell (with --anisotropy 1, coordinates stay as they are)",
+            short(ratio)
+        ));
+    }
+    notices.extend(report.levels.as_ref().map(|levels| of_levels(levels, report, spline)));
+    if let Some((sites, pure_error)) = report.sites {
+        let error = pure_error
+            .map(|error| format!("; points of one place differ by {} (standard deviation)", short(error)));
+        notices.push(format!(
+            "{} at {}{}",
+            counted(report.points, "point", "points"),
+            counted(sites, "place", "places"),
+            error.unwrap_or_default()
+        ));
     }
     if let Some(chosen) = &report.chosen {
         if let Some(undetermined @ 1..) = chosen.undetermined {
@@ -46,7 +62,7 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
             notices.push(format!("the energy of undetermined functions may not be the least: {remedy}"));
         }
         if let Some(choice) = &chosen.choice {
-            notices.extend(of_choice(choice, chosen.tension));
+            notices.extend(of_choice(choice, chosen));
         }
     }
     if let Some((scale, has_settled)) = report.scale {
@@ -66,11 +82,34 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
     notices
 }
 
+/// How many knots there are, and why there are no more.
+fn of_levels(levels: &Levels, report: &Report, spline: &Spline) -> String {
+    let (knots, functions) = (spline.layout.places(), spline.layout.basis.len());
+    let quality = report.chosen.as_ref().and_then(|chosen| chosen.quality);
+    let noise = quality.map(|quality| quality.noise).filter(|noise| noise.is_finite());
+    let noise = noise.map(|noise| format!(", noise {}", short(noise))).unwrap_or_default();
+    let why = match levels.stop {
+        Stop::Noise => ": more knots predict no better, what is left is noise",
+        Stop::Rounding => ": what is left are rounding errors of the values",
+        Stop::Density => ": as dense as points allow",
+        Stop::Given => "",
+    };
+    let rms = short(report.residuals.root_mean_square);
+    format!("{knots} knots, {functions} functions, rms {rms}{noise}{why}")
+}
+
 /// Notices about a chosen `lambda` and its tension.
-fn of_choice(choice: &Choice, tension: f64) -> Vec<String> {
-    let floor = if choice.is_at_floor() { ", the least that the distance of points allows" } else { "" };
+fn of_choice(choice: &Choice, chosen: &SmoothingChoice) -> Vec<String> {
+    let tension = chosen.tension;
+    let floor = if chosen.is_raised {
+        ", which predicts better than what is likeliest"
+    } else if choice.is_at_floor() {
+        ", the least that the distance of points allows"
+    } else {
+        ""
+    };
     let tension = if tension > 0.0 { format!(" and tension {}", short(tension)) } else { String::new() };
-    let mut notices = vec![format!("smoothed with lambda {}{tension}{floor}", short(choice.best.lambda))];
+    let mut notices = vec![format!("smoothed with lambda {}{tension}{floor}", short(chosen.lambda))];
     if let Some(first) = choice.failed.first() {
         let all = choice.failed.len() + choice.trials.len();
         notices.push(format!(
@@ -142,6 +181,7 @@ fn count_rows(fitted: &Fitted, rejected: Option<u64>, seed: u64, output_bytes: u
         rows.push(("rounds", "rounds_count", search.rounds.len() as u64));
         rows.push(("tolerance reached", "is_reached", search.is_reached.into()));
     }
+    rows.extend(report.sites.map(|(sites, _)| ("places", "places", sites)));
     let undetermined = report.chosen.as_ref().and_then(|chosen| chosen.undetermined);
     rows.extend(undetermined.map(|count| ("undetermined functions", "undetermined", count as u64)));
     rows.extend(rejected.map(|count| ("rejected points", "rejected", count)));
@@ -157,6 +197,10 @@ fn number_rows(fitted: &Fitted) -> Vec<Row<f64>> {
     rows.extend(report.search.as_ref().map(|search| ("tolerance", "tolerance", search.goal.tolerance)));
     rows.extend(report.chosen.as_ref().map(|chosen| ("lambda", "lambda", chosen.lambda)));
     rows.extend(report.chosen.as_ref().map(|chosen| ("tension", "tension", chosen.tension)));
+    let quality = report.chosen.as_ref().and_then(|chosen| chosen.quality);
+    rows.extend(quality.map(|quality| ("noise", "noise", quality.noise)));
+    rows.extend(quality.map(|quality| ("effective parameters", "parameters", quality.parameters)));
+    rows.extend(report.sites.and_then(|(_, error)| Some(("noise at one place", "pure_error", error?))));
     rows.extend(report.scale.map(|(scale, _)| ("standard deviation", "scale", scale)));
     rows.extend(residual_rows(&report.residuals));
     rows
@@ -190,8 +234,26 @@ fn details(mut details: stats::Report, report: &Report) -> stats::Report {
             })
         };
         let rounds: Value = search.rounds.iter().map(round).collect();
-        details = details.entry("is_replaced", search.is_replaced).entry("rounds", rounds);
+        details = details.entry("rounds", rounds);
     }
+    if let Some(levels) = &report.levels {
+        let level = |level: &Level| {
+            json!({
+                "step": level.step, "knots": level.knots, "lambda": level.lambda, "score": level.score,
+                "noise": level.noise, "residual_rms": level.residual, "correlation": level.correlation,
+            })
+        };
+        let all: Value = levels.levels.iter().map(level).collect();
+        let stop = match levels.stop {
+            Stop::Noise => "noise",
+            Stop::Rounding => "rounding",
+            Stop::Density => "density",
+            Stop::Given => "given",
+        };
+        details = details.entry("distance", levels.distance).entry("levels", all).entry("stop", stop);
+    }
+    let stretch = report.stretch.map(|Stretch { ratio, angle, .. }| json!({"ratio": ratio, "angle": angle}));
+    details = details.entry("anisotropy", json!(stretch));
     let extent = extent_json(report.residuals.extent.as_ref());
     details = details.entry("range", json!(report.residuals.range)).entry("extent", extent);
     if let Some(choice) = report.chosen.as_ref().and_then(|chosen| chosen.choice.as_ref()) {
