@@ -2,6 +2,7 @@
 
 mod command;
 mod corruption;
+mod exchange;
 mod historical;
 mod independent;
 mod peers;

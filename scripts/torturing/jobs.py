@@ -158,4 +158,6 @@ JOBS = [
     Job("points", "spconvert in/tile.laz --attributes all --to text", "-o out/points.txt", ""),
     Job("vtu", "spconvert in/cloud.spm", "-o out/cloud.vtu", "--to vtu"),
     Job("landxml", "spconvert in/ground.spm", "-o out/ground.xml", "--to landxml"),
+    Job("glb", "spconvert in/ground.spm", "-o out/ground.glb", "--to glb"),
+    Job("ugrid", "spconvert in/ground.spm", "-o out/ground.nc", "--to ugrid"),
 ]

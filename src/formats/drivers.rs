@@ -6,7 +6,8 @@
 use std::io::{BufReader, Read, Write};
 use std::path::Path;
 
-use crate::cad::{dxf::DxfSink, landxml::LandXmlSink, medit::MeditSink};
+use crate::cad::{dxf::DxfSink, glb::GlbSink, landxml::LandXmlSink, medit::MeditSink};
+use crate::cad::{stl::StlSink, ugrid::UgridSink};
 use crate::detect::{Test, binary, structures};
 use crate::historical::{read_sma::open_sma, read_smb::open_smb, sp_events::SpEvents};
 use crate::historical::{read_spa, read_spa::SpaReader, read_spb, read_spb::SpbReader};
@@ -18,7 +19,7 @@ use crate::molecules::{atoms, binary_cif, gro, mmcif, pdb, xyz};
 use crate::npy;
 use crate::obj::{read as obj, write::ObjSink};
 use crate::ply::{read as ply, write::PlySink};
-use crate::sink::{EventSink, HullSink, SinkOptions, SpmSink, surface_header};
+use crate::sink::{EventSink, SinkOptions, SpmSink};
 use crate::source::checked::Checked;
 use crate::source::events::EventSource;
 use crate::source::gzip::Use;
@@ -31,8 +32,8 @@ use crate::twin::{read::TwinSource, write::TwinSink};
 use crate::volumes::scan::Supply;
 use crate::volumes::{self, nifti, nrrd};
 use crate::vtk::{self, vtu::VtuSink};
-use spmesh_base::error::{Error, Result};
-use spmesh_stream::{Header, Kind, StreamReader};
+use spmesh_base::error::Result;
+use spmesh_stream::{Header, StreamReader};
 
 /// An input of any kind.
 pub type AnyInput = Box<dyn Read + Send>;
@@ -67,9 +68,9 @@ pub(crate) struct Row {
     /// What the user can do if the tool does not read the format.
     pub(crate) hint: &'static str,
     /// Value of `--from` and `--to`; empty if it has none.
-    value: &'static str,
+    pub(crate) value: &'static str,
     /// Ending of names of files; empty if several or none stand for it.
-    ending: &'static str,
+    pub(crate) ending: &'static str,
     /// Whether a terminal cannot show what is written.
     is_binary: bool,
     /// Whether its parts are read in any order, so that a compressed file is unpacked first.
@@ -78,8 +79,8 @@ pub(crate) struct Row {
     pub(crate) atoms: Option<ReadAtoms>,
     pub(crate) frames: Option<OpenFrames>,
     pub(crate) sites: Option<OpenSites>,
-    events: Option<OpenEvents>,
-    sink: Option<OpenSink>,
+    pub(crate) events: Option<OpenEvents>,
+    pub(crate) sink: Option<OpenSink>,
 }
 
 macro_rules! formats {
@@ -270,11 +271,11 @@ formats! {
     }
     Dxf("a DXF file", NO_LIST, Test::Never, "") {
         value: "dxf", ending: "dxf",
-        sink: Some(|to, header, _| Ok(Box::new(DxfSink::new(to, header)?)))
+        sink: Some(|to, header, how| Ok(Box::new(DxfSink::new(to, header, how)?)))
     }
     LandXml("a LandXML file", NO_LIST, Test::Never, "") {
         value: "landxml", ending: "xml",
-        sink: Some(|to, header, how| Ok(Box::new(LandXmlSink::new(to, header, how.temp_dir.as_deref())?)))
+        sink: Some(|to, header, how| Ok(Box::new(LandXmlSink::new(to, header, how)?)))
     }
     GeoJson("a GeoJSON file", NO_LIST, Test::Never, "") {
         value: "geojson", ending: "geojson",
@@ -305,8 +306,14 @@ formats! {
         Test::Magic(&[b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"]),
         "export it as LAS, PLY or lines of x y z first, with the program that wrote it") {}
     Ptx("a PTX scan", NO_LIST, Test::Look(binary::is_ptx), BY_PDAL) {}
-    Stl("an STL surface", NO_LIST, Test::Look(binary::is_stl), BY_MESHIO) {}
-    Gltf("a glTF file", NO_LIST, Test::Magic(&[b"glTF"]), BY_MESHIO) {}
+    Stl("an STL surface", NO_LIST, Test::Look(binary::is_stl), BY_MESHIO) {
+        value: "stl", ending: "stl", is_binary: true,
+        sink: Some(|to, header, how| Ok(Box::new(StlSink::new(to, header, how.temp_dir.as_deref())?)))
+    }
+    Gltf("a glTF file", NO_LIST, Test::Magic(&[b"glTF"]), BY_MESHIO) {
+        value: "glb", ending: "glb", is_binary: true,
+        sink: Some(|to, header, how| Ok(Box::new(GlbSink::new(to, header, how.temp_dir.as_deref())?)))
+    }
     Gmsh("a Gmsh mesh", NO_LIST, Test::Magic(&[b"$MeshFormat"]), BY_MESHIO) {}
     Fbx("an FBX file", NO_LIST, Test::Magic(&[b"Kaydara FBX Binary"]),
         "export it as PLY or OBJ first, for example with Blender") {}
@@ -325,7 +332,10 @@ formats! {
     Pdf("a PDF document", NO_LIST, Test::Magic(&[b"%PDF"]), "") {}
     Hdf5("HDF5, netCDF-4 or MINC data", NO_LIST, Test::Magic(&[b"\x89HDF"]),
         "write it as VTU, NRRD or raw numbers first, for example with ParaView or h5dump") {}
-    Netcdf("netCDF data", NO_LIST, Test::Magic(&[b"CDF\x01", b"CDF\x02", b"CDF\x05"]), VALUES) {}
+    Netcdf("netCDF data", NO_LIST, Test::Magic(&[b"CDF\x01", b"CDF\x02", b"CDF\x05"]), VALUES) {
+        value: "ugrid", ending: "nc", is_binary: true,
+        sink: Some(|to, header, how| Ok(Box::new(UgridSink::new(to, header, how.temp_dir.as_deref())?)))
+    }
     Inrimage("an INRIMAGE, which holds voxels", NO_LIST, Test::Magic(&[b"#INRIMAGE"]),
         "list the wanted ones as lines of x y z") {}
     Tiff("a TIFF image", NO_LIST, Test::Magic(&[b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"]),
@@ -334,12 +344,6 @@ formats! {
         "it may be the error page of a failed download") {}
     Binary("of no known format", NO_LIST, Test::Look(|head| head.contains(&0)), "") {}
 }
-
-/// The formats of `spconvert`, in the order of its help.
-const CONVERTED: [Format; 14] = {
-    use Format::*;
-    [Stream, Twin, Obj, Ply, Spa, Spb, Sma, Smb, VtkXml, Medit, Dxf, LandXml, GeoJson, Text]
-};
 
 /// The formats whose rows fulfil a condition, in the order of the table.
 pub(crate) fn formats_with(is_wanted: impl Fn(&Row) -> bool) -> Vec<Format> {
@@ -366,34 +370,6 @@ impl Format {
         self.row().value
     }
 
-    /// The formats that `spconvert` can be told to read; those that it only recognizes are not among them.
-    pub fn read() -> impl Iterator<Item = Format> {
-        CONVERTED.into_iter().filter(|format| format.is_read())
-    }
-
-    /// Whether `spconvert` can be told to read it.
-    pub fn is_read(self) -> bool {
-        // A name is that of something to write or, without a writer, that of something to read.
-        let Row { value, events, sink, .. } = self.row();
-        events.is_some() || !value.is_empty() && sink.is_none()
-    }
-
-    /// The formats that streams are converted to.
-    pub fn written() -> impl Iterator<Item = Format> {
-        CONVERTED.into_iter().filter(|format| format.row().sink.is_some())
-    }
-
-    /// The format with this name on the command line, if there is one.
-    pub fn from_value(value: &str) -> Option<Self> {
-        CONVERTED.into_iter().find(|format| format.value() == value)
-    }
-
-    /// The format that the extension of `path` names, if it names one that streams are converted to.
-    pub fn from_path(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?;
-        Format::written().find(|format| format.row().ending.eq_ignore_ascii_case(extension))
-    }
-
     /// Whether the format is binary, so that a terminal cannot show it.
     pub fn is_binary(self) -> bool {
         self.row().is_binary
@@ -402,33 +378,6 @@ impl Format {
     /// What opens an input as the events of a stream; `None` if its points are read as those of files.
     pub fn events(self) -> Option<OpenEvents> {
         self.row().events
-    }
-
-    /// Starts an output for the stream that `header` describes. Of tetrahedra, OBJ and PLY get the hull.
-    ///
-    /// # Errors
-    /// Usage, if the format is not written, does not hold the kind of stream, or has no use for the options;
-    /// or if writing fails.
-    pub fn open_sink<'a>(
-        self,
-        output: &'a mut dyn Write,
-        header: &Header,
-        options: &SinkOptions,
-    ) -> Result<Box<dyn EventSink + 'a>> {
-        let Row { value, listed, sink, .. } = self.row();
-        if options.local_origin && self != Format::Obj {
-            return Err(Error::usage("--local-origin is for OBJ: leave it out, or add --to obj"));
-        }
-        let Some(open) = sink else {
-            return Err(Error::usage(format!(
-                "{value} is a format that this program reads, but does not write"
-            )));
-        };
-        if header.kind == Kind::TetrahedralMesh && matches!(self, Format::Obj | Format::Ply) {
-            let surface = open(output, &surface_header(header), options)?;
-            return Ok(Box::new(HullSink::new(surface, listed, header)));
-        }
-        open(output, header, options)
     }
 }
 

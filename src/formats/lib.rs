@@ -1,6 +1,7 @@
 //! Files of other programs: points, meshes, molecules, volumes and rasters, read and written.
 
-mod cad;
+pub mod cad;
+mod conversion;
 pub mod crs;
 pub mod detect;
 pub mod drivers;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::geotiff::GeoTiffFlags;
+use super::resources::TempDirFlag;
 use super::{Names, parse_numbers};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
@@ -84,9 +85,8 @@ pub struct RasterFlags {
     #[arg(long)]
     cog: bool,
 
-    /// Folder for temporary files [default: the system's]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    temp_dir: TempDirFlag,
 
     // A struct with another one in it has no group: its flags are named one by one where they conflict.
     #[command(flatten)]
@@ -113,7 +113,7 @@ impl RasterFlags {
             storage,
             has_statistics: self.geotiff.has_statistics(),
             date: self.date(),
-            temp_dir: self.temp_dir.clone(),
+            temp_dir: self.temp_dir.to_owned(),
         })
     }
 
@@ -124,7 +124,7 @@ impl RasterFlags {
 
     /// The folder of temporary files, if it is not the system's.
     pub fn temp_dir(&self) -> Option<&Path> {
-        self.temp_dir.as_deref()
+        self.temp_dir.get()
     }
 
     /// Checks the flags for a raster of bytes, in which 0 stands for no data.

@@ -13,17 +13,16 @@ pub mod messages;
 mod named;
 pub mod outline;
 pub mod progress;
+pub mod resources;
 pub mod stats;
 pub mod text_flags;
 
 use std::ffi::{OsStr, OsString};
 use std::io::{BufRead, BufReader, IsTerminal, Read};
-use std::num::NonZeroUsize;
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::builder::TypedValueParser;
 use clap::{Args, Parser};
 
 use meshes::Source;
@@ -34,7 +33,6 @@ pub use spmesh_base::allocator::Allocator;
 use spmesh_base::error::{Error, ErrorKind};
 use spmesh_base::inputs;
 use spmesh_base::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
-use spmesh_base::parallel::{THREADS_DEFAULT_MAX, available_threads};
 use spmesh_base::places::check_pipes;
 use spmesh_base::system;
 pub use spmesh_base::system::peak_memory;
@@ -146,19 +144,6 @@ pub fn parse_box(text: &str) -> Result<Bounds, String> {
     let [x, y, max_x, max_y] =
         parse_numbers(text).map_err(|message| format!("{message}, or 6 with those of z"))?;
     Ok(Bounds::over([x, y], [max_x, max_y]))
-}
-
-/// Parses a number of threads.
-pub fn parse_threads() -> impl TypedValueParser<Value = NonZeroUsize> {
-    clap::value_parser!(u16)
-        .range(1..=1024)
-        .map(|count| NonZeroUsize::MIN.saturating_add(usize::from(count) - 1))
-}
-
-/// The requested number of threads; by default one per core, at most [`THREADS_DEFAULT_MAX`].
-pub fn threads(asked: Option<NonZeroUsize>) -> NonZeroUsize {
-    let most = NonZeroUsize::new(THREADS_DEFAULT_MAX).unwrap_or(NonZeroUsize::MIN);
-    asked.unwrap_or_else(|| available_threads().min(most))
 }
 
 /// Opens an input that is read in order: stdin for `-`, a file otherwise; with the name that messages use.

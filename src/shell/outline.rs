@@ -51,16 +51,23 @@ impl OutlineFlags {
         self.mask.as_deref()
     }
 
-    /// The polygons of the mask, for a surface in the system `crs`. `notice` gets messages for the user.
+    /// The polygons of the mask, for a surface in the system `crs`. They may take so many bytes of memory.
+    /// `notice` gets messages for the user.
     ///
     /// # Errors
     /// As [`read_polygons`]; usage, if the file is a terminal.
-    pub fn mask(&self, crs: &Crs, mut notice: impl FnMut(&str)) -> Result<Option<Arc<Mask>>> {
+    pub fn mask(
+        &self,
+        crs: &Crs,
+        memory: Option<u64>,
+        mut notice: impl FnMut(&str),
+    ) -> Result<Option<Arc<Mask>>> {
         let Some(path) = &self.mask else { return Ok(None) };
         if path.as_os_str() == "-" {
             refuse_terminal()?;
         }
-        let (polygons, notices) = read_polygons(slice::from_ref(path), &Coordinates::F64, crs)?;
+        let (path, memory) = (slice::from_ref(path), memory.unwrap_or(u64::MAX));
+        let (polygons, notices) = read_polygons(path, &Coordinates::F64, crs, memory)?;
         notices.iter().for_each(|text| notice(text));
         Ok(Some(Arc::new(Mask { polygons })))
     }

@@ -54,7 +54,7 @@ fn wrong_requests_are_told_apart() {
     let points = samples::points(2, true, false);
     let cases: [(&[&str], &[u8], i32, &str); 7] = [
         (&[], &points, 2, "--to"),
-        (&["--to", "stl"], &points, 2, "possible values"),
+        (&["--to", "step"], &points, 2, "possible values"),
         (&["--to", "spm", "--from", "vtu"], &points, 2, "possible values"),
         (&["--to", "sma"], &points, 2, "cannot be written as SMA, which holds triangle mesh"),
         (&["--to", "spm", "--from", "ply"], &points, 3, "expected \"ply\""),

@@ -7,7 +7,7 @@ use spmesh_stream::Coordinates;
 use super::{converted, samples, text_of};
 
 /// A twin of a square whose diagonal is on a line, in centimetres, in UTM zone 32.
-const SQUARE: &str = "\
+pub const SQUARE: &str = "\
 #spmesh version 2
 #spmesh kind triangle mesh
 #spmesh coordinates i32

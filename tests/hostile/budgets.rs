@@ -30,9 +30,9 @@ const fn refused(name: &'static str, line: &'static str, most: f64, part: &'stat
 /// What `--memory` of some programs stands beside: the program itself, and what is live of a mesh.
 const BESIDE: f64 = START_MAX + 8.0;
 
-/// A limit of the process is one of all; polygons are refused when they have been read, `spheight` has tables
-/// of its own size for the ground, and `dd4` takes about as much as it may.
-const RUNS: [Run; 24] = [
+/// A limit of the process is one of all; `spheight` has tables of its own size for the ground, and `dd4` takes
+/// about as much as it may.
+const RUNS: [Run; 26] = [
     kept("tags of a plane", "spdelaunay2d --memory 32M --threads 1 tags.spm", 32.0),
     kept("tags, on threads", "spdelaunay2d --memory 32M --threads 2 tags.spm", 32.0),
     kept("tags of space", "spdelaunay3d --memory 32M --threads 1 tags3.spm", 32.0),
@@ -46,7 +46,24 @@ const RUNS: [Run; 24] = [
     kept("a curve with room", "spdelaunay3d --memory 64M --threads 2 curve.spm", 64.0),
     kept("points that wait", "spdelaunay2d --memory 24M --threads 1 order.spm", 24.0),
     kept("deep trees", "spdelaunay2d --memory 32M --threads 1 deep.spm", 32.0),
-    refused("polygons", "spfinalize --clip squares.wkt --memory 40M --threads 1 plane.txt", 48.0, "polygons"),
+    refused(
+        "polygons",
+        "spfinalize --clip squares.wkt --memory 40M --threads 1 plane.txt",
+        40.0,
+        "of lines so far",
+    ),
+    refused(
+        "a mask",
+        "spdem --mask squares.wkt --memory 1M mesh.spm -o o.tif",
+        1.0 + BESIDE,
+        "of lines so far",
+    ),
+    refused(
+        "parcels",
+        "spdiff --level 3 --by squares.wkt --memory 1M mesh.spm",
+        1.0 + BESIDE,
+        "of lines so far",
+    ),
     refused("leaves", "spfinalize --level 12 --memory 40M --threads 1 plane.txt", 40.0, "level 12"),
     refused("long edges", "spconstrain --kill 0.001 --memory 1M mesh.spm", 1.0 + BESIDE, "--kill"),
     refused("an outline", "spdem --concave 0.001 --memory 1M mesh.spm -o o.tif", 1.0 + BESIDE, "--concave"),

@@ -154,7 +154,7 @@ fn breaklines_and_masks() {
     let mask = |len: usize| {
         let text = padded("POLYGON((0 0,4 0,4 4,0 0))", len - 1);
         let path = folder.file("mask.wkt", text);
-        read_polygons(&[path], &Coordinates::F64, &Crs::Unknown).map_err(|error| error.to_string())
+        read_polygons(&[path], &Coordinates::F64, &Crs::Unknown, u64::MAX).map_err(|error| error.to_string())
     };
     let most = WKT_LEN_MAX as usize;
     assert!(mask(most).is_ok());

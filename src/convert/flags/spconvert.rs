@@ -24,6 +24,8 @@ Formats:
   spa, spb   Isenburg's streaming points  sma, smb   Isenburg's streaming meshes
   vtu   VTK, for ParaView (written only)  medit  Medit's .mesh (written only)
   dxf   AutoCAD R12, text (written only)  landxml  LandXML 1.2 (written only)
+  glb   glTF 2.0, binary (written only)   stl    binary STL (written only)
+  ugrid   UGRID in netCDF (.nc), for QGIS (written only)
   geojson    the edges of a constrained mesh that are on lines (written only)
   points     LAS, LAZ, COPC, lines of coordinates, VTK (read only)
 
@@ -35,12 +37,14 @@ Examples:
   spconvert protein.spm -o protein.vtu
   spconvert mesh.spm -o tin.xml                   a LandXML surface with breaklines
   spconvert --local-origin mesh.spm -o mesh.obj   for viewers with 32-bit numbers
+  spconvert terrain.spm -o terrain.glb            for viewers of glTF, as Blender
   spconvert --compress mesh.spm -o small.spm      without the flag, the stream is expanded
   spconvert mesh.spm --to text | spconvert --to spm | cmp - mesh.spm
 
 The input may be compressed with gzip. Its format is recognized by its content, or its name; that of the \
 output by its name. Only spm and text hold a CRS and integer coordinates; the others get world coordinates, \
-SMB rounded to 32 bits. A notice says what is lost. Of tetrahedra, OBJ and PLY get the hull; VTU has the \
+SMB rounded to 32 bits, glTF and STL as 32-bit differences from an origin that they state. PLY and UGRID have \
+the CRS as QGIS reads it. A notice says what is lost. Of tetrahedra, OBJ, PLY, STL and glTF get the hull; VTU has the \
 labels of vertices as point data, Medit as references. Of a constrained mesh, DXF has the edges on lines as \
 lines of a layer of their own, and LandXML has them as breaklines. Coordinates on a grid become the shortest decimals that \
 stand for them: 28016 steps of 0.001 are 28.016. A text twin with a number off its grid is refused. Meshes of OBJ and PLY do not say when vertices are \
@@ -84,8 +88,8 @@ pub struct Flags {
     #[arg(long)]
     ascii: bool,
 
-    /// Write coordinates of OBJ as differences from an origin in the middle of the mesh, which a comment states, for
-    /// programs that compute in 32 bits
+    /// Write coordinates of OBJ, DXF and LandXML as differences from an origin in the middle of the mesh, which the
+    /// output states, for programs that compute in 32 bits
     #[arg(long)]
     local_origin: bool,
 
@@ -96,8 +100,8 @@ pub struct Flags {
     #[arg(long, value_parser = clap::value_parser!(u8).range(2..=3))]
     dims: Option<u8>,
 
-    /// Folder for temporary files: writing PLY, VTU, Medit and LandXML needs them, and reading points through
-    /// a pipe
+    /// Folder for temporary files: writing PLY, VTU, Medit, LandXML, glTF, STL and UGRID needs them, and
+    /// reading points through a pipe
     #[arg(long, value_name = "DIR")]
     temp_dir: Option<PathBuf>,
 

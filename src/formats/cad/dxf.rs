@@ -7,7 +7,7 @@ use std::io::Write;
 
 use crate::sink::constrained::Surveyed;
 use crate::sink::world::world_bounds;
-use crate::sink::{EventSink, expect_kind, lost_attributes, write_error};
+use crate::sink::{EventSink, SinkOptions, expect_kind, lost_attributes, write_error};
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::model::decimal::Decimal;
@@ -18,7 +18,7 @@ const FACES: &str = "TIN";
 const EDGES: &str = "BREAKLINES";
 
 /// Writes a triangle mesh as DXF: a `3DFACE` on the layer `TIN` for each triangle, and a `LINE` on the layer
-/// `BREAKLINES` for each edge on a line.
+/// `BREAKLINES` for each edge on a line. A comment states the local origin, if there is one.
 pub struct DxfSink<W> {
     output: W,
     mesh: Surveyed,
@@ -28,16 +28,20 @@ impl<W: Write> DxfSink<W> {
     /// Writes the sections before the triangles.
     ///
     /// # Errors
-    /// Usage, if DXF does not hold the kind of stream; or if writing fails.
-    pub fn new(output: W, header: &Header) -> Result<Self> {
+    /// Usage, if DXF does not hold the kind of stream, or a local origin lacks its box; or if writing fails.
+    pub fn new(output: W, header: &Header, options: &SinkOptions) -> Result<Self> {
         expect_kind(header, "DXF", &[Kind::TriangleMesh])?;
-        let mut sink = DxfSink { output, mesh: Surveyed::new(header) };
+        let mut sink = DxfSink { output, mesh: Surveyed::new(header, options)? };
+        if let Some([x, y, z]) = sink.mesh.places().origin() {
+            let [x, y, z] = [x, y, z].map(Decimal);
+            sink.text(&format!("999\norigin {x} {y} {z}\n"))?;
+        }
         sink.text("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n")?;
         if let Some(bounds) = &header.bounds {
             let bounds = world_bounds(header, bounds);
             for (name, corner) in [("$EXTMIN", bounds.min), ("$EXTMAX", bounds.max)] {
                 sink.text(&format!("9\n{name}\n"))?;
-                sink.point(0, corner)?;
+                sink.point(0, sink.mesh.places().of_world(corner))?;
             }
         }
         sink.text("0\nENDSEC\n0\nSECTION\n2\nTABLES\n0\nTABLE\n2\nLAYER\n70\n2\n")?;

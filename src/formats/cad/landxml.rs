@@ -3,12 +3,11 @@
 //! Source: the schema LandXML-1.2 (landxml.org). A point is northing, easting and elevation, in this order.
 
 use std::io::Write;
-use std::path::Path;
 
 use crate::crs::{System, Unit};
 use crate::sink::constrained::Surveyed;
 use crate::sink::spool::Spool;
-use crate::sink::{EventSink, expect_kind, lost_attributes, write_error};
+use crate::sink::{EventSink, SinkOptions, expect_kind, lost_attributes, write_error};
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::model::decimal::Decimal;
@@ -45,25 +44,32 @@ impl<W: Write> LandXmlSink<W> {
     ///
     /// # Errors
     /// Usage, if LandXML does not hold the kind of stream; or if writing fails.
-    pub fn new(mut output: W, header: &Header, temp_dir: Option<&Path>) -> Result<Self> {
+    pub fn new(mut output: W, header: &Header, options: &SinkOptions) -> Result<Self> {
         expect_kind(header, "LandXML", &[Kind::TriangleMesh])?;
         let system = System::of(&header.crs);
         let unit = system.horizontal.as_ref().map(|horizontal| &horizontal.unit);
         let code = system.horizontal.as_ref().and_then(|horizontal| horizontal.code);
-        let system = code.map_or(String::new(), |code| format!("<CoordinateSystem epsgCode=\"{code}\"/>\n"));
+        let mesh = Surveyed::new(header, options)?;
+        let (mut system, mut description) = (String::new(), String::new());
+        match (mesh.places().origin(), code) {
+            // Local coordinates are in no system.
+            (Some(origin), _) => description = format!(" desc=\"origin {}\"", northing_first(origin)),
+            (None, Some(code)) => system = format!("<CoordinateSystem epsgCode=\"{code}\"/>\n"),
+            (None, None) => {}
+        }
         write!(
             output,
             "{START}{}{system}<Application name=\"spmesh\" version=\"{}\"/>\n\
-             <Surfaces>\n<Surface name=\"surface\">\n<Definition surfType=\"TIN\">\n<Pnts>\n",
+             <Surfaces>\n<Surface name=\"surface\"{description}>\n<Definition surfType=\"TIN\">\n<Pnts>\n",
             units(unit),
             env!("CARGO_PKG_VERSION")
         )
         .map_err(write_error)?;
         Ok(LandXmlSink {
             output,
-            mesh: Surveyed::new(header),
-            faces: Spool::new(temp_dir)?,
-            breaklines: Spool::new(temp_dir)?,
+            mesh,
+            faces: Spool::new(options.temp_dir.as_deref())?,
+            breaklines: Spool::new(options.temp_dir.as_deref())?,
             vertices: 0,
         })
     }
@@ -114,6 +120,7 @@ impl<W: Write> EventSink for LandXmlSink<W> {
         let is_coded = system.horizontal.is_some_and(|horizontal| horizontal.code.is_some());
         let crs = match &header.crs {
             Crs::Unknown => None,
+            _ if self.mesh.places().origin().is_some() => Some("local coordinates are in no CRS: dropped"),
             _ if is_coded => {
                 Some("LandXML gets the EPSG code of x and y only: the rest of the CRS is dropped")
             }

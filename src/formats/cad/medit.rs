@@ -7,7 +7,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use crate::sink::spool::MeshSpool;
+use crate::sink::spool::{MeshSpool, place_of};
 use crate::sink::{EventSink, expect_kind, lost_attributes, lost_of_header, write_error};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::{Event, Header, Kind, Totals};
@@ -57,7 +57,7 @@ impl<W: Write> MeditSink<W> {
         let (mut vertices, mut labels) =
             (self.mesh.vertices.records::<24>()?, self.mesh.labels.records::<8>()?);
         for _ in 0..count {
-            let [x, y, z] = numbers(&vertices.next()?).map(f64::from_bits);
+            let [x, y, z] = place_of(&vertices.next()?);
             let reference = if has_references { u64::from_le_bytes(labels.next()?) } else { 0 };
             writeln!(self.output, "{x} {y} {z} {reference}").map_err(write_error)?;
         }
@@ -89,11 +89,6 @@ impl<W: Write> MeditSink<W> {
     fn text(&mut self, text: std::fmt::Arguments) -> Result<()> {
         self.output.write_fmt(text).map_err(write_error)
     }
-}
-
-/// The three numbers of a record.
-fn numbers(record: &[u8; 24]) -> [u64; 3] {
-    std::array::from_fn(|i| u64::from_le_bytes(record[8 * i..][..8].try_into().expect("eight bytes")))
 }
 
 impl<W: Write> EventSink for MeditSink<W> {

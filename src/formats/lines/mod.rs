@@ -27,6 +27,7 @@ use crate::source::gzip::Plain;
 use crate::source::origin::{name_of, open_stdin};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::inputs;
+use spmesh_base::limits::LINE_VERTEX_BYTES;
 use spmesh_base::places::file_and_layer;
 use spmesh_stream::model::points::Point2;
 
@@ -96,6 +97,12 @@ impl Default for Reading {
 }
 
 impl Reading {
+    /// Lines that take so many bytes at most.
+    pub fn within(bytes: u64) -> Reading {
+        let vertices_max = usize::try_from(bytes / LINE_VERTEX_BYTES).unwrap_or(usize::MAX);
+        Reading { vertices_max, ..Reading::default() }
+    }
+
     /// The properties of a feature that states none.
     fn properties(&self) -> Properties {
         let (elevation_name, label_name) = (self.elevation.clone(), self.label.clone());

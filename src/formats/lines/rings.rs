@@ -16,7 +16,7 @@ pub type Polygon = Vec<Vec<Point2>>;
 /// and `MULTIPOLYGON`. Third coordinates are ignored.
 ///
 /// Vertices are rounded to the grid of the points, as those of lines are, also beyond its range. Coordinates
-/// of f64 are not rounded.
+/// of f64 are not rounded. All of them may take so many bytes of memory, at [`spmesh_base::limits::LINE_VERTEX_BYTES`] a vertex.
 ///
 /// # Errors
 /// Those of [`super::read_breaklines`]; usage, if the system of a file differs from that of the points;
@@ -25,13 +25,16 @@ pub fn read_polygons(
     paths: &[PathBuf],
     coordinates: &Coordinates,
     crs: &Crs,
+    memory: u64,
 ) -> Result<(Vec<Polygon>, Vec<String>)> {
     let (mut polygons, mut notices) = (Vec::new(), Vec::new());
+    let mut reading = Reading::within(memory);
     for path in paths {
         let name = name_of(path);
-        let file = read(path, text_or_wkt, &Reading::default()).map_err(|error| error.of_input(&name))?;
+        let file = read(path, text_or_wkt, &reading).map_err(|error| error.of_input(&name))?;
         notices.extend(file.system.check(&name, crs)?);
         notices.extend(file.layers.clone());
+        reading.vertices_max -= file.lines.iter().map(|line| line.vertices.len()).sum::<usize>();
         for same in file.lines.chunk_by(|a, b| a.polygon == b.polygon) {
             let ring = |line: &Breakline| {
                 let ring = line.ring(coordinates);

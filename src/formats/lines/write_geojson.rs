@@ -4,7 +4,7 @@ use std::io::Write;
 
 use crate::crs::System;
 use crate::sink::constrained::Surveyed;
-use crate::sink::{EventSink, expect_kind, write_error};
+use crate::sink::{EventSink, SinkOptions, expect_kind, write_error};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::decimal::Decimal;
 use spmesh_stream::{Crs, Event, Header, Kind};
@@ -45,7 +45,7 @@ impl<W: Write> GeoJsonSink<W> {
             ));
         }
         output.write_all(collection_head(epsg_code(&header.crs)).as_bytes()).map_err(write_error)?;
-        Ok(GeoJsonSink { output, mesh: Surveyed::new(header), has_features: false })
+        Ok(GeoJsonSink { output, mesh: Surveyed::new(header, &SinkOptions::default())?, has_features: false })
     }
 }
 

@@ -4,12 +4,10 @@ use std::io::Write;
 use std::ops::Range;
 
 use crate::sink::rows::Rows;
-use crate::sink::world::{world_bounds, world_of, write_numbers};
+use crate::sink::world::{Places, write_numbers};
 use crate::sink::{EventSink, SinkOptions, expect_kind, lost_of_header, write_error};
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::Result;
 use spmesh_stream::model::attributes::{Attribute, Attributes, NumberType};
-use spmesh_stream::model::bounds::{Bounds, Point};
-use spmesh_stream::model::decimal::digits;
 use spmesh_stream::{Event, Header, Kind};
 
 /// Writes a triangle mesh or points as OBJ. Vertices are counted from 1; finalization is not written. An
@@ -17,10 +15,8 @@ use spmesh_stream::{Event, Header, Kind};
 /// read them.
 pub struct ObjSink<W> {
     output: W,
-    header: Header,
     colour: Option<Colour>,
-    /// What is subtracted from coordinates.
-    origin: Point,
+    places: Places,
 }
 
 /// The attribute that OBJ has room for.
@@ -66,36 +62,12 @@ impl<W: Write> ObjSink<W> {
         expect_kind(header, "OBJ", &[Kind::Points, Kind::TriangleMesh])?;
         output.write_all(b"# OBJ written by spmesh\n").map_err(write_error)?;
         let colour = Colour::of_points(&header.attributes);
-        let mut sink = ObjSink { output, header: header.clone(), colour, origin: [0.0; 3] };
-        if !options.local_origin {
-            return Ok(sink);
+        let places = Places::new(header, options)?;
+        if let Some(origin) = places.origin() {
+            write_numbers(&mut output, "# origin", &origin)?;
         }
-        let bounds = header.bounds.ok_or_else(|| {
-            Error::usage("--local-origin needs the bounds of the stream, and its header does not state them")
-        })?;
-        let Bounds { min, max } = world_bounds(header, &bounds);
-        // Whole numbers have short decimals, and keep differences short.
-        sink.origin = [0, 1, 2].map(|axis| (0.5 * min[axis] + 0.5 * max[axis]).round());
-        write_numbers(&mut sink.output, "# origin", &sink.origin)?;
-        Ok(sink)
+        Ok(ObjSink { output, colour, places })
     }
-
-    /// The coordinates that are written: world coordinates, or the difference from the origin.
-    fn written(&self, point: Point) -> Point {
-        let world = world_of(&self.header, point);
-        if self.origin == [0.0; 3] {
-            return world;
-        }
-        [0, 1, 2].map(|axis| shortest(world[axis], self.origin[axis]))
-    }
-}
-
-/// The difference of two numbers with no more digits than the first one has, so that 499000.1 minus 499000 is 0.1.
-fn shortest(number: f64, origin: f64) -> f64 {
-    let difference = number - origin;
-    let Some((_, power)) = digits(number) else { return difference };
-    let places = power.min(0).unsigned_abs() as usize;
-    format!("{difference:.places$}").parse().unwrap_or(difference)
 }
 
 impl<W: Write> EventSink for ObjSink<W> {
@@ -106,9 +78,9 @@ impl<W: Write> EventSink for ObjSink<W> {
             Event::End(_) => return self.output.flush().map_err(write_error),
             _ => return Ok(()),
         };
-        let mut rows = Rows::new(&self.header, rows);
+        let mut rows = Rows::new(self.places.header(), rows);
         for &point in points {
-            let [x, y, z] = self.written(point);
+            let [x, y, z] = self.places.of(point);
             let row = rows.next();
             match &self.colour {
                 None => write_numbers(&mut self.output, "v", &[x, y, z])?,
@@ -128,10 +100,16 @@ impl<W: Write> EventSink for ObjSink<W> {
     }
 
     fn notices(&self) -> Vec<String> {
-        let mut lost = lost_of_header(&self.header, "OBJ");
+        let mut lost = lost_of_header(self.places.header(), "OBJ");
         let is_lost = |attribute: &&Attribute| self.colour.is_none() || attribute.name != COLOUR;
-        let names: Vec<&str> =
-            self.header.attributes.iter().filter(is_lost).map(|attribute| attribute.name.as_str()).collect();
+        let names: Vec<&str> = self
+            .places
+            .header()
+            .attributes
+            .iter()
+            .filter(is_lost)
+            .map(|attribute| attribute.name.as_str())
+            .collect();
         if !names.is_empty() {
             lost.push(format!("OBJ holds no attributes but colours: {} dropped", names.join(", ")));
         }

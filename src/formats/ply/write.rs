@@ -2,11 +2,14 @@
 
 use std::io::Write;
 
+use crate::crs;
 use crate::ply::properties::{self as properties, Properties};
 use crate::sink::rows::Rows;
 use crate::sink::spool::Spool;
 use crate::sink::world::world_of;
-use crate::sink::{EventSink, SinkOptions, expect_kind, lost_of_attributes, lost_of_header, write_error};
+use crate::sink::{
+    EventSink, SinkOptions, expect_kind, lost_of_attributes, lost_where_crs_is_text, write_error,
+};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind, Patch, Totals};
@@ -80,11 +83,20 @@ impl<W: Write> PlySink<W> {
         Ok(())
     }
 
+    /// The comment that MDAL, the library for meshes of QGIS, takes the CRS from.
+    fn crs(&self) -> String {
+        crs::text(&self.header.crs).map_or(String::new(), |text| {
+            let words: Vec<&str> = text.split_ascii_whitespace().collect();
+            format!("comment crs {}\n", words.join(" "))
+        })
+    }
+
     fn end(&mut self, totals: &Totals) -> Result<()> {
         let format = if self.is_text { "ascii" } else { "binary_little_endian" };
         let is_mesh = self.header.kind == Kind::TriangleMesh;
         let vertices = if is_mesh { totals.vertices } else { totals.points };
-        let mut header = format!("ply\nformat {format} 1.0\ncomment spmesh\nelement vertex {vertices}\n");
+        let mut header =
+            format!("ply\nformat {format} 1.0\ncomment spmesh\n{}element vertex {vertices}\n", self.crs());
         header += "property double x\nproperty double y\nproperty double z\n";
         header += self.properties.lines();
         if is_mesh {
@@ -110,7 +122,7 @@ impl<W: Write> EventSink for PlySink<W> {
     }
 
     fn notices(&self) -> Vec<String> {
-        let mut lost = lost_of_header(&self.header, "PLY");
+        let mut lost = lost_where_crs_is_text(&self.header, "PLY");
         lost.extend(lost_of_attributes(&self.header, "PLY"));
         lost.extend(self.properties.rounded());
         lost

@@ -1,6 +1,7 @@
 //! What formats of surveyors take from a mesh: triangles with coordinates, and the edges on lines.
 
-use crate::sink::world::world_of;
+use crate::sink::SinkOptions;
+use crate::sink::world::Places;
 use spmesh_base::error::Result;
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{ConstraintEdges, Event, Header, LiveVertices, Patch};
@@ -9,7 +10,7 @@ use spmesh_stream::{ConstraintEdges, Event, Header, LiveVertices, Patch};
 ///
 /// Memory: the width of the stream, 4 bytes per segment, and the edges of the border on segments.
 pub(crate) struct Surveyed {
-    header: Header,
+    places: Places,
     live: LiveVertices<Point>,
     edges: ConstraintEdges,
     /// Number of the line of each segment.
@@ -27,7 +28,7 @@ pub(crate) struct LineEdge {
 /// A patch with world coordinates.
 pub(crate) struct SurveyedPatch<'a> {
     pub(crate) patch: &'a Patch,
-    /// World coordinates of the local vertices.
+    /// Coordinates of the local vertices.
     pub(crate) places: Vec<Point>,
     /// Edges on lines that no earlier triangle stated.
     pub(crate) edges: Vec<LineEdge>,
@@ -41,17 +42,22 @@ impl SurveyedPatch<'_> {
 }
 
 impl Surveyed {
-    pub(crate) fn new(header: &Header) -> Self {
-        Surveyed {
-            header: header.clone(),
+    pub(crate) fn new(header: &Header, options: &SinkOptions) -> Result<Self> {
+        Ok(Surveyed {
+            places: Places::new(header, options)?,
             live: LiveVertices::new(),
             edges: ConstraintEdges::default(),
             lines: Vec::new(),
-        }
+        })
     }
 
     pub(crate) fn header(&self) -> &Header {
-        &self.header
+        self.places.header()
+    }
+
+    /// Where coordinates go.
+    pub(crate) fn places(&self) -> &Places {
+        &self.places
     }
 
     /// Takes an event; a patch comes back with its coordinates.
@@ -59,8 +65,7 @@ impl Surveyed {
         match event {
             Event::Segments(segments) => self.lines.extend(segments.iter().map(|segment| segment.line)),
             Event::Patch(patch) => {
-                let header = &self.header;
-                let local = self.live.enter(patch, |_, point| world_of(header, point))?;
+                let local = self.live.enter(patch, |_, point| self.places.of(point))?;
                 let places = local.iter().map(|&(_, place)| place).collect();
                 let edges = self.edges.enter(patch).into_iter();
                 let edges =

@@ -3,6 +3,7 @@
 
 pub(crate) mod constrained;
 pub(crate) mod elements;
+pub(crate) mod floats;
 pub(crate) mod hull;
 pub(crate) mod mesh;
 pub(crate) mod rows;
@@ -23,6 +24,7 @@ pub use spm::SpmSink;
 
 use std::path::PathBuf;
 
+use crate::crs;
 use crate::historical::write_cells::HistoricalCells;
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::{Coordinates, Crs, Event, Header, Kind};
@@ -32,7 +34,7 @@ use spmesh_stream::{Coordinates, Crs, Event, Header, Kind};
 pub struct SinkOptions {
     /// Write PLY as text.
     pub ascii: bool,
-    /// Write coordinates of OBJ as differences from an origin in the middle.
+    /// Write coordinates of OBJ, DXF and LandXML as differences from an origin in the middle.
     pub local_origin: bool,
     /// Compress the blocks of a stream.
     pub compress: bool,
@@ -60,8 +62,12 @@ pub(crate) fn expect_kind(header: &Header, format: &str, kinds: &[Kind]) -> Resu
         return Ok(());
     }
     let held: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
+    let remedy = match header.kind {
+        Kind::TetrahedralMesh => ": write it as VTU or Medit, or its hull as OBJ, PLY, STL or glTF",
+        _ => "",
+    };
     Err(Error::usage(format!(
-        "a stream of kind {} cannot be written as {format}, which holds {}",
+        "a stream of kind {} cannot be written as {format}, which holds {}{remedy}",
         header.kind.name(),
         held.join(" or ")
     )))
@@ -70,6 +76,18 @@ pub(crate) fn expect_kind(header: &Header, format: &str, kinds: &[Kind]) -> Resu
 /// Notices about header fields that the format cannot hold.
 pub(crate) fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
     let crs = (header.crs != Crs::Unknown).then(|| format!("{format} holds no CRS: dropped"));
+    crs.into_iter().chain(lost_beside_crs(header, format)).collect()
+}
+
+/// The same for a format that gets the CRS as text.
+pub(crate) fn lost_where_crs_is_text(header: &Header, format: &str) -> Vec<String> {
+    match crs::text(&header.crs) {
+        Some(_) => lost_beside_crs(header, format),
+        None => lost_of_header(header, format),
+    }
+}
+
+fn lost_beside_crs(header: &Header, format: &str) -> Vec<String> {
     let is_grid = header.coordinates != Coordinates::F64;
     let grid = is_grid.then(|| {
         format!(
@@ -78,7 +96,7 @@ pub(crate) fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
     });
     let segments =
         header.constrained.map(|_| format!("{format} holds no segments: the mesh is written without them"));
-    crs.into_iter().chain(grid).chain(segments).collect()
+    grid.into_iter().chain(segments).collect()
 }
 
 /// Notices about scales and unknown numbers of attributes, in a format that holds the stored numbers.

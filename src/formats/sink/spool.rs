@@ -7,6 +7,7 @@ use std::path::Path;
 use crate::sink::world::world_of;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::temporary::TemporaryFile;
+use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::{Event, Header};
 
 const BUFFER_LEN: usize = 1 << 16;
@@ -77,6 +78,11 @@ fn spool_error(cause: std::io::Error) -> Error {
     Error::io("writing a temporary file", cause)
 }
 
+/// The coordinates of a vertex in its record.
+pub(crate) fn place_of(record: &[u8; 24]) -> Point {
+    [0, 8, 16].map(|at| f64::from_le_bytes(record[at..at + 8].try_into().expect("eight bytes")))
+}
+
 /// Vertices, simplices and labels of a stream, for formats that state their counts first and hold all
 /// vertices before all simplices. Points are vertices without simplices.
 ///
@@ -89,6 +95,8 @@ pub(crate) struct MeshSpool {
     pub(crate) corners: Spool,
     /// Labels, a u64 each, little-endian.
     pub(crate) labels: Spool,
+    /// The box of the vertices; `None` without vertices.
+    pub(crate) bounds: Option<Bounds>,
     /// The numbers of each attribute, as they are stored.
     pub(crate) columns: Vec<Spool>,
     /// Number of labels, and the greatest one.
@@ -104,6 +112,7 @@ impl MeshSpool {
             vertices: Spool::new(temp_dir)?,
             corners: Spool::new(temp_dir)?,
             labels: Spool::new(temp_dir)?,
+            bounds: None,
             columns: Vec::new(),
             label_count: 0,
             label_max: 0,
@@ -131,6 +140,7 @@ impl MeshSpool {
         };
         for &point in points {
             let coordinates = world_of(&self.header, point);
+            self.bounds.get_or_insert(Bounds::of_point(coordinates)).extend(coordinates);
             coordinates.iter().try_for_each(|x| self.vertices.bytes(&x.to_le_bytes()))?;
         }
         for (column, (_, place)) in self.columns.iter_mut().zip(self.header.attributes.places()) {

@@ -35,9 +35,8 @@ use spmesh_formats::sink::TableFormat;
 use spmesh_shell::batch::{BatchFlags, BatchMessages, SUMMARY_ENDINGS};
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
-use spmesh_shell::{
-    Common, Names, StatsFlag, advise_on_memory, named, notice, parse_threads, refuse_terminal, value_name,
-};
+use spmesh_shell::resources::parse_threads;
+use spmesh_shell::{Common, Names, StatsFlag, advise_on_memory, named, notice, refuse_terminal, value_name};
 
 const TOOL: &str = "tess3";
 

@@ -1,6 +1,6 @@
 //! The division of the process's memory.
 
-use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::error::{Error, ErrorKind, Result, counted};
 
 /// Memory beside the budget: program, one batch of points, buffers of input and output. Measured on LAZ
 /// input: 26 MiB, including two threads.
@@ -36,8 +36,9 @@ impl Budget {
             Error::new(
                 ErrorKind::Memory,
                 format!(
-                    "a memory budget of {} MiB cannot be kept, the least with {threads} threads is {} MiB",
+                    "a memory budget of {} MiB cannot be kept, the least with {} is {} MiB",
                     total >> 20,
+                    counted(threads as u64, "thread", "threads"),
                     Budget::process_min(threads).div_ceil(1 << 20)
                 ),
             )

@@ -223,7 +223,8 @@ impl Recipe {
 
     /// Polygons, lines and water; what is to be said about them is said.
     fn read_beside(&self, target: &Target, observer: &mut dyn Observer) -> Result<(Areas, Lines)> {
-        let (areas, notices) = Areas::read(&self.clip, &self.drop_inside, target)?;
+        let (areas, notices) =
+            Areas::read([&self.clip, &self.drop_inside], target, self.options.budget.bytes())?;
         let lines = self.read_lines(target)?;
         notices.iter().chain(&lines.changes.notices).for_each(|message| observer.notice(message));
         Ok((areas, lines))

@@ -37,14 +37,18 @@ impl Areas {
     }
 
     /// Reads the polygons of files for points of `target`, and messages for the user. Without files to keep
-    /// points inside of, all are kept.
+    /// points inside of, all are kept. Those of either kind may take so many bytes of memory.
     ///
     /// # Errors
     /// As [`read_polygons`].
-    pub(super) fn read(clip: &[PathBuf], drop: &[PathBuf], target: &Target) -> Result<(Areas, Vec<String>)> {
+    pub(super) fn read(
+        [clip, drop]: [&[PathBuf]; 2],
+        target: &Target,
+        memory: u64,
+    ) -> Result<(Areas, Vec<String>)> {
         let Target { coordinates, crs, .. } = target;
-        let (kept, mut notices) = read_polygons(clip, coordinates, crs)?;
-        let (dropped, more) = read_polygons(drop, coordinates, crs)?;
+        let (kept, mut notices) = read_polygons(clip, coordinates, crs, memory)?;
+        let (dropped, more) = read_polygons(drop, coordinates, crs, memory)?;
         notices.extend(more);
         Ok((Areas::new((!clip.is_empty()).then_some(&kept[..]), &dropped), notices))
     }

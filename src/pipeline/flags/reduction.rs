@@ -3,7 +3,6 @@
 mod report;
 
 use std::io::Read;
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -15,9 +14,8 @@ use spmesh_base::output::Output;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::progress::Progress;
-use spmesh_shell::{
-    Common, StatsFlag, advise_on_memory, notice, open_stream, parse_size, parse_threads, threads,
-};
+use spmesh_shell::resources::ThreadsFlag;
+use spmesh_shell::{Common, StatsFlag, advise_on_memory, notice, open_stream, parse_size};
 use spmesh_stream::StreamReader;
 use spmesh_stream::model::bounds::Region;
 
@@ -32,9 +30,8 @@ pub(super) struct Shared<const D: usize> {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// Threads that triangulate; memory grows with them [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    threads: ThreadsFlag,
 
     /// Memory limit of the process, for points, cells and simplices: fail (exit 5) rather than exceed it
     /// [default: none]
@@ -147,7 +144,7 @@ impl<const D: usize> Tool<D> {
             notice(self.name, &flags.common, "the points have weights; without --weights they are ignored");
         }
         let mut progress = Progress::new(&flags.common, self.verb, reader.header().points);
-        let threads = threads(flags.threads).get();
+        let threads = flags.threads.get().get();
         let (memory, compress) = (flags.memory, flags.compression.of_stream());
         let options = Options { threads, memory, compress, ..options };
         Ok((self.reduce)(reader, output, &options, &mut |points| progress.set(points))?)

@@ -29,10 +29,10 @@ use spmesh_shell::compression::Compression;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
 use spmesh_shell::progress::Progress;
+use spmesh_shell::resources::parse_threads;
 use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{
-    Common, Names, StatsFlag, advise_on_memory, named, notice, parse_numbers, parse_size, parse_threads,
-    read_list,
+    Common, Names, StatsFlag, advise_on_memory, named, notice, parse_numbers, parse_size, read_list,
 };
 
 const TOOL: &str = "spfinalize";

@@ -1,7 +1,6 @@
 //! `spnode`: the jobs of a plan.
 
 use std::io::Write;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
@@ -11,7 +10,8 @@ use super::spfinalize;
 use crate::plan::{Again, Maker, Node, Plan, Work, batches, collect, expected, incomplete, remove, spent};
 use spmesh_base::error::{Error, Result, counted};
 use spmesh_base::output::Output;
-use spmesh_shell::{Common, advise_on_memory, endings, notice, parse_size, parse_threads, threads};
+use spmesh_shell::resources::{TempDirFlag, ThreadsFlag};
+use spmesh_shell::{Common, advise_on_memory, endings, notice, parse_size};
 
 const TOOL: &str = "spnode";
 
@@ -161,17 +161,15 @@ struct WorkFlags {
     #[arg(short = 'd', long, value_name = "FOLDER")]
     dir: PathBuf,
 
-    /// Threads of a node [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    threads: ThreadsFlag,
 
     /// Memory for points of a leaf that wait; others wait in a temporary file
     #[arg(long, value_name = "SIZE", default_value = "512M", value_parser = parse_size)]
     memory: u64,
 
-    /// Folder for temporary files [default: the system's]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    temp_dir: TempDirFlag,
 
     /// Compress parts and residuals
     #[arg(long)]
@@ -183,8 +181,8 @@ struct WorkFlags {
 
 impl WorkFlags {
     fn work(&self) -> Work {
-        let &WorkFlags { ref dir, threads: asked, memory, ref temp_dir, compress, .. } = self;
-        let (folder, threads, temp_dir) = (dir.clone(), threads(asked), temp_dir.clone());
+        let &WorkFlags { memory, compress, .. } = self;
+        let (folder, threads, temp_dir) = (self.dir.clone(), self.threads.get(), self.temp_dir.to_owned());
         Work { folder, threads, memory, temp_dir, compress }
     }
 }

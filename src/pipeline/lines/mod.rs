@@ -25,7 +25,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use spmesh_base::error::{Error, Result};
-use spmesh_base::limits::{LINE_CROSSINGS_MAX, LINE_VERTEX_BYTES, check_line_vertices};
+use spmesh_base::limits::{LINE_CROSSINGS_MAX, check_line_vertices};
 use spmesh_delaunay::network::{Network, NetworkVertex};
 use spmesh_delaunay::noding::{LineVertex, Noded, NodingOptions, node_lines};
 use spmesh_formats::source::{Breaklines, Description, Reading, name_of, read_breaklines};
@@ -91,8 +91,7 @@ impl Options {
     /// The same for memory of so many bytes.
     #[must_use]
     pub fn within(self, bytes: u64) -> Options {
-        let vertices_max = usize::try_from(bytes / LINE_VERTEX_BYTES).unwrap_or(usize::MAX);
-        Options { vertices_max, ..self }
+        Options { vertices_max: Reading::within(bytes).vertices_max, ..self }
     }
 }
 
@@ -267,6 +266,7 @@ fn network(noded: Noded, grid: &Grid) -> Network {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spmesh_base::limits::LINE_VERTEX_BYTES;
 
     /// Noding itself is tested with fewer crossings, at both sides.
     #[test]

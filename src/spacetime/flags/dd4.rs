@@ -4,7 +4,6 @@ mod product;
 mod report;
 mod source;
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -17,9 +16,8 @@ use spmesh_base::output::Output;
 use spmesh_base::system;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
-use spmesh_shell::{
-    Common, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, progress::Progress, threads,
-};
+use spmesh_shell::resources::{TempDirFlag, ThreadsFlag};
+use spmesh_shell::{Common, StatsFlag, advise_on_memory, notice, parse_size, progress::Progress};
 
 pub use product::{EXAMPLES as PRODUCT_EXAMPLES, ProductFlags};
 pub use source::{EXAMPLES as SOURCE_EXAMPLES, SourceFlags};
@@ -77,18 +75,16 @@ pub struct Flags {
     #[arg(long, value_enum, default_value_t = RouteFlag::Simplices, value_name = "simplices|direct", hide_possible_values = true)]
     route: RouteFlag,
 
-    /// Threads that join simplices to cells [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    threads: ThreadsFlag,
 
     /// Compute in stages, in about this much memory, as in 1400M: slower, but the output is the same. Cells
     /// wait in temporary files (see --temp-dir). Not for slices, values, simplices, and --route direct
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory: Option<u64>,
 
-    /// Folder for temporary files [default: TMPDIR, or /tmp]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    temp_dir: TempDirFlag,
 
     #[command(flatten)]
     compression: Compression,
@@ -147,7 +143,7 @@ impl Flags {
         let advice = format!("give {memory}--memory, or take fewer points, as with --count or --where");
         advise_on_memory("dd4", &advice);
         let (quantum, time_scale) = (self.quantum, self.time_scale);
-        let (route, threads) = (self.route.route()?, threads(self.threads));
+        let (route, threads) = (self.route.route()?, self.threads.get());
         let options = Options { quantum, time_scale, route, threads };
         if self.source.is_stdin() && self.product.reads_stdin() {
             return Err(Error::usage("points and sites cannot both come from stdin"));
@@ -163,7 +159,7 @@ impl Flags {
         }
         let compress = self.compression.of_output(product.is_stream())?;
         let progress = Progress::waiting(&self.common, "reading");
-        let points = self.source.read(self.temp_dir.clone(), self.memory.is_none())?;
+        let points = self.source.read(self.temp_dir.to_owned(), self.memory.is_none())?;
         let read = started.elapsed();
         drop(progress);
         for warning in &points.warnings {
@@ -174,7 +170,7 @@ impl Flags {
         let progress = Progress::waiting(&self.common, "triangulating");
         let make_started = Instant::now();
         let (notices, mut report) = if let Some(memory) = self.memory {
-            let temp_dir = self.temp_dir.as_deref();
+            let temp_dir = self.temp_dir.get();
             crate::dd4::write_streamed(points, &options, memory, temp_dir, compress, &mut output)?
         } else {
             let Made { diagram, placement, report } = crate::dd4::make(points, &product, &options)?;

@@ -7,13 +7,12 @@ mod info;
 mod mesh;
 mod report;
 
-use std::num::NonZeroUsize;
 use std::path::Path;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 
 use spmesh_base::error::{Error, Result};
-use spmesh_shell::{Common, advise_on_memory, notice, parse_threads, threads};
+use spmesh_shell::{Common, advise_on_memory, notice};
 
 const TOOL: &str = "splinefit";
 
@@ -89,20 +88,6 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         Action::Info(action) => action.run(&flags.common),
         Action::Mesh(action) => action.run(),
     }?)
-}
-
-/// The flag for the number of threads that evaluate.
-#[derive(Debug, Clone, Args)]
-struct Threads {
-    /// Threads that evaluate functions [default: one per core, at most 8]; results do not depend on them
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
-}
-
-impl Threads {
-    fn get(&self) -> NonZeroUsize {
-        threads(self.threads)
-    }
 }
 
 /// Refuses two inputs from stdin. Each input comes with its name in messages.

@@ -112,23 +112,30 @@ impl Cells {
         }
     }
 
-    /// Whether nothing is nearer to a place than a distance; may be false then, too. `is_less` says whether
-    /// the distance is less than another one.
+    /// A distance within which nothing is, on both axes; zero if none is known. Small ones, of twice the
+    /// spacing of points or less, are not looked for: few triangles are as small.
     #[inline]
-    pub(super) fn is_far(&self, place: Point2, is_less: impl Fn(f64) -> bool) -> bool {
+    pub(super) fn free_around(&self, place: Point2, spacing: f64) -> f64 {
         let mut tree = &self.tree;
         loop {
             let grid = &tree.grid;
-            let is_known = is_less(0.99 * grid.side) && tree.has_all(place, grid.side);
-            if is_known && self.known[tree.number].is_far(grid.local(place), grid.size) {
-                return true;
+            if tree.has_all(place, grid.side) && self.known[tree.number].is_far(grid.local(place), grid.size)
+            {
+                return 0.99 * grid.side;
             }
             let has_inner = !tree.divided().is_empty() && is_crowded(tree, grid.cell(place));
             match has_inner.then(|| tree.inner_at(place)).flatten() {
                 Some(inner) => tree = inner,
-                None => return false,
+                None => break,
             }
         }
+        let fine = 0.99 * self.tree.grid.side / FINE as f64;
+        let around = |grid: &Grid| {
+            let (at, reach) = (grid.local(place), fine * grid.scale);
+            CellBox { min: at.map(|x| x - reach), max: at.map(|x| x + reach) }
+        };
+        let is_any = |known: &Known, fine| known.vertices.any(fine) || known.segments.any(fine);
+        if fine > 2.0 * spacing && !self.has_any(&self.tree, &around, &is_any) { fine } else { 0.0 }
     }
 
     /// Whether no segment is in a box, which is given in units of the cells of a grid.

@@ -23,7 +23,6 @@ mod writing;
 
 use std::io::{Read, Write};
 
-use crate::surface::is_counterclockwise;
 use cut::Cut;
 pub use cut::CutOptions;
 use held::{Held, Holding};
@@ -32,7 +31,6 @@ use near::Lines;
 use spmesh_base::error::{Error, ErrorKind, Result, counted};
 use spmesh_base::limits::LINE_VERTEX_BYTES;
 use spmesh_delaunay::network::Network;
-use spmesh_delaunay::predicates::{FiniteFloatPredicates, Point2};
 use spmesh_pipeline::lines::{Areas, is_far};
 use spmesh_stream::model::bounds::Point;
 use spmesh_stream::{
@@ -153,16 +151,6 @@ fn check(header: &Header) -> Result<()> {
     Ok(())
 }
 
-/// Checks that a triangle is strictly counterclockwise: in-circle tests presume it.
-fn check_orientation(corners: [Point2; 3], predicates: &mut FiniteFloatPredicates) -> Result<()> {
-    if is_counterclockwise(corners, predicates)? {
-        return Ok(());
-    }
-    let [a, b, c] = corners;
-    let message = format!("the triangle with corners {a:?}, {b:?}, {c:?} (stored coordinates) is flat");
-    Err(Error::malformed(message))
-}
-
 /// The header of the output. Elevations of lines may be outside of the box of the mesh.
 fn header_of(header: &Header, network: &Network) -> Header {
     let elevations = network.vertices.iter().filter_map(|vertex| vertex.z);
@@ -221,8 +209,12 @@ impl<W: Write> Filter<'_, W> {
 
     /// Gives new vertices on lines the elevation of the line.
     fn raise(&mut self, patch: &mut Patch) {
+        self.lines.clear();
         for point in &mut patch.new {
             let place = [point[0], point[1]];
+            if !self.lines.look(place) {
+                continue;
+            }
             let z = match self.lines.vertex_at(place) {
                 Some(vertex) => {
                     self.stats.found += 1;
@@ -252,9 +244,11 @@ impl<W: Write> Filter<'_, W> {
                 let [x, y, _] = locals[local as usize].1;
                 [x, y]
             });
-            check_orientation(places, self.lines.predicates())?;
             let mut on = [None; 3];
-            if let Some(meeting) = self.lines.meeting(places) {
+            // Most triangles are small and far from lines.
+            if !self.lines.is_far(corners, places)
+                && let Some(meeting) = self.lines.meeting(places)?
+            {
                 if meeting.changes() {
                     let numbers = corners.map(|local| {
                         let (id, point) = locals[local as usize];
@@ -273,8 +267,10 @@ impl<W: Write> Filter<'_, W> {
             if !self.writing.keeps(places, on, ids)? {
                 continue;
             }
-            let sides = (0..).zip(on);
-            patch.sides.extend(sides.filter_map(|(place, on)| Some([kept as u32 / 3, place, on?])));
+            if on != [None; 3] {
+                let sides = (0..).zip(on);
+                patch.sides.extend(sides.filter_map(|(place, on)| Some([kept as u32 / 3, place, on?])));
+            }
             patch.simplices[kept..kept + 3].copy_from_slice(&corners);
             kept += 3;
         }

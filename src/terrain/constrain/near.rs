@@ -5,6 +5,8 @@ use super::circle::Circle;
 use super::clip::STEPS_MAX;
 use super::hull::KnownHull;
 use super::leaving::Rings;
+use crate::surface::is_counterclockwise;
+use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::cell_tree::{CellBox, Grid};
 use spmesh_delaunay::network::{Network, elevation_at};
 use spmesh_delaunay::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
@@ -31,6 +33,10 @@ pub(super) struct Lines<'n> {
     /// The elevations of vertices of the network that are in the mesh; NaN of the others.
     found: Vec<f64>,
     predicates: FiniteFloatPredicates,
+    /// For each vertex of the present patch, a distance within which nothing is.
+    free: Vec<f64>,
+    /// About the distance of vertices of the present patch.
+    spacing: f64,
     /// Around the present patch, all vertices within twice this distance were found, and no segment leaves
     /// the mesh. In stored units.
     margin: f64,
@@ -80,6 +86,8 @@ impl<'n> Lines<'n> {
             shores,
             found: vec![f64::NAN; network.vertices.len()],
             predicates: FiniteFloatPredicates::default(),
+            free: Vec::new(),
+            spacing: 0.0,
             margin: 0.0,
             segments: Vec::new(),
             vertices: Vec::new(),
@@ -109,6 +117,19 @@ impl<'n> Lines<'n> {
     /// mesh.
     pub(super) fn holds(&self, place: Point2, segment: u32) -> bool {
         self.cells.has(place, segment)
+    }
+
+    /// Forgets the vertices of the patch before.
+    pub(super) fn clear(&mut self) {
+        self.free.clear();
+    }
+
+    /// Takes note of the next vertex of a patch. Returns whether a vertex or a segment may be at its place, up
+    /// to roundings.
+    pub(super) fn look(&mut self, place: Point2) -> bool {
+        let free = self.cells.free_around(place, self.spacing);
+        self.free.push(free);
+        free <= NEAR * self.network.step
     }
 
     /// The vertex of the network at a place.
@@ -150,8 +171,11 @@ impl<'n> Lines<'n> {
     }
 
     /// Takes note of the box of a patch: whether all vertices around it were found. `places` are those of its
-    /// vertices.
+    /// vertices, of which [`Lines::look`] has seen the first ones.
     pub(super) fn enter(&mut self, places: impl Iterator<Item = Point2> + Clone) {
+        for place in places.clone().skip(self.free.len()) {
+            self.look(place);
+        }
         let mut bounds = CellBox::of(&[]);
         places.clone().for_each(|place| bounds.extend(place));
         if self.is_clipped {
@@ -162,6 +186,7 @@ impl<'n> Lines<'n> {
         let margin = 0.5 * width.max(height);
         let corners = [bounds.min.map(|x| x - margin), bounds.max.map(|x| x + margin)];
         let around = |grid: &Grid| CellBox::of(&corners.map(|corner| grid.local(corner)));
+        self.spacing = (width * height / self.free.len() as f64).sqrt();
         let centre = [0, 1].map(|axis| 0.5 * (bounds.min[axis] + bounds.max[axis]));
         let may_leave =
             self.is_clipped && !self.hull.contains(centre, 0.5 * width.hypot(height) + 1.5 * margin);
@@ -170,15 +195,23 @@ impl<'n> Lines<'n> {
         }
     }
 
-    /// What meets a triangle, whose corners are counterclockwise; `None` if nothing does.
-    pub(super) fn meeting(&mut self, corners: [Point2; 3]) -> Option<Meeting> {
-        // Most triangles are small and far from lines.
-        if self.cells.is_far(corners[0], |length| is_circle_less(length, corners)) {
-            return None;
-        }
+    /// Whether the circle of a triangle of a patch meets nothing, as far as that is seen at once. If so, its
+    /// corners are counterclockwise.
+    #[inline]
+    pub(super) fn is_far(&self, vertices: [u32; 3], corners: [Point2; 3]) -> bool {
+        let free = vertices.map(|vertex| self.free[vertex as usize]);
+        is_circle_less(free[0].max(free[1]).max(free[2]), corners)
+    }
+
+    /// What meets a triangle; `None` if nothing does.
+    ///
+    /// # Errors
+    /// Malformed, if its corners are not counterclockwise.
+    pub(super) fn meeting(&mut self, corners: [Point2; 3]) -> Result<Option<Meeting>> {
+        check_orientation(corners, &mut self.predicates)?;
         self.collect(corners);
         if self.segments.is_empty() && self.vertices.is_empty() && !self.is_near {
-            return None;
+            return Ok(None);
         }
         let mut meeting = Meeting { is_near: self.is_near, ..Meeting::default() };
         for place in 0..self.segments.len() {
@@ -193,7 +226,7 @@ impl<'n> Lines<'n> {
             }
         }
         let is_any = !meeting.segments.is_empty() || meeting.is_hit();
-        is_any.then_some(meeting)
+        Ok(is_any.then_some(meeting))
     }
 
     /// Gathers segments near a triangle, and vertices near its circle.
@@ -345,8 +378,8 @@ pub(super) fn foot([a, b]: [Point2; 2], place: Point2, near: f64) -> Option<f64>
     is_near.then(|| (along[0] * to[0] + along[1] * to[1]) / square)
 }
 
-/// Whether the diameter of the circle of a triangle is less than a length. Its square is the product of the
-/// squares of the sides over that of twice the area.
+/// Whether a triangle is counterclockwise, and the diameter of its circle less than a length. Its square is the
+/// product of the squares of the sides over that of twice the area.
 #[inline]
 fn is_circle_less(length: f64, [a, b, c]: [Point2; 3]) -> bool {
     let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
@@ -355,7 +388,17 @@ fn is_circle_less(length: f64, [a, b, c]: [Point2; 3]) -> bool {
     let twice_area = u[0] * v[1] - u[1] * v[0];
     let reach = length * twice_area;
     // Rounding errors of the area matter in flat triangles only, which are not small.
-    uu * vv * ww < reach * reach && twice_area * twice_area > 1e-12 * uu * vv
+    uu * vv * ww < reach * reach && twice_area > 0.0 && twice_area * twice_area > 1e-12 * uu * vv
+}
+
+/// Checks that a triangle is strictly counterclockwise: in-circle tests presume it.
+fn check_orientation(corners: [Point2; 3], predicates: &mut FiniteFloatPredicates) -> Result<()> {
+    if is_counterclockwise(corners, predicates)? {
+        return Ok(());
+    }
+    let [a, b, c] = corners;
+    let message = format!("the triangle with corners {a:?}, {b:?}, {c:?} (stored coordinates) is flat");
+    Err(Error::malformed(message))
 }
 
 /// Whether the boxes of some places have nothing in common.

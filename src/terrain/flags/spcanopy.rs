@@ -1,6 +1,5 @@
 //! `spcanopy`: flags, and the counts of `--stats`.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -20,10 +19,11 @@ use spmesh_shell::cells::{self, CellFlags, RasterFlags};
 use spmesh_shell::endings;
 use spmesh_shell::outline::{OutlineFlags, length};
 use spmesh_shell::progress::Progress;
+use spmesh_shell::resources::ThreadsFlag;
 use spmesh_shell::stats::Row;
 use spmesh_shell::{
     Common, Mesh, MeshReader, Needs, Report, StatsFlag, advise_on_memory, notice, of_ending, parse_size,
-    parse_threads, peak_memory, read_list, threads,
+    peak_memory, read_list,
 };
 use spmesh_stream::Crs;
 use spmesh_stream::model::bounds::Bounds;
@@ -123,9 +123,8 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M")]
     memory: u64,
 
-    /// Threads that decompress, find heights and triangulate [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    threads: ThreadsFlag,
 
     #[command(flatten)]
     stats: StatsFlag,
@@ -174,11 +173,11 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     // The system of the ground stands in where points state none.
     let crs = &input.description().crs;
     let crs = if *crs == Crs::Unknown { &reader.header().crs } else { crs };
-    bottom.mask = flags.outline.mask(crs, |text| flags.notice(text))?;
+    bottom.mask = flags.outline.mask(crs, Some(flags.memory), |text| flags.notice(text))?;
     let total = input.description().stated_points;
     let mut progress = Progress::new(&flags.common, "finding heights", total);
     let surface = flags.surface()?;
-    let points = HeightPoints::read(&ground, &input, surface, temp_dir, flags.threads(), |points| {
+    let points = HeightPoints::read(&ground, &input, surface, temp_dir, flags.threads.get(), |points| {
         progress.set(points);
     })?;
     drop(ground);
@@ -252,13 +251,9 @@ impl Flags {
             filters,
             dims: 2,
             temp_dir: self.raster.temp_dir().map(Into::into),
-            threads: Some(self.threads()),
+            threads: Some(self.threads.get()),
             ..SourceOptions::default()
         })
-    }
-
-    fn threads(&self) -> NonZeroUsize {
-        threads(self.threads)
     }
 
     /// How the lowest surface is drawn, and the raster is written.
@@ -282,7 +277,7 @@ impl Flags {
 
     /// How layers are made. Half of the memory is for points, half for tiles.
     fn settings(&self, grid: &Grid) -> Result<Settings> {
-        let threads = self.threads().get();
+        let threads = self.threads.get().get();
         Meshing::check_half(self.memory, threads)?;
         Ok(Settings {
             edge_max: length("--max-edge", self.max_edge)?.unwrap_or(EDGE_CELLS * grid.step),

@@ -15,6 +15,7 @@ use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::outline::length;
 use spmesh_shell::progress::Progress;
+use spmesh_shell::resources::TempDirFlag;
 use spmesh_shell::stats::Row;
 use spmesh_shell::{
     Common, Mesh, Needs, Report, StatsFlag, advise_on_memory, notice, parse_size, peak_memory,
@@ -92,9 +93,8 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory: Option<u64>,
 
-    /// Folder for temporary files [default: TMPDIR, or /tmp]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    temp_dir: TempDirFlag,
 
     #[command(flatten)]
     compression: Compression,
@@ -137,7 +137,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let kill = length("--kill", flags.kill)?;
     // Half of it is for --kill.
     let memory = flags.memory.map(|memory| if kill.is_some() { memory / 2 } else { memory });
-    let cut = CutOptions { kill, memory: memory.unwrap_or(KILL_MEMORY), temp_dir: flags.temp_dir.clone() };
+    let cut = CutOptions { kill, memory: memory.unwrap_or(KILL_MEMORY), temp_dir: flags.temp_dir.to_owned() };
     let options = Options { compress: flags.compression.of_stream(), cut, memory };
     let mut progress = Progress::new(&flags.common, "constraining", reader.header().points);
     let (output, stats) =

@@ -219,6 +219,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             output: &flags.output,
             format: flags.line_format()?,
             outline: &flags.outline,
+            memory: flags.memory,
             stats: flags.stats,
             common: &flags.common,
         };
@@ -246,7 +247,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let window = || dem::window(mesh.header()).map_err(|e| e.of_input(mesh.name()));
     let crs = options.crs.as_ref().unwrap_or(&mesh.header().crs);
     let grid = flags.cells.grid(crs, window)?;
-    options.mask = flags.outline.mask(crs, |text| notice(TOOL, &flags.common, text))?;
+    options.mask = flags.outline.mask(crs, flags.memory, |text| notice(TOOL, &flags.common, text))?;
     let needs = Needs { window: options.window(&grid, mesh.header()), beyond: options.beyond() };
     let mut reader = mesh.read(&needs)?.reader;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);

@@ -2,7 +2,6 @@
 
 mod report;
 
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::slice;
 use std::time::Instant;
@@ -15,10 +14,11 @@ use spmesh_base::error::{Error, Result};
 use spmesh_formats::crs::System;
 use spmesh_formats::source::{Polygon, read_polygons};
 use spmesh_shell::progress::Progress;
+use spmesh_shell::resources::{TempDirFlag, ThreadsFlag};
 use spmesh_shell::stats::Row;
 use spmesh_shell::{
-    Common, Mesh, Needs, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, peak_memory,
-    refuse_terminal, threads,
+    Common, Mesh, Needs, Report, StatsFlag, advise_on_memory, notice, parse_size, peak_memory,
+    refuse_terminal,
 };
 use spmesh_stream::{Coordinates, Crs};
 
@@ -118,13 +118,11 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "160M")]
     memory: u64,
 
-    /// Threads that compare [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    threads: ThreadsFlag,
 
-    /// Folder for temporary files [default: the system's]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    temp_dir: TempDirFlag,
 
     #[command(flatten)]
     stats: StatsFlag,
@@ -181,8 +179,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         (_, _, &[z, dx, dy]) => Other::Plane([z, dx, dy]),
         _ => unreachable!("one of them is required"),
     };
-    let options =
-        Options { polygons: &polygons, memory: flags.memory, threads: threads(flags.threads).get() };
+    let options = Options { polygons: &polygons, memory: flags.memory, threads: flags.threads.get().get() };
     let mut progress = Progress::counting("blocks", &flags.common, "comparing", None);
     let found = compare(&first, &other, &options, &mut |done, _| progress.set(done))?;
     drop(progress);
@@ -242,7 +239,7 @@ impl Flags {
         let needs = Needs { window: None, beyond: None };
         let mut reader = Mesh::open(path)?.read(&needs)?.reader;
         let mut progress = Progress::new(&self.common, "reading a mesh", reader.header().points);
-        let temp_dir = self.temp_dir.as_deref();
+        let temp_dir = self.temp_dir.get();
         let surface = Surface::read(&mut reader, temp_dir, self.memory, |vertices| progress.set(vertices))?;
         Ok((surface, reader.bytes_read()))
     }
@@ -252,7 +249,7 @@ impl Flags {
         if path.as_os_str() == "-" {
             refuse_terminal()?;
         }
-        let (polygons, notices) = read_polygons(slice::from_ref(path), &Coordinates::F64, crs)?;
+        let (polygons, notices) = read_polygons(slice::from_ref(path), &Coordinates::F64, crs, self.memory)?;
         notices.iter().for_each(|text| self.notice(text));
         if polygons.is_empty() {
             return Err(Error::usage("there are no polygons").of_input(path.display().to_string()));

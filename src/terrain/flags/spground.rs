@@ -6,7 +6,6 @@ mod plans;
 mod report;
 
 use std::io::Write;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -31,8 +30,9 @@ use spmesh_formats::ledger::check_distinct;
 use spmesh_formats::source::{Filters, Input, PointFile, SourceOptions};
 use spmesh_shell::batch::BatchFlags;
 use spmesh_shell::progress::Progress;
+use spmesh_shell::resources::{TempDirFlag, ThreadsFlag};
 use spmesh_shell::text_flags::TextFlags;
-use spmesh_shell::{Common, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, threads};
+use spmesh_shell::{Common, Report, StatsFlag, advise_on_memory, notice, parse_size};
 
 const TOOL: &str = "spground";
 
@@ -114,13 +114,11 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M")]
     memory: u64,
 
-    /// Threads [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    threads: ThreadsFlag,
 
-    /// Folder for temporary files [default: the system's]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    temp_dir: TempDirFlag,
 
     #[command(flatten)]
     plan: PlanFlags,
@@ -236,14 +234,14 @@ fn run_plain(
     let mesh = mesh.map(|path| Output::create(path, false)).transpose()?;
 
     // What cannot be written is better known before the work than after it.
-    TemporaryFile::create(flags.temp_dir.as_deref())?;
+    TemporaryFile::create(flags.temp_dir.get())?;
     outputs.iter().try_for_each(|output| Output::create(output, true).map(drop))?;
 
     let inputs = around.map_or(paths, |around| &around.inputs);
     let (input, found) = flags.found(around, inputs)?;
     let mut counts = ClassCounts::default();
     if let Some(mut mesh) = mesh {
-        let points = GroundPoints::new(&found, &input, flags.threads(), flags.memory / 4);
+        let points = GroundPoints::new(&found, &input, flags.threads.get(), flags.memory / 4);
         flags.settings().meshing().write(&points, false, &mut mesh)?;
         mesh.commit()?;
         input.withheld_notice().iter().for_each(|text| flags.notice(text));
@@ -259,10 +257,6 @@ fn run_plain(
 impl Flags {
     fn notice(&self, text: &str) {
         notice(TOOL, &self.common, text);
-    }
-
-    fn threads(&self) -> NonZeroUsize {
-        threads(self.threads)
     }
 
     /// The output, if it is the mesh of the ground.
@@ -317,8 +311,8 @@ impl Flags {
             text: self.text.options(),
             filters: self.filters(),
             dims: 2,
-            temp_dir: self.temp_dir.clone(),
-            threads: Some(self.threads()),
+            temp_dir: self.temp_dir.to_owned(),
+            threads: Some(self.threads.get()),
             ..SourceOptions::default()
         }
     }
@@ -326,14 +320,18 @@ impl Flags {
     /// Opens the files that get classes.
     fn files(&self, paths: &[PathBuf], outputs: &[PathBuf]) -> Result<Vec<PointFile>> {
         let open = |(path, output): (&PathBuf, &PathBuf)| {
-            let file = PointFile::open(path, &SPGROUND, self.temp_dir.as_deref(), &self.text.options())?;
+            let file = PointFile::open(path, &SPGROUND, self.temp_dir.get(), &self.text.options())?;
             self.names().check(&file, output).map(|()| file)
         };
         paths.iter().zip(outputs).map(open).collect()
     }
 
     fn settings(&self) -> Settings {
-        Settings { memory: self.memory, threads: self.threads().get(), temp_dir: self.temp_dir.clone() }
+        Settings {
+            memory: self.memory,
+            threads: self.threads.get().get(),
+            temp_dir: self.temp_dir.to_owned(),
+        }
     }
 
     /// What is ground of all points.
@@ -375,7 +373,7 @@ impl Flags {
             filters: self.filters(),
             is_compressed: self.names().is_compressed(output),
             memory: self.memory / 4,
-            threads: self.threads().get(),
+            threads: self.threads.get().get(),
         };
         let mut progress = Progress::new(&self.common, "writing points", file.stated_points());
         let (created, mut show) = (Output::create(output, true)?, |points| progress.set(points));

@@ -2,7 +2,6 @@
 
 mod batch;
 
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -23,11 +22,12 @@ use spmesh_formats::source::PointFile;
 use spmesh_shell::batch::BatchFlags;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::progress::Progress;
+use spmesh_shell::resources::{TempDirFlag, ThreadsFlag};
 use spmesh_shell::stats::Row;
 use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{
     Common, Mesh, MeshReader, Names, Needs, Report, StatsFlag, advise_on_memory, named, notice, parse_size,
-    parse_threads, peak_memory, threads,
+    peak_memory,
 };
 use spmesh_stream::Crs;
 use spmesh_stream::model::bounds::Bounds;
@@ -127,14 +127,11 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "160M")]
     memory: u64,
 
-    /// Threads that decompress, as many that compress, and as many that find heights [default: one
-    /// per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    threads: ThreadsFlag,
 
-    /// Folder for temporary files [default: the system's]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    temp_dir: TempDirFlag,
 
     #[command(flatten)]
     crs: CrsFlag,
@@ -263,7 +260,7 @@ impl Flags {
         let MeshReader { mut reader, window } = Mesh::open(&self.ground)?.read(&needs)?;
         outputs.iter().try_for_each(|output| inputs::check_output(output))?;
         let mut progress = Progress::new(&self.common, "reading the ground", reader.header().points);
-        let temp_dir = self.temp_dir.as_deref();
+        let temp_dir = self.temp_dir.get();
         let ground = Ground::read(&mut reader, temp_dir, self.memory, |vertices| progress.set(vertices))?;
         Ok((ground.within(window), reader.bytes_read()))
     }
@@ -319,7 +316,7 @@ impl Flags {
             outside: self.outside(),
             is_compressed: self.names().is_compressed(output),
             memory: self.memory,
-            threads: threads(self.threads).get(),
+            threads: self.threads.get().get(),
         })
     }
 

@@ -1,7 +1,6 @@
 //! `spreport`: flags, and the counts of `--stats`.
 
 use std::io::Write;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -20,11 +19,12 @@ use spmesh_formats::source::{
 };
 use spmesh_shell::endings;
 use spmesh_shell::progress::Progress;
+use spmesh_shell::resources::{TempDirFlag, ThreadsFlag};
 use spmesh_shell::stats::Row;
 use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{
-    Common, Mesh, MeshReader, Needs, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads,
-    peak_memory, read_list, threads,
+    Common, Mesh, MeshReader, Needs, Report, StatsFlag, advise_on_memory, notice, parse_size, peak_memory,
+    read_list,
 };
 
 const TOOL: &str = "spreport";
@@ -121,13 +121,11 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "160M")]
     memory: u64,
 
-    /// Threads that decompress and find elevations [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    threads: ThreadsFlag,
 
-    /// Folder for temporary files [default: the system's]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    temp_dir: TempDirFlag,
 
     #[command(flatten)]
     stats: StatsFlag,
@@ -178,7 +176,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         spacing: flags.spacing,
         unit_of_z,
         memory: flags.memory,
-        temp_dir: flags.temp_dir.clone(),
+        temp_dir: flags.temp_dir.to_owned(),
     };
     let total = input.description().stated_points;
     let mut progress = Progress::new(&flags.common, "counting", total);
@@ -253,8 +251,8 @@ impl Flags {
             reader: &SPREPORT,
             skip_invalid: true,
             dims: 2,
-            temp_dir: self.temp_dir.clone(),
-            threads: Some(threads(self.threads)),
+            temp_dir: self.temp_dir.to_owned(),
+            threads: Some(self.threads.get()),
             ..SourceOptions::default()
         }
     }
@@ -267,11 +265,11 @@ impl Flags {
         let mut progress = Progress::new(&self.common, "reading the mesh", reader.header().points);
         let memory = self.memory / 4 * 3;
         let ground =
-            Ground::read(&mut reader, self.temp_dir.as_deref(), memory, |vertices| progress.set(vertices))?;
+            Ground::read(&mut reader, self.temp_dir.get(), memory, |vertices| progress.set(vertices))?;
         let ground = ground.within(window);
         let options =
             CheckOptions { of_survey: self.check_accuracy, vegetated: self.vegetated.clone(), unit_of_z };
-        let accuracy = check(&ground, &points, name_of(check_points), &options, threads(self.threads))?;
+        let accuracy = check(&ground, &points, name_of(check_points), &options, self.threads.get())?;
         if accuracy.outside > 0 {
             let [outside, all] = [accuracy.outside, accuracy.points];
             self.notice(&format!("{outside} of {all} check points are outside of the mesh"));

@@ -1,6 +1,5 @@
 //! `spsimplify`: flags, and the counts of `--stats`.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -15,9 +14,9 @@ use spmesh_pipeline::reduce::Duplicates;
 use spmesh_shell::compression::Compression;
 use spmesh_shell::endings;
 use spmesh_shell::progress::Progress;
+use spmesh_shell::resources::{TempDirFlag, ThreadsFlag};
 use spmesh_shell::{
-    Common, Mesh, Needs, Report, StatsFlag, advise_on_memory, notice, parse_size, parse_threads, peak_memory,
-    threads,
+    Common, Mesh, Needs, Report, StatsFlag, advise_on_memory, notice, parse_size, peak_memory,
 };
 
 const TOOL: &str = "spsimplify";
@@ -86,13 +85,11 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M")]
     memory: u64,
 
-    /// Threads [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = parse_threads())]
-    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    threads: ThreadsFlag,
 
-    /// Folder for temporary files [default: the system's]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    temp_dir: TempDirFlag,
 
     #[command(flatten)]
     compression: Compression,
@@ -119,7 +116,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut outputs =
         levels.iter().map(|(_, path)| Output::create(path, true)).collect::<Result<Vec<_>>>()?;
     // What cannot be written is better known before the work than after it.
-    TemporaryFile::create(flags.temp_dir.as_deref())?;
+    TemporaryFile::create(flags.temp_dir.get())?;
     let needs = Needs { window: None, beyond: Some("a simplification") };
     let mut reader = Mesh::open(&flags.input)?.read(&needs)?.reader;
     if !reader.header().attributes.is_empty() {
@@ -179,14 +176,14 @@ impl Flags {
     }
 
     fn meshing(&self) -> Result<Meshing> {
-        let threads = threads(self.threads).get();
+        let threads = self.threads.get().get();
         Meshing::check_half(self.memory, threads)?;
         Ok(Meshing {
             // Vertices of a mesh are distinct.
             duplicates: Duplicates::Error,
             memory: self.memory / 2,
             threads,
-            temp_dir: self.temp_dir.clone(),
+            temp_dir: self.temp_dir.to_owned(),
         })
     }
 }

@@ -264,7 +264,7 @@ fn draw_stream(
     passed.iter().for_each(Passed::confirm);
     let extent = flags.extent(&reader)?;
     let crs = options.crs.as_ref().unwrap_or(&reader.header().crs);
-    options.mask = flags.outline.mask(crs, |text| notice(TOOL, &flags.common, text))?;
+    options.mask = flags.outline.mask(crs, None, |text| notice(TOOL, &flags.common, text))?;
     options.extent = extent.and_then(|extent| extent.bounds);
     let moments =
         Moments { at: flags.moment(&reader, extent)?, every: flags.snapshot.map(|Every(count)| count) };

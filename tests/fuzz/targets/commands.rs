@@ -114,6 +114,9 @@ pub const CONVERT: &[&str] = &[
     "spconvert HERE/in.spm -o HERE/out.spa",
     "spconvert HERE/in.spm -o HERE/out.smb",
     "spconvert HERE/in.spm -o HERE/out.geojson",
+    "spconvert HERE/in.spm -o HERE/out.glb",
+    "spconvert HERE/in.spm -o HERE/out.stl",
+    "spconvert HERE/in.spm -o HERE/out.nc",
     "spconvert HERE/in.spm --compress -o HERE/out.spm",
 ];
 

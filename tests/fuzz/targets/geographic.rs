@@ -21,7 +21,7 @@ fn read_both(path: &Path) {
     {
         assert!(found.lines.iter().all(|line| are_finite(&line.vertices)));
     }
-    if let Ok((found, _)) = read_polygons(&[path.to_path_buf()], &Coordinates::F64, &Crs::Unknown) {
+    if let Ok((found, _)) = read_polygons(&[path.to_path_buf()], &Coordinates::F64, &Crs::Unknown, u64::MAX) {
         assert!(found.iter().flatten().all(|ring| are_finite(ring)));
     }
 }

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::eval_format::{FORMATS, Form, KINDS, format_of};
 use super::fit::{parse_positive, read_weights};
-use super::{Threads, check_stdin, say};
+use super::{check_stdin, say};
 use crate::splinefit::{Attribute, Certainty, Layout, Points, Spline};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
@@ -15,6 +15,7 @@ use spmesh_formats::raster::{Grid, RasterFormat, write_prj};
 use spmesh_formats::sink::MatrixFormat;
 use spmesh_formats::source::{Input, InvalidAdvice, SourceOptions};
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
+use spmesh_shell::resources::ThreadsFlag;
 use spmesh_shell::{Common, named, progress::Progress};
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -104,7 +105,7 @@ pub(super) struct Flags {
     format: Option<Form>,
 
     #[command(flatten)]
-    threads: Threads,
+    threads: ThreadsFlag,
 
     #[command(flatten)]
     cells: CellFlags,

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::{Threads, check_stdin, report, say};
+use super::{check_stdin, report, say};
 use crate::fitting::Loss;
 use crate::splinefit::{Anisotropy, Options, Points, Smoothing, Validation};
 use spmesh_base::error::{Error, Result};
@@ -20,6 +20,7 @@ use spmesh_formats::source::{
 use spmesh_shell::compression::Compression;
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
+use spmesh_shell::resources::ThreadsFlag;
 use spmesh_shell::text_flags::TextFlags;
 use spmesh_shell::{Common, StatsFlag, named, open_held, parse_box, progress::Progress, refuse_terminal};
 use spmesh_stream::model::bounds::Bounds;
@@ -178,7 +179,7 @@ pub(super) struct Flags {
     text: TextFlags,
 
     #[command(flatten)]
-    threads: Threads,
+    threads: ThreadsFlag,
 
     #[command(flatten)]
     compression: Compression,

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::{Map, Value, json};
 
 use super::report::{excess, extent_json, outside, residual_rows};
-use super::{Threads, check_stdin, say};
+use super::{check_stdin, say};
 use crate::splinefit::{
     Candidate, Condition, Excess, Extent, Jump, Layout, Points, Smoothness, Spline, Statistics, Summary,
 };
@@ -18,6 +18,7 @@ use spmesh_formats::raster::Window;
 use spmesh_formats::source::SourceOptions;
 use spmesh_shell::Common;
 use spmesh_shell::messages::{escaped, escaped_json};
+use spmesh_shell::resources::ThreadsFlag;
 
 /// Segments that the text output lists.
 const LISTED: usize = 5;
@@ -49,7 +50,7 @@ pub(super) struct Flags {
     json: bool,
 
     #[command(flatten)]
-    threads: Threads,
+    threads: ThreadsFlag,
 }
 
 impl Flags {

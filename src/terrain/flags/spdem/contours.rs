@@ -112,6 +112,8 @@ pub(super) struct Job<'a> {
     pub(super) output: &'a Path,
     pub(super) format: LineFormat,
     pub(super) outline: &'a OutlineFlags,
+    /// As asked for.
+    pub(super) memory: Option<u64>,
     pub(super) stats: StatsFlag,
     pub(super) common: &'a Common,
 }
@@ -125,7 +127,8 @@ pub(super) fn run(
 ) -> anyhow::Result<()> {
     let mut output = Output::create(job.output, false)?;
     let mesh = Mesh::open(job.input)?;
-    options.mask = job.outline.mask(options.crs.as_ref().unwrap_or(&mesh.header().crs), &notice)?;
+    let crs = options.crs.as_ref().unwrap_or(&mesh.header().crs);
+    options.mask = job.outline.mask(crs, job.memory, &notice)?;
     let needs = Needs { window: options.window(), beyond: Some("a contour line") };
     let mut reader = mesh.read(&needs)?.reader;
     let mut progress = Progress::new(job.common, "contouring", reader.header().points);

@@ -111,7 +111,7 @@ impl Rewriter for Set<'_> {
 
     fn open(&self, input: &Path, output: &Path) -> Result<PointFile> {
         let flags = self.flags;
-        let file = PointFile::open(input, &SPGROUND, flags.temp_dir.as_deref(), &flags.text.options())?;
+        let file = PointFile::open(input, &SPGROUND, flags.temp_dir.get(), &flags.text.options())?;
         flags.names().check(&file, output).map(|()| file)
     }
 

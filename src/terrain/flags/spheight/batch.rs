@@ -74,7 +74,7 @@ impl Rewriter for Flags {
     }
 
     fn open(&self, input: &Path, output: &Path) -> Result<PointFile> {
-        let file = PointFile::open(input, &SPHEIGHT, self.temp_dir.as_deref(), &self.text.options())?;
+        let file = PointFile::open(input, &SPHEIGHT, self.temp_dir.get(), &self.text.options())?;
         self.names().check(&file, output)?;
         Ok(file)
     }
