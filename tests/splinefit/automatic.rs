@@ -6,7 +6,7 @@ use crate::programs::{Folder, outcome, run};
 use spmesh_reference::sets::Random;
 
 /// Franke's function on the unit square.
-fn franke(x: f64, y: f64) -> f64 {
+pub(super) fn franke(x: f64, y: f64) -> f64 {
     let [a, b] = [9.0 * x, 9.0 * y];
     let bump = |u: f64, v: f64| (-(u * u + v * v)).exp();
     0.75 * bump((a - 2.0) / 2.0, (b - 2.0) / 2.0)
@@ -16,7 +16,11 @@ fn franke(x: f64, y: f64) -> f64 {
 }
 
 /// Random places in the unit square, with values.
-fn sample(count: usize, seed: u64, mut value: impl FnMut(f64, f64, &mut Random) -> f64) -> Vec<[f64; 3]> {
+pub(super) fn sample(
+    count: usize,
+    seed: u64,
+    mut value: impl FnMut(f64, f64, &mut Random) -> f64,
+) -> Vec<[f64; 3]> {
     let mut random = Random::new(seed);
     let mut one = || {
         let [x, y] = [random.unit(), random.unit()];
@@ -26,11 +30,11 @@ fn sample(count: usize, seed: u64, mut value: impl FnMut(f64, f64, &mut Random) 
 }
 
 /// Noise that is about normal, with a standard deviation of one.
-fn noise(random: &mut Random) -> f64 {
+pub(super) fn noise(random: &mut Random) -> f64 {
     (0..12).map(|_| random.unit()).sum::<f64>() - 6.0
 }
 
-fn text(points: &[[f64; 3]]) -> String {
+pub(super) fn text(points: &[[f64; 3]]) -> String {
     points.iter().map(|[x, y, z]| format!("{x:?} {y:?} {z:?}\n")).collect()
 }
 
@@ -243,35 +247,44 @@ fn numbers_that_stand_for_no_value_are_named() {
 }
 
 #[test]
-fn prediction_errors_hold_as_often_as_they_say() {
-    let noisy = |x: f64, y: f64, random: &mut Random| franke(x, y) + 0.1 * noise(random);
-    let (points, others) = (sample(400, 15, noisy), sample(400, 16, noisy));
+fn values_end_at_a_distance_or_go_on_linearly() {
     let folder = Folder::new();
-    let fitted = folder.write("points.txt", text(&points));
-    let spline = folder.path("spline.spm");
-    output(&["fit", "-q", &fitted, "-o", &spline], &[]);
-    let sites = folder.write("sites.txt", text(&others));
-    let of = |kind: &str| {
-        let flags = ["eval", &spline, "--at", &sites, "--kind", kind];
-        let more: &[&str] = if kind == "value" { &[] } else { &["--points", &fitted] };
-        rows(&output(&[&flags[..], more].concat(), &[]))
+    let points = sample(150, 25, |x, y, _| 2.0 * x - y);
+    let (path, spline) = (folder.write("points.txt", text(&points)), folder.path("spline.spm"));
+    output(&["fit", "-q", &path, "-o", &spline], &[]);
+    let sites = [[0.5, 0.5], [1.2, 0.4], [-3.0, 2.0], [0.5, -1.0], [1.04, 0.5]];
+    let list = folder.write("sites.txt", sites.map(|[x, y]| format!("{x} {y}\n")).concat());
+    let of = |flags: &[&str]| -> Vec<Vec<f64>> {
+        rows(&output(&[&["eval", &spline, "--at", &list], flags].concat(), &[]))
     };
-    let [value, own, whole] = ["value", "standard-error", "prediction-error"].map(of);
-    let (mut held, mut all) = (0, 0);
-    for (at, [.., z]) in others.iter().enumerate().filter(|&(at, _)| !value[at][2].is_nan()) {
-        let [value, own, whole] = [&value, &own, &whole].map(|rows| rows[at][2]);
-        assert!(0.0 < own && own < 0.1 && (0.09..0.15).contains(&whole), "{own} {whole}");
-        (held, all) = (held + usize::from((value - z).abs() < 1.96 * whole), all + 1);
+    assert!((3..5).contains(&of(&[]).iter().filter(|row| row[2].is_nan()).count()));
+    for ([x, y], row) in sites.iter().zip(of(&["--extrapolate", "linear"])) {
+        assert!((row[2] - (2.0 * x - y)).abs() < 1e-9, "{row:?}");
     }
-    assert!(all > 380 && (0.93..0.97).contains(&(f64::from(held as u32) / f64::from(all as u32))), "{held}");
-    // They follow from the points of the fit.
-    let refused = |arguments: &[&str], reason: &str| {
-        let (code, message) = outcome(&run("splinefit", arguments, &[]));
-        assert_eq!(code, Some(2), "{message}");
-        assert!(message.contains(reason), "{message}");
-    };
-    refused(&["eval", &spline, "--at", &sites, "--kind", "standard-error"], "give them with --points");
-    refused(&["eval", &spline, "--at", &sites, "--points", &fitted], "leave it out");
-    let flags = ["eval", &spline, "--at", &sites, "--kind", "standard-error", "--points", &sites];
-    refused(&flags, "not a fit to these points");
+    let near = |[x, y]: &[f64; 2]| points.iter().any(|p| (p[0] - x).hypot(p[1] - y) <= 0.1);
+    let found = of(&["--extrapolate", "linear", "--points", &path, "--max-distance", "0.1"]);
+    for (site, row) in sites.iter().zip(found) {
+        assert_eq!(row[2].is_nan(), !near(site), "{row:?}");
+    }
+    let (array, whole) = (folder.path("near.npy"), folder.path("whole.npy"));
+    let grid = ["eval", &spline, "--step", "0.125", "--bounds", "-1,-1,2,2", "-o"];
+    output(
+        &[&grid[..], &[&array, "--points", &path, "--max-distance", "0.1", "--extrapolate", "linear"]]
+            .concat(),
+        &[],
+    );
+    output(&[&grid[..], &[&whole, "--extrapolate", "linear"]].concat(), &[]);
+    let [array, whole] = [array, whole].map(|path| {
+        let bytes = std::fs::read(path).unwrap();
+        let numbers = bytes[bytes.len() - 24 * 24 * 8..].chunks_exact(8);
+        numbers.map(|number| f64::from_le_bytes(number.try_into().unwrap())).collect::<Vec<f64>>()
+    });
+    for (cell, (near_value, value)) in array.iter().zip(&whole).enumerate() {
+        let place = [(cell % 24) as f64 * 0.125 - 0.9375, 1.9375 - (cell / 24) as f64 * 0.125];
+        assert!((value - (2.0 * place[0] - place[1])).abs() < 1e-9, "{place:?}: {value}");
+        assert_eq!(near_value.is_nan(), !near(&place), "{place:?}");
+    }
+    let (code, message) =
+        outcome(&run("splinefit", &["eval", &spline, "--at", &list, "--max-distance", "1"], &[]));
+    assert_eq!(code, Some(2), "{message}");
 }

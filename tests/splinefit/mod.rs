@@ -2,6 +2,7 @@
 
 mod arrays;
 mod automatic;
+mod certainty;
 mod collocation;
 mod failures;
 mod features;

@@ -27,6 +27,10 @@ pub enum Attribute {
     StandardError,
     /// The standard deviation of another point of weight one from the value. Units: those of elevations.
     PredictionError,
+    /// The ends of the interval that holds 95 % of points of weight one. Units: those of elevations.
+    Interval,
+    /// The standard error of the slope. Units: degrees.
+    SlopeError,
     /// Both derivatives, by x and by y. Units: those of elevations over those of coordinates.
     Gradient,
     /// The second derivatives, by xx, xy and yy. Units: those of elevations over the square of those of
@@ -45,6 +49,8 @@ impl Attribute {
             Attribute::TangentialCurvature => &["tangential_curvature"],
             Attribute::StandardError => &["standard_error"],
             Attribute::PredictionError => &["prediction_error"],
+            Attribute::Interval => &["lower", "upper"],
+            Attribute::SlopeError => &["slope_error"],
             Attribute::Gradient => &["dx", "dy"],
             Attribute::Hessian => &["dxx", "dxy", "dyy"],
         }
@@ -52,7 +58,13 @@ impl Attribute {
 
     /// Whether it needs the [`Certainty`](super::Certainty) of a spline.
     pub fn is_error(self) -> bool {
-        matches!(self, Attribute::StandardError | Attribute::PredictionError)
+        matches!(
+            self,
+            Attribute::StandardError
+                | Attribute::PredictionError
+                | Attribute::Interval
+                | Attribute::SlopeError
+        )
     }
 
     /// Whether the attribute is a single number.
@@ -66,7 +78,11 @@ impl Attribute {
         let [r, s, t] = jet.hessian;
         let square = p * p + q * q;
         match self {
-            Attribute::Value | Attribute::StandardError | Attribute::PredictionError => jet.value,
+            Attribute::Value
+            | Attribute::StandardError
+            | Attribute::PredictionError
+            | Attribute::Interval
+            | Attribute::SlopeError => jet.value,
             Attribute::Gradient => p,
             Attribute::Hessian => r,
             Attribute::Slope => slope(jet.gradient),
@@ -84,6 +100,7 @@ impl Attribute {
     /// All numbers of the attribute at a point, in the order of columns.
     pub fn all(self, jet: &Jet) -> impl Iterator<Item = f64> {
         let others = match self {
+            Attribute::Interval => &jet.gradient[..1],
             Attribute::Gradient => &jet.gradient[1..],
             Attribute::Hessian => &jet.hessian[1..],
             _ => &[],

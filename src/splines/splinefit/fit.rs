@@ -4,13 +4,16 @@ use std::io::Write;
 
 use super::anisotropy::Stretch;
 use super::automatic::{Found, Levels};
+use super::certainty::Certainty;
 use super::frame::Frame;
 use super::layout::{Layout, Spline};
 use super::options::{Options, Smoothing};
 use super::points::{Points, PointsInFrame};
 use super::smoothing_choice::{Problem, SmoothingChoice, choose_smoothing};
 use super::statistics::Statistics;
+use super::validation::Prediction;
 use super::{automatic, given_knots, statistics};
+use crate::bases::Scratch;
 use crate::fitting::{
     self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, Residual, RobustFit, Round,
     Solution,
@@ -35,6 +38,14 @@ pub struct Fitted {
     /// A report of the fit.
     pub report: Report,
     robust: Option<RobustFit>,
+    errors: Option<Errors>,
+}
+
+/// The errors of a spline, with the layout that they are those of: before it was moved or restricted.
+#[derive(Debug)]
+struct Errors {
+    certainty: Certainty,
+    own: Option<Spline>,
 }
 
 /// The report of a fit.
@@ -109,20 +120,18 @@ pub fn fit(
     // Robust weights are those of points, and interpolation takes the first one of each place.
     let is_merged = levels.is_some() && options.loss.is_none();
     let all = if is_merged { points.sites_in_frame(&frame, done) } else { points.in_frame(&frame, done) };
-    let (coefficients, chosen, robust) = match options.interpolates {
-        true => (interpolate(&layout, &all)?, None, None),
+    let (coefficients, chosen, robust, certainty) = match options.interpolates {
+        true => (interpolate(&layout, &all)?, None, None, None),
         false => {
-            let (coefficients, mut chosen, robust) = approximate(&layout, &all, settled, options, are_given)
-                .map_err(|error| error.of_input(points.name()))?;
+            let Approximation { coefficients, mut chosen, robust, certainty } =
+                approximate(&layout, &all, settled, options, are_given)
+                    .map_err(|error| error.of_input(points.name()))?;
             chosen.tension *= unit_of_tension(inner.as_ref().unwrap_or(&layout), points, options);
-            (coefficients, Some(chosen), robust)
+            (coefficients, Some(chosen), robust, certainty)
         }
     };
-    let (layout, coefficients) = match inner {
-        Some(inner) => restricted(layout, &coefficients, inner, points, options)?,
-        None => (layout, coefficients),
-    };
-    let spline = Spline::new(layout.unstretched()?, coefficients);
+    let (spline, own) = finished(layout, coefficients, inner, points, options)?;
+    let errors = certainty.map(|certainty| Errors { certainty, own });
     let is_rejected = |found: &Residual| robust.as_ref().is_some_and(|fit| fit.is_rejected(found));
     let residuals = Statistics::of(&spline, points, is_rejected, options.threads, done)?;
     let scale = robust.as_ref().map(|fit| (fit.scale, fit.has_converged));
@@ -130,7 +139,29 @@ pub fn fit(
     let sites = points.sites().filter(|_| is_merged).map(|sites| (sites.count(), sites.pure_error));
     let report =
         Report { points: points.count(), sites, search, levels, stretch, failure, chosen, scale, residuals };
-    Ok(Fitted { spline, report, robust })
+    Ok(Fitted { spline, report, robust, errors })
+}
+
+/// The spline in world coordinates on its final domain, and what it was before if that is another one.
+fn finished(
+    layout: Layout,
+    coefficients: Vec<f64>,
+    inner: Option<Layout>,
+    points: &Points,
+    options: &Options,
+) -> Result<(Spline, Option<Spline>)> {
+    let Some(inner) = inner else {
+        return Ok(match layout.unstretched()? {
+            None => (Spline::new(layout, coefficients), None),
+            Some(moved) => {
+                (Spline::new(moved, coefficients.clone()), Some(Spline::new(layout, coefficients)))
+            }
+        });
+    };
+    let sites = points.places()?.0.into_iter().map(|place| layout.frame.to_stored(place));
+    let found = fitting::projected((&layout.basis, &coefficients), &inner.basis, sites, options.threads)?;
+    let inner = Layout { frame: layout.frame.clone(), ..inner };
+    Ok((Spline::new(inner.unstretched()?.unwrap_or(inner), found), Some(Spline::new(layout, coefficients))))
 }
 
 /// Knots with their functions, and where they come from.
@@ -164,20 +195,35 @@ fn placed(
     Ok(Placed { layout, search: None, found: Some((levels, settled, inner)), failure })
 }
 
-/// The spline on the smaller domain of other knots.
-fn restricted(
-    layout: Layout,
-    coefficients: &[f64],
-    inner: Layout,
-    points: &Points,
-    options: &Options,
-) -> Result<(Layout, Vec<f64>)> {
-    let sites = points.places()?.0.into_iter().map(|place| layout.frame.to_stored(place));
-    let found = fitting::projected((&layout.basis, coefficients), &inner.basis, sites, options.threads)?;
-    Ok((Layout { frame: layout.frame, ..inner }, found))
-}
-
 impl Fitted {
+    /// What its errors follow from: a layout with coefficients, and their certainty.
+    ///
+    /// # Errors
+    /// Usage, if the options did not ask for errors, or the spline has none.
+    pub(super) fn errors(&self) -> Result<(&Layout, &[f64], &Certainty)> {
+        let Some(Errors { certainty, own }) = &self.errors else {
+            return Err(Error::usage("robust and interpolating splines have no standard errors"));
+        };
+        let Spline { layout, coefficients, .. } = own.as_ref().unwrap_or(&self.spline);
+        Ok((layout, coefficients, certainty))
+    }
+
+    /// The prediction of a point of some weight; `None` outside of the domain. Its error is NaN if there is none.
+    pub(super) fn prediction(&self, one: &Observation, scratch: &mut Scratch) -> Option<Prediction> {
+        let Observation { point: place, value, weight } = *one;
+        let Layout { basis, frame, .. } = &self.spline.layout;
+        let at = frame.to_stored(place);
+        let predicted =
+            basis.is_in_domain(at).then(|| basis.value(&self.spline.coefficients, at, scratch))?;
+        let (mut error, mut half) = (f64::NAN, f64::NAN);
+        if let Ok((layout, _, certainty)) = self.errors() {
+            let own = certainty.standard_error(layout.basis.at(layout.frame.to_stored(place), scratch));
+            error = own.hypot(certainty.noise / weight.sqrt());
+            half = certainty.width * error;
+        }
+        Some(Prediction { place, value, predicted, error, half })
+    }
+
     /// Writes the rejected points, as lines of x, y, elevation and residual. Returns their number, which is
     /// zero if the fit is not robust.
     ///
@@ -258,6 +304,15 @@ pub(super) fn check_degree(options: &Options) -> Result<()> {
     }
 }
 
+/// Coefficients with what they follow from.
+struct Approximation {
+    coefficients: Vec<f64>,
+    chosen: SmoothingChoice,
+    robust: Option<RobustFit>,
+    /// If it is wanted, and the fit is not robust.
+    certainty: Option<Certainty>,
+}
+
 /// Coefficients by least squares, with robust weights or a smoothing, which may be settled.
 fn approximate(
     layout: &Layout,
@@ -265,7 +320,7 @@ fn approximate(
     settled: Option<SmoothingChoice>,
     options: &Options,
     are_given: bool,
-) -> Result<(Vec<f64>, SmoothingChoice, Option<RobustFit>)> {
+) -> Result<Approximation> {
     let with = settled.as_ref().map(|chosen| settled_by(chosen, options));
     let mut problem = choose_smoothing(layout, all, with.as_ref().unwrap_or(options), are_given)?;
     if let Some(settled) = settled {
@@ -273,7 +328,15 @@ fn approximate(
     }
     let Some(loss) = options.loss else {
         let Solution { coefficients, has_converged } = problem.solve(&layout.basis)?;
-        return Ok((coefficients, SmoothingChoice { is_solved: has_converged, ..problem.chosen }, None));
+        let certainty = match options.wants_errors {
+            true => {
+                let found = problem.certainty(&layout.basis)?;
+                Some(found.calibrated(&layout.basis, &coefficients, all, options.threads)?)
+            }
+            false => None,
+        };
+        let chosen = SmoothingChoice { is_solved: has_converged, ..problem.chosen };
+        return Ok(Approximation { coefficients, chosen, robust: None, certainty });
     };
     let Problem { normal, energy, lambda, chosen, start } = problem;
     let (basis, energy, threads) = (&layout.basis, energy.as_ref(), options.threads);
@@ -282,7 +345,8 @@ fn approximate(
         None => fitting::robust(&normal, basis, all, loss, energy, lambda, threads)?,
     };
     let chosen = SmoothingChoice { is_solved: robust.is_solved, ..chosen };
-    Ok((robust.coefficients.clone(), chosen, Some(robust)))
+    let coefficients = robust.coefficients.clone();
+    Ok(Approximation { coefficients, chosen, robust: Some(robust), certainty: None })
 }
 
 /// Coefficients of the spline that interpolates the triangulated points at Greville sites.

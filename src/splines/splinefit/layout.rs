@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
+use super::beyond::Beyond;
 use super::breaklines;
 use super::certainty::Certainty;
 use super::frame::Frame;
@@ -43,6 +44,8 @@ pub struct Spline {
     pub coefficients: Vec<f64>,
     /// How sure it is, for attributes that are errors.
     pub certainty: Option<Certainty>,
+    /// Limits other than the domain.
+    pub beyond: Beyond,
 }
 
 impl Layout {
@@ -63,12 +66,13 @@ impl Layout {
     }
 
     /// The same functions in world coordinates, if they are stretched.
-    pub(super) fn unstretched(self) -> Result<Layout> {
-        let Some(stretch) = self.frame.stretch() else { return Ok(self) };
+    pub(super) fn unstretched(&self) -> Result<Option<Layout>> {
+        let Some(stretch) = self.frame.stretch() else { return Ok(None) };
         let Layout { frame, knots, configurations, functions, .. } = self;
         let knots = Knots::new(knots.points().iter().map(|&stored| stretch.undo(stored)).collect())?;
-        let basis = Basis::of_functions(&knots, &configurations, &functions)?;
-        Ok(Layout { frame: Frame::world(frame.crs), knots, configurations, functions, basis })
+        let basis = Basis::of_functions(&knots, configurations, functions)?;
+        let (configurations, functions) = (configurations.clone(), functions.clone());
+        Ok(Some(Layout { frame: Frame::world(frame.crs.clone()), knots, configurations, functions, basis }))
     }
 
     /// Builds a layout from a set of knots. Of several degrees, it takes the configurations for splines of
@@ -147,7 +151,7 @@ impl Layout {
 impl Spline {
     /// A spline without errors.
     pub fn new(layout: Layout, coefficients: Vec<f64>) -> Spline {
-        Spline { layout, coefficients, certainty: None }
+        Spline { layout, coefficients, certainty: None, beyond: Beyond::default() }
     }
 
     /// Opens a file ("-" is standard input).

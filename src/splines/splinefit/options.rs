@@ -40,6 +40,8 @@ pub struct Options {
     pub degree: Option<usize>,
     /// The typical distance of points, if it is known; otherwise the root of the area of a point.
     pub distance: Option<f64>,
+    /// Whether the errors of the spline are wanted.
+    pub wants_errors: bool,
     /// Seed of folds.
     pub seed: u64,
     /// Threads that evaluate functions.
@@ -62,6 +64,7 @@ impl Default for Options {
             polylines_name: String::new(),
             degree: None,
             distance: None,
+            wants_errors: false,
             seed: 1,
             threads: NonZeroUsize::MIN,
         }

@@ -1,16 +1,17 @@
-//! Points of files as observations of their elevation, in world coordinates or in the frame of knots.
+//! The points of a fit with their weights, in world coordinates or in the frame of knots.
 
 use std::cell::Cell;
 use std::path::PathBuf;
+use std::rc::Rc;
 
+use super::elevations::Elevations;
 use super::frame::Frame;
 use super::sites::Sites;
 use crate::fitting::{self, Observation, ObservationReader, Observations};
 use spmesh_base::error::{Error, Result, counted};
 use spmesh_delaunay::predicates::Point2;
-use spmesh_formats::source::{FillValues, Input, PointReader, SourceOptions};
-use spmesh_stream::model::bounds::Point;
-use spmesh_stream::{Coordinates, Crs};
+use spmesh_formats::source::{FillValues, Input, SourceOptions};
+use spmesh_stream::Crs;
 
 /// Up to this number, points that many passes read are held in memory, with 32 bytes each: most sources take
 /// longer to decode...
@@ -29,7 +30,7 @@ const BATCH: usize = 1 << 14;
 /// The points of an input with their weights, in world coordinates.
 #[derive(Debug)]
 pub struct Points {
-    input: Input,
+    input: Rc<Input>,
     weights: Option<Vec<f64>>,
     held: Option<Vec<Observation>>,
     /// A sample of elevations, sorted.
@@ -63,7 +64,7 @@ impl Points {
     ) -> Result<Points> {
         let input = Input::open(paths, &SourceOptions { dims: 2, ..options.clone() })?;
         let mut points = Points {
-            input,
+            input: Rc::new(input),
             weights,
             held: None,
             sample: Vec::new(),
@@ -168,6 +169,53 @@ impl Points {
             places.extend(fitting::hull_corners(&all));
             first += batch.len();
             batch.clear();
+        }
+    }
+
+    /// The points of some places, and all others.
+    ///
+    /// # Errors
+    /// Usage, if points are too many to be held.
+    pub(super) fn divided(&self, is_first: impl Fn(Point2) -> bool) -> Result<[Points; 2]> {
+        let Some(held) = &self.held else {
+            let what =
+                format!("{} points are too many for cross-validation: take a part of them", self.count);
+            return Err(Error::usage(what).of_input(self.name()));
+        };
+        let parts: (Vec<Observation>, Vec<Observation>) = held.iter().partition(|one| is_first(one.point));
+        let of = |held: Vec<Observation>| {
+            let mut sample = Sample::default();
+            held.iter().for_each(|one| sample.add(one.value));
+            Points {
+                input: Rc::clone(&self.input),
+                weights: None,
+                sample: sample.in_order(),
+                count: held.len() as u64,
+                sites: Sites::of(&held),
+                held: Some(held),
+                no_data: Vec::new(),
+                dropped: Cell::new(0),
+            }
+        };
+        Ok([of(parts.0), of(parts.1)])
+    }
+
+    /// Calls `visit` with all points and their numbers.
+    ///
+    /// # Errors
+    /// If points cannot be read.
+    pub(super) fn for_each(&self, mut visit: impl FnMut(u64, &Observation)) -> Result<()> {
+        let (mut reader, mut batch, mut index) = (self.read_world()?, Vec::new(), 0);
+        loop {
+            batch.clear();
+            reader.append(&mut batch)?;
+            if batch.is_empty() {
+                return Ok(());
+            }
+            for one in &batch {
+                visit(index, one);
+                index += 1;
+            }
         }
     }
 
@@ -373,58 +421,5 @@ impl<'a> Cursor<'a> {
         }
         let one = self.batch[(index - self.first) as usize];
         Ok((one.point, one.value))
-    }
-}
-
-/// The points of files: the elevation is the value, and all weights are one. Units: those of the world.
-#[derive(Debug, Clone, Copy)]
-pub struct Elevations<'a> {
-    input: &'a Input,
-}
-
-impl<'a> Elevations<'a> {
-    /// Observations of an input in two dimensions.
-    ///
-    /// # Errors
-    /// Points without an elevation.
-    pub fn of(input: &'a Input) -> Result<Elevations<'a>> {
-        let description = input.description();
-        if !description.has_elevation {
-            let what = "points have no elevation: splines are fitted to one, in the third column";
-            return Err(Error::usage(what).of_input(input.name()));
-        }
-        Ok(Elevations { input })
-    }
-
-    /// Starts a pass that does not borrow this value.
-    ///
-    /// # Errors
-    /// Those of [`Input::read`].
-    pub fn into_reader(self) -> Result<Box<dyn ObservationReader + 'a>> {
-        let coordinates = self.input.description().coordinates;
-        Ok(Box::new(OfInput { reader: self.input.read()?, coordinates, batch: Vec::new() }))
-    }
-}
-
-impl Observations for Elevations<'_> {
-    fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
-        self.into_reader()
-    }
-}
-
-struct OfInput {
-    reader: Box<dyn PointReader>,
-    coordinates: Coordinates,
-    batch: Vec<Point>,
-}
-
-impl ObservationReader for OfInput {
-    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
-        self.reader.next_batch(&mut self.batch)?;
-        observations.extend(self.batch.iter().map(|&stored| {
-            let [x, y, z] = self.coordinates.to_world(stored);
-            Observation::new([x, y], z)
-        }));
-        Ok(())
     }
 }

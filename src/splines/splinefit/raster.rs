@@ -197,7 +197,7 @@ impl<'a> Bands<'a> {
     fn evaluate_part(&self, first: usize, values: &mut [f64]) -> Result<()> {
         let rows = first..first + values.len() / self.row_len();
         match self.attribute {
-            Attribute::Value => self.sweep(rows.start, values),
+            Attribute::Value if !self.spline.beyond.is_any() => self.sweep(rows.start, values),
             attribute => {
                 let mut scratch = Scratch::default();
                 for (row, values) in rows.zip(values.chunks_exact_mut(self.row_len())) {

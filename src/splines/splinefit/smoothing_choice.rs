@@ -1,5 +1,6 @@
 //! The choice of the smoothing parameter.
 
+use super::certainty::Certainty;
 use super::layout::Layout;
 use super::options::{Options, Smoothing};
 use super::points::PointsInFrame;
@@ -32,6 +33,9 @@ pub struct SmoothingChoice {
 /// ratio of scores, times the number of points, is then about a difference of Akaike's criterion.
 const OVERRULING: f64 = 6.0;
 
+/// Tensions of knots that follow density: velocities across a fault are nearly those of a membrane.
+const TENSIONS: [f64; 4] = [0.0, 1.0, 2.0, 4.0];
+
 impl SmoothingChoice {
     /// A smoothing without a reason.
     pub(super) fn given(lambda: f64, tension: f64) -> SmoothingChoice {
@@ -62,6 +66,11 @@ impl Problem {
     pub(super) fn solve(&self, basis: &Basis) -> Result<Solution> {
         let equations = Equations::new(basis, &self.normal, self.energy.as_ref())?;
         tensed(equations, self.chosen.tension).solution(self.lambda)
+    }
+
+    pub(super) fn certainty(&self, basis: &Basis) -> Result<Certainty> {
+        let equations = Equations::new(basis, &self.normal, self.energy.as_ref())?;
+        Certainty::new(&tensed(equations, self.chosen.tension), self.lambda)
     }
 }
 
@@ -109,6 +118,7 @@ pub(super) fn choose_smoothing(
         (Some(bending), Some(Method::Likelihood), _) if options.loss.is_none() => {
             let tensions: &[f64] = match options.tension {
                 Some(own) => &[own],
+                None if basis.degree() > 1 && options.distance.is_some() => &TENSIONS,
                 None if basis.degree() > 1 => &fitting::TENSIONS,
                 None => &[0.0],
             };

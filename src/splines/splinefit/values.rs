@@ -89,8 +89,15 @@ impl Spline {
     pub(super) fn jet(&self, world: Point2, attribute: Attribute, scratch: &mut Scratch) -> Option<Jet> {
         let (basis, frame) = (&self.layout.basis, &self.layout.frame);
         let at = frame.to_stored(world);
-        if !basis.is_in_domain(at) {
+        if self.beyond.is_far(world) {
             return None;
+        }
+        if !basis.is_in_domain(at) {
+            let jet = self.jet_outside(at, scratch).filter(|_| !attribute.is_error())?;
+            return Some(match attribute {
+                Attribute::Gradient | Attribute::Hessian => frame.jet_to_world(jet),
+                _ => frame.jet_in_one_unit(jet),
+            });
         }
         Some(match attribute {
             Attribute::Value => Jet::constant(basis.value(&self.coefficients, at, scratch)),
@@ -100,11 +107,47 @@ impl Spline {
                 let noise = if attribute == Attribute::PredictionError { certainty.noise } else { 0.0 };
                 Jet::constant(error.hypot(noise))
             }
+            Attribute::Interval => {
+                let certainty = self.certainty.as_ref()?;
+                let values = basis.at(at, scratch);
+                let half = certainty.width * certainty.standard_error(values).hypot(certainty.noise);
+                let value = basis.value(&self.coefficients, at, scratch);
+                // The upper end has no place of its own.
+                Jet { value: value - half, gradient: [value + half, 0.0], ..Jet::default() }
+            }
+            Attribute::SlopeError => Jet::constant(self.slope_error(at, scratch)?),
             Attribute::Gradient | Attribute::Hessian => {
                 frame.jet_to_world(basis.jet(&self.coefficients, at, scratch))
             }
             _ => frame.jet_in_one_unit(basis.jet(&self.coefficients, at, scratch)),
         })
+    }
+}
+
+impl Spline {
+    /// The standard error of the slope at a stored place, in degrees: that of the gradient along itself, as far
+    /// as slopes are linear in it. Where it is level, that of the gradient along any direction, on average.
+    fn slope_error(&self, at: Point2, scratch: &mut Scratch) -> Option<f64> {
+        let certainty = self.certainty.as_ref()?;
+        let jets = self.layout.basis.jets_at(at, scratch);
+        let gradient = jets.iter().fold([0.0; 2], |sum, (function, jet)| {
+            [0, 1].map(|axis| sum[axis] + self.coefficients[*function as usize] * jet.gradient[axis])
+        });
+        let steepness = gradient[0].hypot(gradient[1]);
+        let along = |[x, y]: [f64; 2]| -> f64 {
+            let values: Vec<(u32, f64)> = jets
+                .iter()
+                .map(|(function, jet)| (*function, x * jet.gradient[0] + y * jet.gradient[1]))
+                .collect();
+            certainty.standard_error(&values)
+        };
+        let error = match steepness > 0.0 {
+            true => along(gradient.map(|slope| slope / steepness)),
+            false => along([1.0, 0.0]).hypot(along([0.0, 1.0])) / 2f64.sqrt(),
+        };
+        let both = Jet { gradient: [steepness, error], ..Jet::default() };
+        let [steepness, error] = self.layout.frame.jet_in_one_unit(both).gradient;
+        Some((error / (1.0 + steepness * steepness)).to_degrees())
     }
 }
 

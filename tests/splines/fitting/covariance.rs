@@ -36,6 +36,19 @@ fn variances_are_those_of_dense_equations() {
             let found = covariance.variance(basis.at(site, &mut scratch));
             assert!((found / expected - 1.0).abs() < 1e-8, "{tension} at {site:?}: {found}, {expected}");
         }
+        // Of derivatives, by differences of values.
+        const STEP: f64 = 1e-4;
+        for site in sites().filter(|site| site.iter().all(|x| (0.1..0.9).contains(x))) {
+            let moved = [-STEP, STEP].map(|by| [site[0] + by, site[1]]);
+            let [low, high] = [0, 1].map(|end| dense(&basis, [moved[end]].into_iter()).remove(0));
+            let row: Vec<f64> =
+                low.iter().zip(&high).map(|(low, high)| (high - low) / (2.0 * STEP)).collect();
+            let expected = dot(&row, &solve_dense(whole.clone(), row.clone()));
+            let jets = basis.jets_at(site, &mut scratch);
+            let along: Vec<(u32, f64)> = jets.iter().map(|(at, jet)| (*at, jet.gradient[0])).collect();
+            let found = covariance.variance(&along);
+            assert!((found / expected - 1.0).abs() < 1e-3, "{tension} at {site:?}: {found}, {expected}");
+        }
     }
 }
 

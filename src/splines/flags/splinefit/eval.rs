@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::eval_format::{FORMATS, Form, KINDS, format_of};
-use super::fit::read_weights;
+use super::fit::{parse_positive, read_weights};
 use super::{check_stdin, say};
 use crate::splinefit::{Attribute, Certainty, Layout, Points, Spline};
 use spmesh_base::error::{Error, Result};
@@ -75,9 +75,17 @@ pub(super) struct Flags {
     #[arg(long, value_name = "KIND", default_value = "value", value_parser = named(KINDS))]
     kind: Attribute,
 
-    /// The points that the spline was fitted to, for the kinds standard-error and prediction-error
+    /// The points that the spline was fitted to, for the kinds of errors
     #[arg(long, value_name = "POINTS", num_args = 1.., conflicts_with_all = ["basis_function", "collocation"])]
     points: Vec<PathBuf>,
+
+    /// Leave out places that are farther from the nearest of the points of --points
+    #[arg(long, value_name = "D", requires = "points", value_parser = parse_positive, conflicts_with = "collocation")]
+    max_distance: Option<f64>,
+
+    /// Outside of the domain, continue linearly from the nearest place of its border
+    #[arg(long, value_name = "linear", value_parser = named(&[("linear", ())]), conflicts_with = "collocation")]
+    extrapolate: Option<()>,
 
     /// The weights of these points in the fit
     #[arg(long, value_name = "FILE", requires = "points")]
@@ -121,13 +129,13 @@ impl Flags {
     }
 
     fn check_points(&self) -> Result<()> {
-        match (self.kind.is_error(), self.points.is_empty()) {
-            (true, true) => Err(Error::usage(
+        match (self.kind.is_error(), self.points.is_empty() || self.max_distance.is_some()) {
+            _ if self.kind.is_error() && self.points.is_empty() => Err(Error::usage(
                 "errors follow from the points that the spline was fitted to: give them with --points",
             )),
-            (false, false) => {
-                Err(Error::usage("--points is for --kind standard-error and prediction-error: leave it out"))
-            }
+            (false, false) => Err(Error::usage(
+                "--points is for the kinds of errors and --kind interval: leave it out, or give --max-distance",
+            )),
             _ => Ok(()),
         }
     }
@@ -137,15 +145,30 @@ impl Flags {
             Some(function) => return Spline::open_function(&self.spline, function),
             None => Spline::open(&self.spline)?,
         };
-        if !self.kind.is_error() {
+        let spline = if self.extrapolate.is_some() { spline.extrapolated() } else { spline };
+        if self.points.is_empty() {
             return Ok(spline);
         }
         let weights = self.weights.as_ref().map(|path| read_weights(path)).transpose()?;
         let options = SourceOptions { reader: &SPLINEFIT, holds_points: true, ..SourceOptions::default() };
         let points = Points::open(&self.points, &options, weights, Vec::new(), true, |_| ())?;
         points.notices().iter().for_each(|text| say(common, text));
-        let certainty = Certainty::of(&spline, &points, self.threads.get())?;
-        say(common, &format!("noise {:.4e}, lambda {:.4e}", certainty.noise, certainty.smoothing.lambda));
+        let spline = match self.max_distance {
+            Some(distance) => spline.near(&points, distance)?,
+            None => spline,
+        };
+        if !self.kind.is_error() {
+            return Ok(spline);
+        }
+        let (certainty, smoothing) = Certainty::of(&spline, &points, self.threads.get())?;
+        let Certainty { noise, width, .. } = certainty;
+        say(
+            common,
+            &format!(
+                "noise {noise:.4e}, lambda {:.4e}, intervals of {width:.3} prediction errors",
+                smoothing.lambda
+            ),
+        );
         Ok(Spline { certainty: Some(certainty), ..spline })
     }
 

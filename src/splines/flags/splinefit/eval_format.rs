@@ -18,6 +18,8 @@ pub(super) const KINDS: Names<Attribute> = &[
     ("tangential-curvature", Attribute::TangentialCurvature),
     ("standard-error: The standard error of the value, with --points", Attribute::StandardError),
     ("prediction-error: The same, with the noise of a point", Attribute::PredictionError),
+    ("interval: What holds 95 % of points there: lower, upper, with --points", Attribute::Interval),
+    ("slope-error: The standard error of the slope, in degrees, with --points", Attribute::SlopeError),
     ("gradient: Both derivatives: dx, dy", Attribute::Gradient),
     ("hessian: The second derivatives: dxx, dxy, dyy", Attribute::Hessian),
 ];

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::fitting::{Choice, FailedTrial};
 use crate::splinefit::{
     EXCESS_MAX, Extent, Fitted, Level, Levels, PERCENTILES, Report, SmoothingChoice, Spline, Statistics,
-    Stop, Stretch,
+    Stop, Stretch, Validated,
 };
 use spmesh_base::error::counted;
 use spmesh_shell::peak_memory;
@@ -122,6 +122,23 @@ fn of_choice(choice: &Choice, chosen: &SmoothingChoice) -> Vec<String> {
     notices
 }
 
+/// The outcome of cross-validation.
+pub(super) fn of_validation(validated: &Validated) -> String {
+    let outside = match validated.outside {
+        0 => String::new(),
+        outside => {
+            format!(" ({} outside of the domain of the others)", counted(outside, "point is", "points are"))
+        }
+    };
+    format!(
+        "cross-validation of {}: rms {}, mean {}, intervals of 95 % hold {:.1} %{outside}",
+        counted(validated.predictions.len() as u64, "point", "points"),
+        short(validated.root_mean_square()),
+        short(validated.mean()),
+        100.0 * validated.held(),
+    )
+}
+
 /// The warning about a spline that leaves the range of elevations.
 pub(super) fn excess(residuals: &Statistics) -> Option<String> {
     let excess = residuals.excess().filter(|excess| excess.share > EXCESS_MAX)?;
@@ -157,6 +174,7 @@ pub(super) fn outside(residuals: &Statistics) -> String {
 pub(super) fn stats(
     fitted: &Fitted,
     rejected: Option<u64>,
+    validated: Option<&Validated>,
     seed: u64,
     time: Duration,
     output_bytes: u64,
@@ -165,7 +183,13 @@ pub(super) fn stats(
     let report = number_rows(fitted).into_iter().fold(report, |report, (label, key, number)| {
         report.row(label, format!("{number:.6e}")).entry(key, number)
     });
-    details(report, &fitted.report)
+    let validation = validated.map(|validated| {
+        json!({
+            "points": validated.predictions.len(), "outside": validated.outside, "mean": validated.mean(),
+            "rms": validated.root_mean_square(), "held": validated.held(),
+        })
+    });
+    details(report, &fitted.report).entry("validation", json!(validation))
 }
 
 fn count_rows(fitted: &Fitted, rejected: Option<u64>, seed: u64, output_bytes: u64) -> Vec<Row<u64>> {
