@@ -38,7 +38,7 @@ fn flags(command: &[&str]) -> Vec<String> {
 }
 
 /// A command of every program, and arguments with which it runs in a folder that has the files.
-const COMMANDS: [(&[&str], &[&str]); 22] = [
+const COMMANDS: [(&[&str], &[&str]); 23] = [
     (&["spfinalize"], &["points.txt"]),
     (&["spdelaunay2d"], &["points.spm"]),
     (&["spdelaunay3d"], &["points3.spm"]),

@@ -277,3 +277,17 @@ fn what_has_no_place_is_refused_with_a_remedy() {
     let negative = ["-", "--out-dir", out.as_str(), "--tolerance", "-1"];
     assert_outcome("sptiles", &negative, &mesh, 2, "give a number from 0 on");
 }
+
+#[test]
+fn an_earlier_pyramid_is_not_replaced_in_parts() {
+    let folder = Folder::new();
+    let mesh = mesh_of("500000 5400000 1\n500100 5400000 2\n500000 5400100 3\n", "EPSG:25832");
+    let out = folder.path("tiles");
+    for (format, description) in [("quantized-mesh", "layer.json"), ("3dtiles", "tileset.json")] {
+        let all = ["-", "-q", "--to", format, "--out-dir", &out, "--tolerance", "1"];
+        assert_outcome("sptiles", &all, &mesh, 0, "");
+        let before = std::fs::read(Path::new(&out).join(description)).unwrap();
+        assert_outcome("sptiles", &all, &mesh, 2, "is there: remove the folder");
+        assert!(std::fs::read(Path::new(&out).join(description)).unwrap() == before);
+    }
+}

@@ -35,7 +35,7 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-fn tools() -> [Command; 19] {
+fn tools() -> [Command; 20] {
     [
         spfinalize::Flags::command(),
         spdelaunay2d::Flags::command(),

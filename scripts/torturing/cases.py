@@ -94,8 +94,8 @@ class Case:
         self.rooms.append(room)
         room.outer = pathlib.Path(folder)
         is_old = self.numbers.random() < 0.5 if has_old is None else has_old
-        # Nodes that are there would not be made.
-        if is_old and is_to_file and "spnode" not in self.job.tools and self.job.name != "sweep":
+        # Nodes that are there would not be made, and pyramids are refused.
+        if is_old and is_to_file and "spnode" not in self.job.tools and self.job.name not in ("sweep", "tiles"):
             room.place_old(self.whole(True).files)
         return room
 

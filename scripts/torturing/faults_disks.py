@@ -153,7 +153,7 @@ def no_folder(case):
     shutil.rmtree(room.out)
     outcome = case.run(room)
     room.out.mkdir(exist_ok=True)
-    makes = case.job.name in ("nodes", "sweep", "heights", "classes", "sheets", "levels")
+    makes = case.job.name in ("nodes", "sweep", "heights", "classes", "sheets", "levels", "tiles")
     expected = Expected(
         first_failed(outcome, case.stage),
         [0] if makes else [1],

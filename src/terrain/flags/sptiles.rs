@@ -109,7 +109,7 @@ pub struct Flags {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`write`]; if an input or output cannot be opened.
+/// As [`write()`]; if an input or output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     let started = Instant::now();

@@ -86,7 +86,7 @@ impl Cells {
         let too_far = || {
             let [x, y, z] = world;
             Error::usage(format!(
-                "the point ({x}, {y}, {z}) is too far from the origin to find the ground there"
+                "the point ({x:?}, {y:?}, {z:?}) is too far from the origin to find the ground there"
             ))
         };
         let at = [0, 1].map(|axis| world[axis] / self.size + NUDGE);

@@ -11,9 +11,8 @@ use super::available::{Rectangle, below, of_levels, rectangles};
 use super::pyramid::{Options, Ready};
 use super::quantized::{append_metadata, encode};
 use super::scheme::{Scheme, Tile};
-use super::{write_description, write_tile, written};
+use super::{start, write_description, write_tile, written};
 use spmesh_base::error::Result;
-use spmesh_base::output::{create_folder, remove_earlier};
 
 /// Tiles of every so many levels say which tiles there are below.
 const METADATA_LEVELS: u32 = 10;
@@ -34,9 +33,7 @@ pub(super) struct Layer {
 
 impl Layer {
     pub(super) fn new(options: &Options, levels: u32) -> Result<Layer> {
-        create_folder(&options.folder)?;
-        // Without it, what is in the folder is no whole pyramid.
-        remove_earlier(&options.folder.join("layer.json"), "the file of the layer")?;
+        start(&options.folder, "layer.json")?;
         let Options { folder, scheme, has_normals, has_page, .. } = options.clone();
         let bounds = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
         Ok(Layer {

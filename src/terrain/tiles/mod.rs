@@ -25,6 +25,19 @@ use scheme::Tile;
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::{Output, create_folder, sync_files};
 
+/// Makes the folder of a pyramid, which its description of this name will make whole.
+///
+/// # Errors
+/// Usage, if an earlier pyramid is there: replaced tile by tile, it would be neither until the end.
+fn start(folder: &Path, description: &str) -> Result<()> {
+    create_folder(folder)?;
+    if folder.join(description).symlink_metadata().is_ok() {
+        let what = format!("a pyramid with {description} is there: remove the folder, or give another one");
+        return Err(Error::usage(what).of_input(folder.display().to_string()));
+    }
+    Ok(())
+}
+
 /// Writes the file of a tile, as LEVEL/X/Y.ENDING in a folder.
 /// It counts only if the description of the pyramid is there, which `write_description` writes.
 fn write_tile(folder: &Path, level: u32, tile: Tile, ending: &str, bytes: &[u8]) -> Result<()> {

@@ -13,9 +13,8 @@ use super::earth::SEMI_MAJOR;
 use super::pyramid::{Options, Ready, SAFETY};
 use super::scheme::{Scheme, Tile};
 use super::tile_mesh::{TileMesh, direction};
-use super::{write_description, write_tile};
+use super::{start, write_description, write_tile};
 use spmesh_base::error::Result;
-use spmesh_base::output::{create_folder, remove_earlier};
 use spmesh_formats::cad::glb::{Glb, upright};
 use spmesh_stream::model::bounds::{Bounds, Point};
 
@@ -48,9 +47,7 @@ pub(super) struct Tileset {
 
 impl Tileset {
     pub(super) fn new(options: &Options, tolerances: &[f64]) -> Result<Tileset> {
-        create_folder(&options.folder)?;
-        // Without it, what is in the folder is no whole pyramid.
-        remove_earlier(&options.folder.join(NAME), "the file of the tileset")?;
+        start(&options.folder, NAME)?;
         Ok(Tileset {
             folder: options.folder.clone(),
             scheme: options.scheme,
