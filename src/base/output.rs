@@ -109,8 +109,8 @@ impl Output {
         self.finish(true)
     }
 
-    /// The same without waiting for the disk: for many small files that count only beside another one, which is
-    /// committed after [`sync_files`].
+    /// The same without waiting for the disk: for many small files that count only beside another one, which
+    /// is committed after [`sync_files`].
     ///
     /// # Errors
     /// As [`Output::commit`].

@@ -85,8 +85,8 @@ impl Knots {
         Ok(Knots { points, ranks, displacement: Displacement::default() })
     }
 
-    /// The same knots, displaced by another map. Its determinant must be positive, entries less than 2^56, and
-    /// at most two knots at a place.
+    /// The same knots, displaced by another map. Its determinant must be positive, entries less than 2^56,
+    /// and at most two knots at a place.
     #[must_use]
     pub fn displaced(self, displacement: Displacement) -> Knots {
         Knots { displacement, ..self }

@@ -39,7 +39,8 @@ pub(super) fn orient_copies<const N: usize>(knots: &Knots, ids: [u32; N]) -> Sig
 /// [`in_circle`] of four knots of which three at least are at the same place; `None` for others.
 ///
 /// Four copies: only the coefficient of e^4 is not zero: minus the product of all differences of ranks, as
-/// above, times the sum of the ranks. Three copies: their circle shrinks to a point, so the other knot is outside.
+/// above, times the sum of the ranks. Three copies: their circle shrinks to a point, so the other knot is
+/// outside.
 #[inline]
 pub(super) fn in_circle_of_copies(knots: &Knots, [a, b, c, d]: [u32; 4]) -> Option<Sign> {
     let is_copy = |p: u32, q: u32| knots.at(p) == knots.at(q);
@@ -62,8 +63,8 @@ fn is_even<const N: usize>(ranks: [u32; N]) -> bool {
     (0..N).map(later).sum::<usize>() % 2 == 0
 }
 
-/// The sign of the first that is not zero among the first C coefficients of a form. Domain: the constant one is
-/// zero.
+/// The sign of the first that is not zero among the first C coefficients of a form. Domain: the constant one
+/// is zero.
 fn sign<F: Form<N, 2>, const N: usize, const C: usize>(knots: &Knots, from: u32, to: [u32; N]) -> Sign {
     let displaced = Displaced {
         from: knots.at(from),
@@ -94,8 +95,8 @@ struct Displaced<const N: usize> {
 }
 
 impl<const N: usize> Displaced<N> {
-    /// Bits of the magnitude of a coefficient other than the constant one, at most, for a form of some degree:
-    /// one factor is a displacement. `lengths`: bits of differences of coordinates.
+    /// Bits of the magnitude of a coefficient other than the constant one, at most, for a form of some
+    /// degree: one factor is a displacement. `lengths`: bits of differences of coordinates.
     fn bits(&self, lengths: i32, degree: i32) -> i32 {
         let greatest = self.ranks.iter().fold(self.rank, |greatest, rank| greatest.max(*rank));
         let displacement = 2 * (64 - greatest.leading_zeros() as i32) + 1 + self.map.bits();

@@ -154,7 +154,8 @@ fn points_become_points_of_gltf() {
     assert_eq!((found.triangles.len(), mode), (0, 0));
 }
 
-/// What a file in classic netCDF holds: lengths of dimensions, and of each variable its attributes and numbers.
+/// What a file in classic netCDF holds: lengths of dimensions, and of each variable its attributes and
+/// numbers.
 #[derive(Default)]
 struct NetCdf {
     dimensions: Vec<usize>,

@@ -30,8 +30,8 @@ const fn refused(name: &'static str, line: &'static str, most: f64, part: &'stat
 /// What `--memory` of some programs stands beside: the program itself, and what is live of a mesh.
 const BESIDE: f64 = START_MAX + 8.0;
 
-/// A limit of the process is one of all; `spheight` has tables of its own size for the ground, and `dd4` takes
-/// about as much as it may.
+/// A limit of the process is one of all; `spheight` has tables of its own size for the ground, and `dd4`
+/// takes about as much as it may.
 const RUNS: [Run; 26] = [
     kept("tags of a plane", "spdelaunay2d --memory 32M --threads 1 tags.spm", 32.0),
     kept("tags, on threads", "spdelaunay2d --memory 32M --threads 2 tags.spm", 32.0),

@@ -137,7 +137,8 @@ fn constant_elevations_need_no_warning() {
 #[test]
 fn the_finest_knots_keep_the_smoothing_of_fewer() {
     let folder = Folder::new();
-    // Waves that are half as long are as noise to these points, which are 3.7 apart: fewer knots predict better.
+    // Waves that are half as long are as noise to these points, which are 3.7 apart: fewer knots predict
+    // better.
     let rough = points(600, 11, |x, y| hills(x, y) + (0.45 * x).sin() * (0.4 * y).cos());
     let (points, spline) = (folder.write("points.txt", rough), folder.path("spline.spm"));
     output(&["fit", "-q", &points, "-o", &spline], &[]);

@@ -1,7 +1,7 @@
 //! Writes glTF 2.0 in its binary form, GLB.
 //!
-//! Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 (buffers), 3.7 (meshes) and 4 (GLB). Axes are those
-//! of glTF: x is x, y is up, z is -y.
+//! Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 (buffers), 3.7 (meshes) and 4 (GLB). Axes
+//! are those of glTF: x is x, y is up, z is -y.
 
 use std::io::Write;
 use std::path::Path;
@@ -58,8 +58,8 @@ impl Glb {
         self.vertices * per_vertex + self.corners * INDEX_LEN
     }
 
-    /// Writes what precedes the positions, three f32 each. Normals, if there are any, and a u32 per corner follow,
-    /// all little-endian.
+    /// Writes what precedes the positions, three f32 each. Normals, if there are any, and a u32 per corner
+    /// follow, all little-endian.
     ///
     /// # Errors
     /// Usage, if the file becomes too long; or if writing fails.
@@ -134,8 +134,8 @@ fn too_long() -> Error {
     Error::usage("the mesh needs more than the 4 GiB of a GLB: make it smaller with spsimplify, or use PLY")
 }
 
-/// Writes points or a triangle mesh as GLB. Positions are differences from a local origin, where that helps; the
-/// node that holds the mesh is translated by it, and states it in its extras.
+/// Writes points or a triangle mesh as GLB. Positions are differences from a local origin, where that helps;
+/// the node that holds the mesh is translated by it, and states it in its extras.
 ///
 /// The format states its counts first, so everything waits in unnamed temporary files until the end. Memory:
 /// buffers only.

@@ -1,7 +1,7 @@
 //! Writes binary STL.
 //!
-//! Source: M. Burns, "Automated Fabrication" (1993), section 6.5: 80 bytes of text, the number of triangles, and for
-//! each its normal, its corners, and two bytes that are zero; numbers are little-endian.
+//! Source: M. Burns, "Automated Fabrication" (1993), section 6.5: 80 bytes of text, the number of triangles,
+//! and for each its normal, its corners, and two bytes that are zero; numbers are little-endian.
 
 use std::io::Write;
 use std::path::Path;
@@ -16,11 +16,11 @@ use spmesh_stream::{Event, Header, Kind, LiveVertices, Patch, Totals};
 
 const TEXT_LEN: usize = 80;
 
-/// Writes the triangles of a mesh as binary STL. Coordinates are differences from a local origin, where that helps;
-/// the text at the start and a notice state it.
+/// Writes the triangles of a mesh as binary STL. Coordinates are differences from a local origin, where that
+/// helps; the text at the start and a notice state it.
 ///
-/// The origin and the count precede the triangles, which wait in an unnamed temporary file. Memory: the width of
-/// the stream. Disk: 72 bytes per triangle.
+/// The origin and the count precede the triangles, which wait in an unnamed temporary file. Memory: the width
+/// of the stream. Disk: 72 bytes per triangle.
 pub struct StlSink<W> {
     output: W,
     header: Header,

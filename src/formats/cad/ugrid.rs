@@ -1,7 +1,8 @@
 //! Writes UGRID, the convention for meshes in netCDF, in the classic format of netCDF.
 //!
-//! Sources: "UGRID Conventions" 1.0 (ugrid-conventions.github.io); "The NetCDF Classic Format Specification" (Unidata);
-//! for the CRS, the attributes that MDAL reads, the library for meshes of QGIS. Numbers are big-endian.
+//! Sources: "UGRID Conventions" 1.0 (ugrid-conventions.github.io); "The NetCDF Classic Format Specification"
+//! (Unidata); for the CRS, the attributes that MDAL reads, the library for meshes of QGIS. Numbers are
+//! big-endian.
 
 use std::io::Write;
 use std::path::Path;

@@ -64,8 +64,8 @@ pub fn text(crs: &Crs) -> Option<String> {
     }
 }
 
-/// A short name of `crs`: its EPSG codes ("EPSG:26910", "EPSG:2991+5703") where it states them, else the names
-/// it gives itself.
+/// A short name of `crs`: its EPSG codes ("EPSG:26910", "EPSG:2991+5703") where it states them, else the
+/// names it gives itself.
 pub fn name(crs: &Crs) -> Option<String> {
     System::of(crs).name()
 }

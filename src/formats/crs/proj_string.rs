@@ -3,8 +3,8 @@
 use crate::crs::methods::Role;
 use crate::crs::system::{Horizontal, Kind};
 
-/// The projection of a system, and longitude and latitude on its ellipsoid, as strings of PROJ, without changes of
-/// datum and without the prime meridian; `None` where PROJ 4 has no such projection.
+/// The projection of a system, and longitude and latitude on its ellipsoid, as strings of PROJ, without
+/// changes of datum and without the prime meridian; `None` where PROJ 4 has no such projection.
 pub fn proj_string(system: &Horizontal) -> Option<(String, String)> {
     let Kind::Projected(base, projection) = &system.kind else { return None };
     let value = |role| projection.value(role);

@@ -16,7 +16,8 @@ pub type Polygon = Vec<Vec<Point2>>;
 /// and `MULTIPOLYGON`. Third coordinates are ignored.
 ///
 /// Vertices are rounded to the grid of the points, as those of lines are, also beyond its range. Coordinates
-/// of f64 are not rounded. All of them may take so many bytes of memory, at [`spmesh_base::limits::LINE_VERTEX_BYTES`] a vertex.
+/// of f64 are not rounded. All of them may take so many bytes of memory, at
+/// [`spmesh_base::limits::LINE_VERTEX_BYTES`] a vertex.
 ///
 /// # Errors
 /// Those of [`super::read_breaklines`]; usage, if the system of a file differs from that of the points;

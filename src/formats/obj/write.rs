@@ -11,8 +11,8 @@ use spmesh_stream::model::attributes::{Attribute, Attributes, NumberType};
 use spmesh_stream::{Event, Header, Kind};
 
 /// Writes a triangle mesh or points as OBJ. Vertices are counted from 1; finalization is not written. An
-/// attribute `rgb` of whole numbers becomes three numbers from 0 to 1 behind the coordinates, as many programs
-/// read them.
+/// attribute `rgb` of whole numbers becomes three numbers from 0 to 1 behind the coordinates, as many
+/// programs read them.
 pub struct ObjSink<W> {
     output: W,
     colour: Option<Colour>,

@@ -74,9 +74,9 @@ fn shortest(number: f64, origin: f64) -> f64 {
     format!("{difference:.places$}").parse().unwrap_or(difference) + 0.0
 }
 
-/// A place near the middle of a box, for differences that numbers of 32 bits hold with little loss. It has whole
-/// coordinates, or as many decimals as a box with sides below 1 needs. It is zero where the box is so near to zero
-/// that differences would gain less than two bits.
+/// A place near the middle of a box, for differences that numbers of 32 bits hold with little loss. It has
+/// whole coordinates, or as many decimals as a box with sides below 1 needs. It is zero where the box is so
+/// near to zero that differences would gain less than two bits.
 pub(crate) fn local_origin(bounds: &Bounds) -> Point {
     let Bounds { min, max } = bounds;
     let side = (0..3).map(|axis| max[axis] - min[axis]).fold(0.0, f64::max);

@@ -36,8 +36,8 @@ pub fn generalised_cross_validation(equations: &Equations, near: Option<f64>) ->
     search(Limits::of(equations).near(near), |lambda| Ok(Quality::of(equations, lambda)?.score))
 }
 
-/// Chooses as [`generalised_cross_validation`] does, but no lesser `lambda` than `least`, which is tried first.
-/// `visit` gets all trials with their quality.
+/// Chooses as [`generalised_cross_validation`] does, but no lesser `lambda` than `least`, which is tried
+/// first. `visit` gets all trials with their quality.
 ///
 /// Cost: two trials if that one is the best.
 ///

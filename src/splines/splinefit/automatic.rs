@@ -401,7 +401,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The root of the mean square of residuals, and the correlation of those that follow each other in order.
+    /// The root of the mean square of residuals, and the correlation of those that follow each other in
+    /// order.
     fn residuals(&self, layout: &Layout, coefficients: &[f64]) -> Result<[f64; 2]> {
         if self.order.is_empty() {
             return Ok([f64::NAN; 2]);

@@ -17,8 +17,8 @@ pub struct Beyond {
     border: Option<Vec<Point2>>,
 }
 
-/// How far inside of its border the domain is evaluated, as parts of the way to its middle: the first one that is
-/// inside whatever the rounding counts.
+/// How far inside of its border the domain is evaluated, as parts of the way to its middle: the first one
+/// that is inside whatever the rounding counts.
 const INSIDE: [f64; 3] = [1e-12, 1e-9, 1e-6];
 
 impl Beyond {
@@ -51,8 +51,8 @@ impl Spline {
         Ok(Spline { beyond, ..self })
     }
 
-    /// The same spline continued outside of its domain: with the value and the gradient of the nearest place of
-    /// its border, linearly.
+    /// The same spline continued outside of its domain: with the value and the gradient of the nearest place
+    /// of its border, linearly.
     #[must_use]
     pub fn extrapolated(self) -> Spline {
         let border = Some(self.layout.basis.domain_corners());

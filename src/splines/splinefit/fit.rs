@@ -208,7 +208,8 @@ impl Fitted {
         Ok((layout, coefficients, certainty))
     }
 
-    /// The prediction of a point of some weight; `None` outside of the domain. Its error is NaN if there is none.
+    /// The prediction of a point of some weight; `None` outside of the domain. Its error is NaN if there is
+    /// none.
     pub(super) fn prediction(&self, one: &Observation, scratch: &mut Scratch) -> Option<Prediction> {
         let Observation { point: place, value, weight } = *one;
         let Layout { basis, frame, .. } = &self.spline.layout;

@@ -19,8 +19,8 @@ use spmesh_delaunay::predicates::Point2;
 pub enum Validation {
     /// One of so many random parts of the places.
     Folds(usize),
-    /// One of ten random parts of the squares of a grid, whose side is given; by default, an eighth of the longer
-    /// side of the box of points. Units: those of the world.
+    /// One of ten random parts of the squares of a grid, whose side is given; by default, an eighth of the
+    /// longer side of the box of points. Units: those of the world.
     Blocks(Option<f64>),
     /// One place, without another choice of knots and smoothing.
     One,

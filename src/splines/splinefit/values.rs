@@ -125,8 +125,9 @@ impl Spline {
 }
 
 impl Spline {
-    /// The standard error of the slope at a stored place, in degrees: that of the gradient along itself, as far
-    /// as slopes are linear in it. Where it is level, that of the gradient along any direction, on average.
+    /// The standard error of the slope at a stored place, in degrees: that of the gradient along itself, as
+    /// far as slopes are linear in it. Where it is level, that of the gradient along any direction, on
+    /// average.
     fn slope_error(&self, at: Point2, scratch: &mut Scratch) -> Option<f64> {
         let certainty = self.certainty.as_ref()?;
         let jets = self.layout.basis.jets_at(at, scratch);

@@ -124,8 +124,8 @@ impl<'n> Lines<'n> {
         self.free.clear();
     }
 
-    /// Takes note of the next vertex of a patch. Returns whether a vertex or a segment may be at its place, up
-    /// to roundings.
+    /// Takes note of the next vertex of a patch. Returns whether a vertex or a segment may be at its place,
+    /// up to roundings.
     pub(super) fn look(&mut self, place: Point2) -> bool {
         let free = self.cells.free_around(place, self.spacing);
         self.free.push(free);
@@ -378,8 +378,8 @@ pub(super) fn foot([a, b]: [Point2; 2], place: Point2, near: f64) -> Option<f64>
     is_near.then(|| (along[0] * to[0] + along[1] * to[1]) / square)
 }
 
-/// Whether a triangle is counterclockwise, and the diameter of its circle less than a length. Its square is the
-/// product of the squares of the sides over that of twice the area.
+/// Whether a triangle is counterclockwise, and the diameter of its circle less than a length. Its square is
+/// the product of the squares of the sides over that of twice the area.
 #[inline]
 fn is_circle_less(length: f64, [a, b, c]: [Point2; 3]) -> bool {
     let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);

@@ -30,8 +30,8 @@ impl Rectangle {
     }
 }
 
-/// Rectangles that cover tiles, which are in the order of rows: runs in rows, joined where they are the same in rows
-/// one above the other.
+/// Rectangles that cover tiles, which are in the order of rows: runs in rows, joined where they are the same
+/// in rows one above the other.
 pub(super) fn rectangles(tiles: impl Iterator<Item = Tile>) -> Vec<Rectangle> {
     let mut done: Vec<Rectangle> = Vec::new();
     // Where the rectangles start that the row before, and this row, have grown.

@@ -106,8 +106,8 @@ impl Buckets {
         tiles
     }
 
-    /// The triangles of a tile, in an order that follows from their set. Heights are rounded to multiples of a
-    /// power of two.
+    /// The triangles of a tile, in an order that follows from their set. Heights are rounded to multiples of
+    /// a power of two.
     pub(super) fn triangles(&self, tile: Tile, power: u32) -> Result<Vec<Triangle>> {
         let Some(bucket) = self.tiles.get(&tile) else { return Ok(Vec::new()) };
         let mut bytes = Vec::new();

@@ -1,9 +1,9 @@
 //! Cuts triangles along the borders of tiles.
 //!
-//! A border point is computed from the ends of one edge, in an order that does not depend on the triangle, and is
-//! exactly on the border: so all pieces around it have the same point. Columns are cut first. A border between
-//! columns is then an edge of what is left and right of it, with the same ends, so rows cut it at the same points,
-//! too. See `docs/theory/tiles.md`.
+//! A border point is computed from the ends of one edge, in an order that does not depend on the triangle,
+//! and is exactly on the border: so all pieces around it have the same point. Columns are cut first. A border
+//! between columns is then an edge of what is left and right of it, with the same ends, so rows cut it at the
+//! same points, too. See `docs/theory/tiles.md`.
 
 use super::scheme::{Place, Scheme, Tile};
 
@@ -44,8 +44,8 @@ pub(super) struct Knife {
 }
 
 impl Knife {
-    /// Calls `take` with each tile that a triangle is in, and the corners of its part there, in the order of the
-    /// triangle's.
+    /// Calls `take` with each tile that a triangle is in, and the corners of its part there, in the order of
+    /// the triangle's.
     pub(super) fn cut(
         &mut self,
         (scheme, level): (Scheme, u32),

@@ -1,5 +1,5 @@
-//! Places on the Earth: from the coordinates of a mesh to longitude, latitude and height on WGS 84, and to X, Y and Z
-//! from its centre.
+//! Places on the Earth: from the coordinates of a mesh to longitude, latitude and height on WGS 84, and to X,
+//! Y and Z from its centre.
 
 use proj4rs::Proj;
 use proj4rs::transform::transform;

@@ -1,7 +1,7 @@
 //! Tiles in quantized-mesh 1.0, and `layer.json`, which says which there are.
 //!
-//! Sources: the specification of quantized-mesh-1.0 with its extensions; TileJSON 2.1 and the members beside it that
-//! viewers of terrain read (`available`, `metadataAvailability`).
+//! Sources: the specification of quantized-mesh-1.0 with its extensions; TileJSON 2.1 and the members beside
+//! it that viewers of terrain read (`available`, `metadataAvailability`).
 
 use std::path::PathBuf;
 

@@ -1,8 +1,8 @@
 //! `sptiles`: pyramids of tiles for viewers of the Earth. Why tiles fit together: `docs/theory/tiles.md`.
 //!
-//! `pyramid` makes the levels: `simplify` chooses the vertices of each, `earth` places them, `clip` cuts triangles along
-//! the borders of `scheme`, and `buckets` holds the parts of each tile. `tile_mesh` indexes a tile, which `layer` writes
-//! by `quantized`, or `tileset` as glTF. `available` says which tiles there are.
+//! `pyramid` makes the levels: `simplify` chooses the vertices of each, `earth` places them, `clip` cuts
+//! triangles along the borders of `scheme`, and `buckets` holds the parts of each tile. `tile_mesh` indexes a
+//! tile, which `layer` writes by `quantized`, or `tileset` as glTF. `available` says which tiles there are.
 
 mod available;
 mod buckets;

@@ -1,4 +1,5 @@
-//! Makes the levels of a pyramid one after the other: chooses vertices, cuts triangles into tiles, and writes these.
+//! Makes the levels of a pyramid one after the other: chooses vertices, cuts triangles into tiles, and writes
+//! these.
 
 use std::io::Read;
 use std::path::PathBuf;
@@ -35,7 +36,8 @@ pub struct Options {
     pub scheme: Scheme,
     /// What is written.
     pub target: Target,
-    /// Greatest vertical distance of a vertex of the mesh from the finest level. Units: those of its elevations.
+    /// Greatest vertical distance of a vertex of the mesh from the finest level. Units: those of its
+    /// elevations.
     pub tolerance: f64,
     /// The finest level; the first one that is assumed to be as fine as the tolerance if `None`.
     pub level_max: Option<u32>,
@@ -90,8 +92,8 @@ pub const LEVEL_MAX: u32 = 23;
 /// The error that viewers see in a level is this many times its tolerance, for what lies between vertices.
 pub(super) const SAFETY: f64 = 4.0;
 
-/// Reads a mesh and writes its pyramid. Calls `progress` with the number of each level, and the number of vertices that
-/// are done in it. Returns the levels, and notices for the user.
+/// Reads a mesh and writes its pyramid. Calls `progress` with the number of each level, and the number of
+/// vertices that are done in it. Returns the levels, and notices for the user.
 ///
 /// Memory: that of [`Simplification`], and 32 MiB with some 100 bytes for each tile. Disk: besides that of
 /// [`Simplification`], 24 bytes for each triangle of a level in a tile.

@@ -15,8 +15,8 @@ const SHORT_MAX: usize = 1 << 16;
 const NORMALS: u8 = 1;
 const METADATA: u8 = 4;
 
-/// The least power of two such that heights in a range are at most [`STEPS`] multiples of it above the first, and
-/// f32 holds these multiples.
+/// The least power of two such that heights in a range are at most [`STEPS`] multiples of it above the first,
+/// and f32 holds these multiples.
 pub(super) fn power_of([min, max]: [i32; 2]) -> u32 {
     let fits = |power: &u32| {
         let [base, top] = [min >> power, (max >> power) + 1];
@@ -25,8 +25,8 @@ pub(super) fn power_of([min, max]: [i32; 2]) -> u32 {
     (0..31).find(fits).unwrap_or(31)
 }
 
-/// The bytes of a tile whose heights are multiples of `power`. `middle` is its place, and `normals` those of the
-/// vertices.
+/// The bytes of a tile whose heights are multiples of `power`. `middle` is its place, and `normals` those of
+/// the vertices.
 pub(super) fn encode(mesh: &TileMesh, power: u32, normals: Option<&[Point]>) -> Vec<u8> {
     let heights = || mesh.vertices.iter().map(|vertex| vertex[2]);
     let base = heights().min().unwrap_or(0) >> power;
@@ -113,8 +113,8 @@ fn middle(mesh: &TileMesh) -> Point {
     geocentric([0, 1, 2].map(|i| 0.5 * (bounds.min[i] + bounds.max[i])))
 }
 
-/// The point above `centre` that is below the horizon only if all positions are, on the ellipsoid scaled to the unit
-/// sphere.
+/// The point above `centre` that is below the horizon only if all positions are, on the ellipsoid scaled to
+/// the unit sphere.
 ///
 /// Source: K. Ring, "Computing the horizon occlusion point" (cesium.com/blog, 2013).
 fn horizon(positions: &[Point], centre: Point) -> Point {
@@ -129,7 +129,8 @@ fn horizon(positions: &[Point], centre: Point) -> Point {
         let sin_beta = (squared - 1.0).sqrt() * cos_beta;
         1.0 / (cos_alpha * cos_beta - sin_alpha * sin_beta)
     };
-    // Where a tile spans so much that no point serves, one far out is never below the horizon of a viewer nearer.
+    // Where a tile spans so much that no point serves, one far out is never below the horizon of a viewer
+    // nearer.
     const FAR: f64 = 1e3;
     let highest =
         positions.iter().map(height).map(|h| if h > 0.0 { h.min(FAR) } else { FAR }).fold(1.0, f64::max);

@@ -78,8 +78,8 @@ impl Scheme {
         [corner(tile.x, tile.y), corner(tile.x + 1, tile.y + 1)]
     }
 
-    /// How far a tile of a level may be from the surface, by the rule that viewers of quantized meshes assume: a
-    /// quarter of the Equator at level 0 for 65 columns of points. Units: metres.
+    /// How far a tile of a level may be from the surface, by the rule that viewers of quantized meshes
+    /// assume: a quarter of the Equator at level 0 for 65 columns of points. Units: metres.
     pub fn assumed_error(self, level: u32) -> f64 {
         let columns = f64::from(self.columns(level));
         2.0 * PI * super::earth::SEMI_MAJOR * 0.25 / (65.0 * columns)

@@ -1,7 +1,7 @@
 //! Tiles as glTF, and `tileset.json` of 3D Tiles 1.1, which says where they are.
 //!
-//! Source: OGC 22-025r4, "3D Tiles". A viewer takes the axes of glTF to those of the Earth: what it has as x, -z and y
-//! is X, Y and Z.
+//! Source: OGC 22-025r4, "3D Tiles". A viewer takes the axes of glTF to those of the Earth: what it has as x,
+//! -z and y is X, Y and Z.
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -80,7 +80,8 @@ impl Tileset {
         Ok(len)
     }
 
-    /// The grid of positions in a level: a power of two, of which the differences in a tile are at most 2^23 multiples.
+    /// The grid of positions in a level: a power of two, of which the differences in a tile are at most 2^23
+    /// multiples.
     fn grid(&self, ready: &Ready) -> f64 {
         let width = TAU * SEMI_MAJOR / f64::from(self.scheme.columns(ready.level));
         let extent = 2.0 * width + ready.heights[1] - ready.heights[0];
