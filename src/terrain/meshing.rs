@@ -3,7 +3,7 @@
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Seek, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use spmesh_base::error::{Error, ErrorKind, Result, counted};
 use spmesh_base::temporary::TemporaryFile;
@@ -28,14 +28,20 @@ pub struct Meshing {
 }
 
 impl Meshing {
-    /// Refuses a budget of which half is too little for points.
+    /// Triangulating with half of a budget.
     ///
     /// # Errors
-    /// Memory.
-    pub fn check_half(memory: u64, threads: usize) -> Result<()> {
+    /// Memory, if that is too little for points.
+    pub fn of_half(
+        duplicates: Duplicates,
+        memory: u64,
+        threads: usize,
+        temp_dir: Option<&Path>,
+    ) -> Result<Meshing> {
         let least = 2 * Budget::process_min(threads);
         if memory >= least {
-            return Ok(());
+            let temp_dir = temp_dir.map(Path::to_path_buf);
+            return Ok(Meshing { duplicates, memory: memory / 2, threads, temp_dir });
         }
         let [given, least] = [memory >> 20, least.div_ceil(1 << 20)];
         let threads = counted(threads as u64, "thread", "threads");

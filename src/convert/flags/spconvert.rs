@@ -88,8 +88,8 @@ pub struct Flags {
     #[arg(long)]
     ascii: bool,
 
-    /// Write coordinates of OBJ, DXF and LandXML as differences from an origin in the middle of the mesh, which the
-    /// output states, for programs that compute in 32 bits
+    /// Write coordinates of OBJ, DXF and LandXML as differences from an origin in the middle of the mesh, which
+    /// the output states, for programs that compute in 32 bits
     #[arg(long)]
     local_origin: bool,
 

@@ -172,32 +172,29 @@ impl Points {
         }
     }
 
-    /// The points of some places, and all others.
+    /// The points of some places.
     ///
     /// # Errors
     /// Usage, if points are too many to be held.
-    pub(super) fn divided(&self, is_first: impl Fn(Point2) -> bool) -> Result<[Points; 2]> {
+    pub(super) fn only(&self, at: impl Fn(Point2) -> bool) -> Result<Points> {
         let Some(held) = &self.held else {
             let what =
                 format!("{} points are too many for cross-validation: take a part of them", self.count);
             return Err(Error::usage(what).of_input(self.name()));
         };
-        let parts: (Vec<Observation>, Vec<Observation>) = held.iter().partition(|one| is_first(one.point));
-        let of = |held: Vec<Observation>| {
-            let mut sample = Sample::default();
-            held.iter().for_each(|one| sample.add(one.value));
-            Points {
-                input: Rc::clone(&self.input),
-                weights: None,
-                sample: sample.in_order(),
-                count: held.len() as u64,
-                sites: Sites::of(&held),
-                held: Some(held),
-                no_data: Vec::new(),
-                dropped: Cell::new(0),
-            }
-        };
-        Ok([of(parts.0), of(parts.1)])
+        let held: Vec<Observation> = held.iter().filter(|one| at(one.point)).copied().collect();
+        let mut sample = Sample::default();
+        held.iter().for_each(|one| sample.add(one.value));
+        Ok(Points {
+            input: Rc::clone(&self.input),
+            weights: None,
+            sample: sample.in_order(),
+            count: held.len() as u64,
+            sites: Sites::of(&held),
+            held: Some(held),
+            no_data: Vec::new(),
+            dropped: Cell::new(0),
+        })
     }
 
     /// Calls `visit` with all points and their numbers.

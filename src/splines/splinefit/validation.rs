@@ -143,8 +143,8 @@ pub fn validate(
     };
     let (mut found, mut outside) = (Vec::new(), 0);
     for fold in 0..folds {
-        let [rest, left_out] = points.divided(|place| fold_of(place) != fold)?;
-        if left_out.count() == 0 {
+        let rest = points.only(|place| fold_of(place) != fold)?;
+        if rest.count() == points.count() {
             continue;
         }
         let fitted = fit(&rest, None, options, &|_| ())?;

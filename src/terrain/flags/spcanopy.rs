@@ -277,17 +277,10 @@ impl Flags {
 
     /// How layers are made. Half of the memory is for points, half for tiles.
     fn settings(&self, grid: &Grid) -> Result<Settings> {
-        let threads = self.threads.get().get();
-        Meshing::check_half(self.memory, threads)?;
-        Ok(Settings {
-            edge_max: length("--max-edge", self.max_edge)?.unwrap_or(EDGE_CELLS * grid.step),
-            meshing: Meshing {
-                duplicates: Duplicates::Highest,
-                memory: self.memory / 2,
-                threads,
-                temp_dir: self.raster.temp_dir().map(Into::into),
-            },
-        })
+        let (threads, temp_dir) = (self.threads.get().get(), self.raster.temp_dir());
+        let meshing = Meshing::of_half(Duplicates::Highest, self.memory, threads, temp_dir)?;
+        let edge_max = length("--max-edge", self.max_edge)?.unwrap_or(EDGE_CELLS * grid.step);
+        Ok(Settings { edge_max, meshing })
     }
 
     fn surface(&self) -> Result<Surface> {

@@ -242,7 +242,7 @@ fn run_plain(
     let mut counts = ClassCounts::default();
     if let Some(mut mesh) = mesh {
         let points = GroundPoints::new(&found, &input, flags.threads.get(), flags.memory / 4);
-        flags.settings().meshing().write(&points, false, &mut mesh)?;
+        flags.settings().meshing()?.write(&points, false, &mut mesh)?;
         mesh.commit()?;
         input.withheld_notice().iter().for_each(|text| flags.notice(text));
     }

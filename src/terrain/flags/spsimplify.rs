@@ -176,14 +176,7 @@ impl Flags {
     }
 
     fn meshing(&self) -> Result<Meshing> {
-        let threads = self.threads.get().get();
-        Meshing::check_half(self.memory, threads)?;
-        Ok(Meshing {
-            // Vertices of a mesh are distinct.
-            duplicates: Duplicates::Error,
-            memory: self.memory / 2,
-            threads,
-            temp_dir: self.temp_dir.to_owned(),
-        })
+        // Vertices of a mesh are distinct.
+        Meshing::of_half(Duplicates::Error, self.memory, self.threads.get().get(), self.temp_dir.get())
     }
 }

@@ -113,15 +113,9 @@ pub struct Flags {
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     advise_on_memory(TOOL, "give less --memory, or fewer --threads");
     let started = Instant::now();
-    let threads = flags.threads.get().get();
-    Meshing::check_half(flags.memory, threads)?;
-    let meshing = Meshing {
-        // Vertices of a mesh are distinct.
-        duplicates: Duplicates::Error,
-        memory: flags.memory / 2,
-        threads,
-        temp_dir: flags.temp_dir.to_owned(),
-    };
+    // Vertices of a mesh are distinct.
+    let meshing =
+        Meshing::of_half(Duplicates::Error, flags.memory, flags.threads.get().get(), flags.temp_dir.get())?;
     let options = Options {
         scheme: flags.scheme,
         target: flags.to,

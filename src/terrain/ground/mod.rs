@@ -171,19 +171,17 @@ fn counts(lows: &mut Lows, points: u64, triangles: u64) -> Result<FoundCounts> {
 
 impl Settings {
     /// How points are triangulated: with half of the memory.
-    pub fn meshing(&self) -> Meshing {
-        Meshing {
-            // Only a mesh of all points of the ground has several at one place.
-            duplicates: Duplicates::Lowest,
-            memory: self.memory / 2,
-            threads: self.threads,
-            temp_dir: self.temp_dir.clone(),
-        }
+    ///
+    /// # Errors
+    /// As [`Meshing::of_half`].
+    pub fn meshing(&self) -> Result<Meshing> {
+        // Only a mesh of all points of the ground has several at one place.
+        Meshing::of_half(Duplicates::Lowest, self.memory, self.threads, self.temp_dir.as_deref())
     }
 
     /// How surfaces are triangulated, and how many threads open blocks, with the same half of the memory.
     fn shares(&self, rules: &Rules) -> Result<(Meshing, usize)> {
-        Meshing::check_half(self.memory, self.threads)?;
+        let meshing = self.meshing()?;
         let block = rules.block_memory();
         let half = self.memory / 2;
         if block > half {
@@ -194,6 +192,6 @@ impl Settings {
             );
             return Err(Error::new(ErrorKind::Memory, what));
         }
-        Ok((self.meshing(), self.threads.min((half / block) as usize).max(1)))
+        Ok((meshing, self.threads.min((half / block) as usize).max(1)))
     }
 }

@@ -99,8 +99,8 @@ pub(super) const SAFETY: f64 = 4.0;
 /// [`Simplification`], 24 bytes for each triangle of a level in a tile.
 ///
 /// # Errors
-/// Usage, if the coordinate reference system is not known or not supported, or an option is out of its range; those of
-/// [`Simplification`]; if writing fails.
+/// Usage, if the coordinate reference system is not known or not supported, or an option is out of its range;
+/// those of [`Simplification`]; if writing fails.
 pub fn write<R: Read>(
     reader: &mut StreamReader<R>,
     meshing: Meshing,

@@ -161,9 +161,9 @@ pub(super) struct Flags {
     #[arg(long, value_name = "Z", allow_negative_numbers = true, value_parser = parse_finite)]
     no_data: Vec<f64>,
 
-    /// Also predict each point from others, and report errors and how many points intervals of 95 % hold: random
-    /// FOLDS of places, ten folds of squares (side: an eighth of the box), or each place from all others with
-    /// knots and smoothing of the fit
+    /// Also predict each point from others, and report errors and how many points intervals of 95 % hold:
+    /// random FOLDS of places, ten folds of squares (side: an eighth of the box), or each place from all others
+    /// with knots and smoothing of the fit
     #[arg(long, value_name = "FOLDS|blocks[:SIDE]|one", conflicts_with_all = ["robust", "interpolate", "knots"])]
     cross_validate: Option<Validation>,
 
