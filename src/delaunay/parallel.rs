@@ -35,14 +35,12 @@ where
         return items.map(work).collect();
     }
     let shared = Shared { items: Mutex::new(items.enumerate()), stop: Stop::default() };
-    let run = || shared.run(&work);
-    let mut done = std::thread::scope(|scope| {
-        let start = |_| std::thread::Builder::new().spawn_scoped(scope, run).ok();
-        let others: Vec<_> = (1..threads).map_while(start).collect();
-        let mut done = run();
-        others.into_iter().for_each(|other| done.extend(join(other)));
-        done
+    let results = Mutex::new(Vec::new());
+    on_threads(threads, &|| {
+        let done = shared.run(&work);
+        results.lock().unwrap_or_else(PoisonError::into_inner).extend(done);
     });
+    let mut done = results.into_inner().unwrap_or_else(PoisonError::into_inner);
     done.sort_unstable_by_key(|&(at, _)| at);
     done.into_iter().map(|(_, result)| result).collect()
 }
@@ -61,6 +59,17 @@ where
         Ok::<(), Infallible>(())
     };
     let Ok(_) = map(threads, items, work);
+}
+
+/// Calls `run` on the calling thread and `threads - 1` others, or as many as the system allows. Threads are
+/// started here and not where the kind of items is known, so that this is compiled once, not for each kind.
+fn on_threads(threads: usize, run: &(dyn Fn() + Sync)) {
+    thread::scope(|scope| {
+        let start = |_| thread::Builder::new().spawn_scoped(scope, run).ok();
+        let others: Vec<_> = (1..threads).map_while(start).collect();
+        run();
+        others.into_iter().for_each(join);
+    });
 }
 
 /// Items that no thread has taken yet.
@@ -121,10 +130,10 @@ impl Stop {
     }
 }
 
-/// The result of a thread.
+/// Waits for a thread.
 ///
 /// # Panics
 /// With the payload of the thread, if it panicked.
-fn join<T>(thread: ScopedJoinHandle<'_, T>) -> T {
-    thread.join().unwrap_or_else(|panic| resume_unwind(panic))
+fn join(thread: ScopedJoinHandle<'_, ()>) {
+    thread.join().unwrap_or_else(|panic| resume_unwind(panic));
 }

@@ -61,7 +61,7 @@ impl<J: Send + 'static, R: Send + 'static> OrderedPool<J, R> {
                     let _ = result.send(outcome);
                 }
             };
-            pool.threads.push(spawn(name, run)?);
+            pool.threads.push(spawn(name, Box::new(run))?);
         }
         Ok(pool)
     }

@@ -34,7 +34,7 @@ pub fn produce<T: Send + 'static>(
         }
     };
     // Dropping the handle detaches the thread.
-    spawn(name, run)?;
+    spawn(name, Box::new(run))?;
     Ok(items)
 }
 

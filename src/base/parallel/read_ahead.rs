@@ -1,5 +1,8 @@
 //! One thread prepares buffers while the caller consumes others.
 
+use std::iter::repeat_with;
+use std::sync::{Mutex, PoisonError};
+
 use crossbeam_channel::bounded;
 
 use super::threads::{join, spawn_scoped};
@@ -25,12 +28,27 @@ pub fn read_ahead<B: Default + Send>(
     mut produce: impl FnMut(&mut B) -> Result<bool> + Send,
     mut consume: impl FnMut(&mut B) -> Result<()>,
 ) -> Result<()> {
-    let (full_in, full) = bounded::<B>(buffers);
-    let (empty_in, empty) = bounded::<B>(buffers);
+    let slots: Vec<Mutex<B>> = repeat_with(Mutex::default).take(buffers).collect();
+    // A buffer has one user at a time, the one that knows its number, so that nobody waits for its lock.
+    let slot = |number: usize| slots[number].lock().unwrap_or_else(PoisonError::into_inner);
+    pass_round(name, buffers, &mut |number| produce(&mut slot(number)), &mut |number| {
+        consume(&mut slot(number))
+    })
+}
+
+/// Passes the numbers of buffers from one to the other. Knows no buffers, so that it is compiled once.
+fn pass_round(
+    name: &str,
+    buffers: usize,
+    produce: &mut (dyn FnMut(usize) -> Result<bool> + Send),
+    consume: &mut dyn FnMut(usize) -> Result<()>,
+) -> Result<()> {
+    let (full_in, full) = bounded::<usize>(buffers);
+    let (empty_in, empty) = bounded::<usize>(buffers);
     let run = move || -> Result<()> {
         // Either channel is closed early when `consume` fails.
-        while let Ok(mut buffer) = empty.recv() {
-            if !produce(&mut buffer)? || full_in.send(buffer).is_err() {
+        while let Ok(number) = empty.recv() {
+            if !produce(number)? || full_in.send(number).is_err() {
                 break;
             }
         }
@@ -40,13 +58,13 @@ pub fn read_ahead<B: Default + Send>(
     // scope waits.
     std::thread::scope(move |scope| {
         let producer = spawn_scoped(scope, name, run)?;
-        for _ in 0..buffers {
+        for number in 0..buffers {
             // Fails only if the producer has ended; the join below returns the reason.
-            let _ = empty_in.send(B::default());
+            let _ = empty_in.send(number);
         }
-        for mut buffer in full {
-            consume(&mut buffer)?;
-            let _ = empty_in.send(buffer);
+        for number in full {
+            consume(number)?;
+            let _ = empty_in.send(number);
         }
         join(producer)
     })

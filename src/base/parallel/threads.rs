@@ -25,11 +25,13 @@ pub fn spawn_scoped<'scope, T: Send + 'scope>(
     name: impl Into<String>,
     work: impl FnOnce() -> T + Send + 'scope,
 ) -> Result<ScopedJoinHandle<'scope, T>> {
+    // What starts a thread is compiled for each type of result, not for each kind of work.
+    let work: Box<dyn FnOnce() -> T + Send + 'scope> = Box::new(work);
     Builder::new().name(name.into()).spawn_scoped(scope, work).map_err(no_thread)
 }
 
 /// Starts a named thread that may outlive the caller.
-pub(super) fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>> {
+pub(super) fn spawn(name: &str, work: Box<dyn FnOnce() + Send>) -> Result<JoinHandle<()>> {
     Builder::new().name(name.into()).spawn(work).map_err(no_thread)
 }
 

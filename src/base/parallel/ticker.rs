@@ -27,7 +27,7 @@ impl Ticker {
                 work();
             }
         };
-        Ok(Ticker { stop: Some(stop), thread: Some(spawn(name, run)?) })
+        Ok(Ticker { stop: Some(stop), thread: Some(spawn(name, Box::new(run))?) })
     }
 }
 
