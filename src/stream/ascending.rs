@@ -297,7 +297,7 @@ mod tests {
 
     #[test]
     fn agrees_with_a_hash_map() {
-        for seed in 0..24 {
+        for seed in 0..8 {
             let random = &mut Random::new(seed);
             let gap = [1, 50, 1 << 20, 1 << 33][seed as usize % 4];
             let mut ids = Ids { next: 0, run: 0, gap };
@@ -313,7 +313,10 @@ mod tests {
                 let id = random.below(ids.next + 10);
                 assert_eq!(pair.map.get(id), pair.reference.get(&id));
                 assert_eq!(pair.map.get(id << 20), pair.reference.get(&(id << 20)));
-                pair.check();
+                // This looks at all of a map, which has hardly changed.
+                if step % 4 == 0 {
+                    pair.check();
+                }
             }
         }
     }

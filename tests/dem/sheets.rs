@@ -110,12 +110,10 @@ fn sheets_are_parts_of_the_whole() {
         // Formats and memory do not show in it.
         let whole = raster(&stream, &grid, &case);
         let least = if case.sample == Sample::Centre { 0 } else { 16 << 20 };
-        for format in [RasterFormat::GeoTiff, RasterFormat::Ascii] {
-            for memory in [least, 1 << 30] {
-                let raster = RasterOptions { format, ..RasterOptions::default() };
-                let options = Options { raster, memory, ..case.clone() };
-                check_parts(&whole, &stream, &grid, &options, [side, margin], &[]);
-            }
+        for (format, memory) in [(RasterFormat::GeoTiff, least), (RasterFormat::Ascii, 1 << 30)] {
+            let raster = RasterOptions { format, ..RasterOptions::default() };
+            let options = Options { raster, memory, ..case.clone() };
+            check_parts(&whole, &stream, &grid, &options, [side, margin], &[]);
         }
     }
 }

@@ -137,7 +137,7 @@ fn no_family_depends_on_regions() {
 
 #[test]
 fn mixtures_and_copies_equal_the_kernel() {
-    for seed in 0..60 {
+    for seed in (0..60).step_by(2) {
         let mut random = Random::new(9000 + seed);
         let mut points = mixture(&mut random, 10 + 8 * seed as usize);
         points.extend_from_within(..points.len() / 3);
@@ -270,7 +270,7 @@ fn a_region_that_memory_has_no_room_for_is_refused_before_it_is_read() {
 #[test]
 fn tiny_clusters_beside_a_surface_are_where_they_belong() {
     for tiny in [1e-100, 1e-162, 3e-164, 5e-324] {
-        let mut points = gyroid(1_500, &mut Random::new(9));
+        let mut points = gyroid(600, &mut Random::new(9));
         let mut random = Random::new(10);
         points.extend((0..64).map(|_| [0; 3].map(|_| tiny * ((random.bits() % 19) as f64 - 9.0))));
         assert_same_set(&points, 200, &format!("a cluster of {tiny:e}"));

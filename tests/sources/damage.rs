@@ -35,10 +35,10 @@ fn try_read(folder: &Folder, content: &[u8]) {
     assert!(largest <= ALLOCATION_MAX, "a request of {largest} bytes");
 }
 
-/// Damages bytes of a sample one at a time: the first `until`, the last 64, and every 29th between.
+/// Damages bytes of a sample one at a time: the first `until`, the last 64, and every 101st between.
 fn damage(name: &str, until: usize) {
     let whole = std::fs::read(sample(name)).unwrap();
-    let is_chosen = |&at: &usize| at < until || at + 64 > whole.len() || at % 29 == 0;
+    let is_chosen = |&at: &usize| at < until || at + 64 > whole.len() || at % 101 == 0;
     damage_bytes(&whole, (0..whole.len()).filter(is_chosen));
 }
 

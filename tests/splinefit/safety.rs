@@ -108,8 +108,8 @@ fn lambda_is_chosen_with_robust_weights_of_every_loss() {
 
 fn try_losses(choices: &[(&str, &[&str])]) {
     let folder = Folder::new();
-    let clean = folder.write("clean.txt", gappy(4_000, 0));
-    let spoilt = folder.write("spoilt.txt", gappy(4_000, 20));
+    let clean = folder.write("clean.txt", gappy(2_000, 0));
+    let spoilt = folder.write("spoilt.txt", gappy(2_000, 20));
     let of = |flags: &[&str], points: &str| {
         let spline = output(&[&["fit", "--step", "2"], flags, &[points]].concat(), &[]);
         mean_deviation(&spline, hills)

@@ -50,7 +50,7 @@ fn lanes_agree(count: usize) {
         p.map(|c| c / length)
     };
     let lattice = |step: f64| -> Vec<Point3> {
-        (0..1_000).map(|i| [i % 10, i / 10 % 10, i / 100].map(|c| f64::from(c) * step)).collect()
+        (0..216).map(|i| [i % 6, i / 6 % 6, i / 36].map(|c| f64::from(c) * step)).collect()
     };
     let sets = [
         map(|c| (c * 12.0).floor()),

@@ -52,7 +52,7 @@ fn mixtures_of_any_size() {
 /// A tetrahedralization that was put in order stays one, and does not tell how many threads made it.
 #[test]
 fn order_without_threads() {
-    for seed in 0..60 {
+    for seed in (0..60).step_by(3) {
         let mut random = Random::new(400 + seed);
         let points = clouds::mixture(&mut random, 10 * seed as usize);
         let sorted = |mut kernel: Kernel| -> Vec<_> {
