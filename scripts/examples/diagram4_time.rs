@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("usage: diagram4_time POINTS [--threads N] [--audit] [--direct]".into());
     };
     let has = |flag: &str| flags.iter().any(|word| word == flag);
-    let route = if has("--direct") { direct() } else { Route::Simplices };
+    let route = if has("--direct") { Route::Direct } else { Route::Simplices };
     let threads = match flags.iter().position(|word| word == "--threads") {
         Some(at) => flags.get(at + 1).ok_or("--threads needs a number")?.parse()?,
         None => NonZeroUsize::MIN,
@@ -81,14 +81,4 @@ impl Sizes {
         }
         sizes
     }
-}
-
-#[cfg(feature = "experiments")]
-fn direct() -> Route {
-    Route::Direct
-}
-
-#[cfg(not(feature = "experiments"))]
-fn direct() -> Route {
-    panic!("--direct is an experiment: build with --features experiments")
 }

@@ -1,9 +1,9 @@
 //! Fuzzes the 4D engine with random degenerate sets. The diagram must be the same for any order of the
-//! points, for integers and fractions, and by both routes in a build with `--features experiments`. An exact
+//! points, for integers and fractions, and by both routes. An exact
 //! audit that shares no code with the engine must pass.
 //!
 //! ```text
-//! cargo run --release --package spmesh-experiments --features experiments --example fuzz4 -- --seconds 600 --seed 1
+//! cargo run --release --package spmesh-experiments --example fuzz4 -- --seconds 600 --seed 1
 //! ```
 //!
 //! `--set I` tries set `I` of a seed alone. Shrinks a failing set and writes it to a file.
@@ -48,7 +48,6 @@ impl Trial<4> for Diagrams {
 /// Checks a set and returns its number of cells.
 fn try_set(points: &[Point4], random: &mut Random) -> usize {
     let simplices = by(Route::Simplices, 1, points);
-    #[cfg(feature = "experiments")]
     assert_eq!(by(Route::Direct, 1, points), simplices, "the direct route");
     let Some(diagram) = simplices else { return 0 };
     check(&diagram.points, &diagram.cells).expect("a proof");

@@ -3,9 +3,8 @@
 //! `kernel3_time POINTS` is our contestant in `scripts/bench`: one run with fresh buffers; `--threads N` is
 //! the same on N threads. With `--parts` it also times the parts of insertions, the columns of thesis table 3.3;
 //! this takes additional time. With `--weighted`, each point has a fourth number, its weight.
-//! `kernel3_time POINTS --way WAY` inserts in `rounds`, in one `pass` along the curve or at `random`; or, if
-//! built with `--features experiments`, in floating point as the program of the thesis: `float`, or
-//! `float-random`.
+//! `kernel3_time POINTS --way WAY` inserts in `rounds`, in one `pass` along the curve or at `random`; or
+//! in floating point as the program of the thesis: `float`, or `float-random`.
 //! `kernel3_time POINTS ROUNDS`, for tuning, runs several rounds with the same buffers. POINTS has triples of
 //! little-endian f64; `scripts/bench` keeps its files of points in its folder.
 
@@ -67,18 +66,12 @@ fn in_a_way(points: Vec<[f64; 3]>, way: &str) -> Result<(), Box<dyn Error>> {
     run(kernel, points)
 }
 
-#[cfg(feature = "experiments")]
 fn in_floating_point(points: &[[f64; 3]], sequence: Sequence) -> Result<(), Box<dyn Error>> {
     use spmesh_molecules::float::{Options, triangulate};
     let options = Options { sequence, ..Options::default() };
     let (result, seconds) = timed(|| triangulate(points, &options));
     report(&result?.0, points.len(), seconds);
     Ok(())
-}
-
-#[cfg(not(feature = "experiments"))]
-fn in_floating_point(_: &[[f64; 3]], _: Sequence) -> Result<(), Box<dyn Error>> {
-    Err("floating point needs a build with --features experiments".into())
 }
 
 /// One run with weights.

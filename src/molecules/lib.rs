@@ -2,13 +2,12 @@
 //! contacts, pockets and surfaces.
 //!
 //! [`balls`] and [`cells`] compute, [`tess3`] is the engine of the program; `flags`, with the feature of this
-//! name, has its command line. `float`, with the feature `experiments`, is the program of the thesis, in
-//! floating-point arithmetic.
+//! name, has its command line. `float` is the program of the thesis, in floating-point arithmetic, for
+//! experiments.
 
 pub mod balls;
 pub mod cells;
 #[cfg(feature = "flags")]
 pub mod flags;
-#[cfg(feature = "experiments")]
 pub mod float;
 pub mod tess3;

@@ -2,9 +2,7 @@
 
 mod balls;
 mod cells;
-#[cfg(feature = "experiments")]
 mod float;
-#[cfg(feature = "experiments")]
 mod float_parts;
 mod in_box;
 mod molecular_mesh;

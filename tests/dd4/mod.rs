@@ -5,7 +5,6 @@ mod interrupts;
 mod memory;
 mod oblique;
 mod products;
-#[cfg(not(feature = "experiments"))]
 mod routes;
 mod time_scale;
 

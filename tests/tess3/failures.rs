@@ -148,20 +148,6 @@ fn statistics_are_text_or_json() {
     assert!(message.lines().all(|line| line.len() <= 60), "{message}");
 }
 
-#[cfg(not(feature = "experiments"))]
-#[test]
-fn experiments_need_a_build_with_them() {
-    let help = String::from_utf8(run("tess3", &["--help"], b"").stdout).unwrap();
-    for flags in
-        [&["--arithmetic", "float"][..], &["--order", "morton"], &["--bit-levels", "on"], &["--check-signs"]]
-    {
-        let (code, message) = outcome(&run("tess3", &[flags, &["-"]].concat(), b"0 0 0\n"));
-        assert_eq!(code, Some(2), "{flags:?}: {message}");
-        assert!(message.contains("--features experiments"), "{flags:?}: {message}");
-        assert!(!help.contains(flags[0]), "{flags:?}");
-    }
-}
-
 #[test]
 fn names_that_are_no_text_stand_for_no_other_file() {
     let folder = Folder::new();

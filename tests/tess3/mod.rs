@@ -4,6 +4,7 @@ mod alpha;
 mod assemblies;
 mod balls;
 mod classes;
+mod experiments;
 mod failures;
 mod filtration;
 mod formats;

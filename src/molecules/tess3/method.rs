@@ -2,24 +2,16 @@
 
 use std::borrow::Cow;
 use std::num::NonZeroUsize;
-#[cfg(feature = "experiments")]
 use std::time::Duration;
 
 use super::Report;
-#[cfg(feature = "experiments")]
 use super::Rounding;
 use super::heap::peak_during;
-#[cfg(feature = "experiments")]
 use crate::float;
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::delaunay3::{Kernel, Tetrahedralization};
 use spmesh_delaunay::order::{Curve, Sequence};
 use spmesh_delaunay::predicates::Point3;
-
-/// The error message of a build without the feature `experiments`.
-pub const NO_EXPERIMENTS: &str = "this build has no experiments: --arithmetic, --order, --sequence, \
-    --bit-levels, --seed, \
-    --check-signs and --timed need a build with `cargo build --release --features experiments`";
 
 /// Which arithmetic decides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,8 +19,7 @@ pub enum Arithmetic {
     /// Signs are never wrong.
     #[default]
     Exact,
-    /// `f64`, whose signs are wrong where rounding matters. Only builds with the feature `experiments` have
-    /// it.
+    /// `f64`, whose signs are wrong where rounding matters.
     Float {
         /// Whether signs are compared with the exact ones.
         check_signs: bool,
@@ -120,20 +111,12 @@ impl Method {
     }
 
     /// Counts what rounding made wrong in a mesh of this method.
-    #[cfg_attr(not(feature = "experiments"), expect(unused_variables, reason = "nothing is rounded"))]
     pub(super) fn count_violations(&self, mesh: &Tetrahedralization, report: &mut Report) {
-        #[cfg(feature = "experiments")]
         if self.arithmetic != Arithmetic::Exact {
             report.rounding.violations = Some(float::violations(mesh));
         }
     }
 
-    #[cfg(not(feature = "experiments"))]
-    fn in_floating_point(&self, _: &[Point3], _: bool, _: &mut Report) -> Result<Tetrahedralization> {
-        Err(Error::usage(NO_EXPERIMENTS))
-    }
-
-    #[cfg(feature = "experiments")]
     fn in_floating_point(
         &self,
         points: &[Point3],

@@ -28,7 +28,7 @@ pub use frames::run_frames;
 pub use job::{ModelName, Open, run};
 pub use labels::Labels;
 pub use mesh::write_mesh;
-pub use method::{Arithmetic, Method, NO_EXPERIMENTS};
+pub use method::{Arithmetic, Method};
 pub use spheres::{Measure, measure};
 
 use std::time::Duration;

@@ -26,7 +26,6 @@ pub(super) fn difference<T: Number>(p: [T; 4], o: &[T; 4]) -> [T; 4] {
 /// m is the determinant of the vectors. If it is positive, points inside have negative values. The value of a
 /// point is the in-sphere determinant up to its sign: a polynomial of degree 6 in the coordinates (thesis
 /// 3.6.2).
-#[cfg(any(test, feature = "experiments"))]
 #[inline(always)]
 pub(super) fn sphere<T: Number>(vectors: [[T; 4]; 4]) -> ([T; 4], T) {
     lifted_sphere(vectors.each_ref().map(|v| (v, lift(v))))

@@ -6,13 +6,11 @@
 //! each corresponds to a facet of a finite cell on the hull.
 //!
 //! `sites` sorts and scales the points. `determinant`, `exact` and `side` compute signs. `simplices`
-//! triangulates, and `merge` joins cospherical simplices to cells. `direct`, an experiment, does both at once
+//! triangulates, and `merge` joins cospherical simplices to cells. `direct`, for experiments, does both at once
 //! as the thesis does.
 
-#[cfg(feature = "experiments")]
 mod canonical;
 mod determinant;
-#[cfg(feature = "experiments")]
 mod direct;
 mod exact;
 mod merge;
@@ -59,7 +57,6 @@ pub enum Route {
     #[default]
     Simplices,
     /// Updates the cells with each point, in integers (thesis 3.6.4). Slower; for comparison.
-    #[cfg(feature = "experiments")]
     Direct,
 }
 
@@ -100,7 +97,6 @@ pub fn diagram_by(
                 through_simplices::<f64>(&sites, threads, &mut stats)?
             }
         }
-        #[cfg(feature = "experiments")]
         Route::Direct => direct::cells(&sites, &mut stats)?,
     };
     Ok((Diagram4 { points: sites.points, values, merged, cells }, stats))

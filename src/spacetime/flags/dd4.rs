@@ -71,7 +71,7 @@ pub struct Flags {
     time_scale: TimeScale,
 
     /// How cells are found: by way of simplices, or directly in integers as by the first dd4 (2008), which is
-    /// slower and needs a build with experiments. The result is the same
+    /// slower. The result is the same
     #[arg(long, value_enum, default_value_t = RouteFlag::Simplices, value_name = "simplices|direct", hide_possible_values = true)]
     route: RouteFlag,
 
@@ -114,16 +114,10 @@ enum RouteFlag {
 
 impl RouteFlag {
     /// The route in the engine.
-    fn route(self) -> Result<Route> {
+    fn route(self) -> Route {
         match self {
-            RouteFlag::Simplices => Ok(Route::Simplices),
-            #[cfg(feature = "experiments")]
-            RouteFlag::Direct => Ok(Route::Direct),
-            #[cfg(not(feature = "experiments"))]
-            RouteFlag::Direct => Err(Error::usage(
-                "--route direct is an experiment, and this build has none: install one that has them with \
-                 `cargo install --locked --path . --features experiments`",
-            )),
+            RouteFlag::Simplices => Route::Simplices,
+            RouteFlag::Direct => Route::Direct,
         }
     }
 }
@@ -143,7 +137,7 @@ impl Flags {
         let advice = format!("give {memory}--memory, or take fewer points, as with --count or --where");
         advise_on_memory("dd4", &advice);
         let (quantum, time_scale) = (self.quantum, self.time_scale);
-        let (route, threads) = (self.route.route()?, self.threads.get());
+        let (route, threads) = (self.route.route(), self.threads.get());
         let options = Options { quantum, time_scale, route, threads };
         if self.source.is_stdin() && self.product.reads_stdin() {
             return Err(Error::usage("points and sites cannot both come from stdin"));

@@ -98,7 +98,6 @@ pub fn diagram4(bytes: &[u8]) {
         }
     };
     let diagram = by(Route::Simplices);
-    #[cfg(feature = "experiments")]
     assert_eq!(diagram, by(Route::Direct), "let points: Vec<Point4> = vec!{points:?};");
     if let Some(Diagram4 { points, cells, .. }) = diagram {
         prove4(&points, &cells);

@@ -6,16 +6,10 @@ use std::num::NonZeroUsize;
 use clap::Args;
 
 use super::selection::SWITCH;
-use crate::tess3::{Arithmetic, Method, NO_EXPERIMENTS};
+use crate::tess3::{Arithmetic, Method};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::order::{Curve, Sequence};
 use spmesh_shell::{Names, named};
-
-/// Builds without experiments hide these flags, and refuse them.
-const HAS_EXPERIMENTS: bool = cfg!(feature = "experiments");
-
-/// Seed unless another is given.
-const SEED: u64 = 1;
 
 /// How the kernel works. With exact arithmetic, the triangulation is always the same.
 #[derive(Debug, Clone, Args)]
@@ -23,37 +17,42 @@ const SEED: u64 = 1;
 pub(super) struct MethodFlags {
     /// Arithmetic of the predicates: float is that of the first tess3 (2003), whose tetrahedra fit together
     /// but may not be Delaunay
-    #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "exact|float", hide_possible_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "exact|float", hide_possible_values = true)]
     #[arg(default_value = "exact", value_parser = named(ARITHMETICS))]
     arithmetic: Arithmetic,
 
     /// Order in which points are inserted: along a curve, or at random
-    #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "hilbert|morton|gray|row-major|random", hide_possible_values = true)]
+    #[arg(
+        long,
+        hide_short_help = true,
+        value_name = "hilbert|morton|gray|row-major|random",
+        hide_possible_values = true
+    )]
     #[arg(default_value = "hilbert", value_parser = named(ORDERS))]
     order: Order,
 
     /// How often insertion goes along the curve: in a few rounds, each with more of the points, or in one
     /// pass [default: rounds, with --arithmetic float pass]
-    #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "rounds|pass", hide_possible_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "rounds|pass", hide_possible_values = true)]
     #[arg(value_parser = named(SEQUENCES))]
     sequence: Option<Sequence>,
 
     /// Whether points that have more of their lowest bits in common are inserted first
     /// [default: off, with --arithmetic float on]
-    #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "on|off", hide_possible_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "on|off", hide_possible_values = true)]
     #[arg(value_parser = named(SWITCH))]
     bit_levels: Option<bool>,
 
     /// Seed of --order random, and of the walks of --arithmetic float
-    #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "N", default_value_t = SEED)]
+    #[arg(long, hide_short_help = true, value_name = "N", default_value_t = 1)]
     seed: u64,
 
     /// Compare the signs of --arithmetic float with the exact ones and count the wrong ones; slow
-    #[arg(long, hide = !HAS_EXPERIMENTS)]
+    #[arg(long, hide_short_help = true)]
     check_signs: bool,
 
     /// For --stats, measure the time for point location, predicates and update, which slows the run
-    #[arg(long, hide = !HAS_EXPERIMENTS)]
+    #[arg(long, hide_short_help = true)]
     timed: bool,
 }
 
@@ -75,9 +74,6 @@ const SEQUENCES: Names<Sequence> = &[("rounds", Sequence::Rounds), ("pass", Sequ
 
 impl MethodFlags {
     pub(super) fn method(&self, threads: NonZeroUsize) -> Result<Method> {
-        if !HAS_EXPERIMENTS && !self.is_default() {
-            return Err(Error::usage(NO_EXPERIMENTS));
-        }
         let is_float = self.arithmetic != Arithmetic::Exact;
         let usual = if is_float { Sequence::Pass } else { Sequence::Rounds };
         let sequence = match self.order {
@@ -93,14 +89,6 @@ impl MethodFlags {
         };
         let (seed, is_timed) = (self.seed, self.timed);
         Ok(Method { arithmetic, curve, sequence, by_bit_levels, seed, is_timed, threads })
-    }
-
-    fn is_default(&self) -> bool {
-        let MethodFlags { arithmetic, order, sequence, bit_levels, seed, check_signs, timed } = *self;
-        (arithmetic, order, seed) == (Arithmetic::Exact, Some(Curve::Hilbert), SEED)
-            && sequence.is_none()
-            && bit_levels.is_none()
-            && !(check_signs || timed)
     }
 }
 

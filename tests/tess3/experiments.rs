@@ -1,7 +1,7 @@
 //! Flags for experiments: they may change some outputs, and must not change others.
 
-use crate::mesh::Mesh;
-use crate::molecules::{Rows, cloud, pdb};
+use super::mesh::Mesh;
+use super::molecules::{Rows, cloud, pdb};
 use crate::programs::{Folder, outcome, run};
 
 fn mesh(text: &str, arguments: &[&str]) -> Mesh {
