@@ -99,7 +99,7 @@ fn geographic(base: &Geographic, code: Option<u32>) -> String {
     let datum = if is_same_datum(&base.datum, "WGS_1984") {
         "WGS_1984".to_string()
     } else {
-        base.datum.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect()
+        base.datum.chars().map(|c| if c.is_alphanumeric() || c == '+' { c } else { '_' }).collect()
     };
     format!(
         "GEOGCS[{},DATUM[{},SPHEROID[{},{},{}]{}],PRIMEM[\"{}\",{}],{}{}]",
