@@ -17,9 +17,9 @@ type Place = [f64; 2];
 const WIDTH: f64 = 4.0;
 
 /// A block of 2 by 2 tiles of 100 m, with ground and with points of water in the pond.
-struct Block {
-    folder: Folder,
-    tiles: Vec<String>,
+pub(crate) struct Block {
+    pub(crate) folder: Folder,
+    pub(crate) tiles: Vec<String>,
     /// Hundredths of metres.
     ground: Vec<[i32; 3]>,
     pond: Vec<i32>,
@@ -78,7 +78,7 @@ fn country() -> String {
 }
 
 impl Block {
-    fn new() -> Block {
+    pub(crate) fn new() -> Block {
         let folder = Folder::new();
         let mut random = Random::new(3);
         let (mut ground, mut pond) = (Vec::new(), Vec::new());
@@ -107,7 +107,7 @@ impl Block {
     }
 
     /// Writes the layer of levels, and returns its features by what they are of, and messages.
-    fn levels(&self, flags: &[&str]) -> (BTreeMap<String, Value>, String) {
+    pub(crate) fn levels(&self, flags: &[&str]) -> (BTreeMap<String, Value>, String) {
         let [country, levels] = ["country.geojson", "levels.geojson"].map(|name| self.folder.path(name));
         let own = ["--flatten", &country, "--levels", &levels, "--keep-class", "2", "--shore-width", "4"];
         let tiles: Vec<&str> = self.tiles.iter().map(String::as_str).collect();
@@ -130,7 +130,7 @@ impl Block {
     }
 
     /// The mesh of these tiles with the levels as edges, and the messages.
-    fn mesh(&self, tiles: &[String]) -> Vec<u8> {
+    pub(crate) fn mesh(&self, tiles: &[String]) -> Vec<u8> {
         let levels = self.folder.path("levels.geojson");
         let flags = ["--flatten", &levels, "--keep-class", "2", "--shore-width", "4"];
         let tiles: Vec<&str> = tiles.iter().map(String::as_str).collect();

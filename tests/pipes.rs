@@ -2,6 +2,8 @@
 
 mod areas;
 mod banks;
+mod below_water;
+mod bends;
 mod cell_grid;
 mod crs;
 mod empty;
@@ -18,6 +20,7 @@ mod lines;
 mod messages;
 #[allow(dead_code, reason = "other test programs use more of it")]
 mod programs;
+mod reach;
 mod scenes;
 mod shores;
 mod spconstrain;

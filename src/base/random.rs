@@ -49,6 +49,11 @@ impl Random {
     }
 }
 
+/// A permutation of the 64-bit integers in which every output bit depends on every input bit.
+pub fn mixed(value: u64) -> u64 {
+    Random::new(value).bits()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

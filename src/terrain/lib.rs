@@ -3,7 +3,7 @@
 //!
 //! | module | program |
 //! |---|---|
-//! | [`dem`], [`contours`], [`points`], [`files`] | `spdem` |
+//! | [`dem`], [`contours`], [`bends`], [`points`], [`files`] | `spdem` |
 //! | [`height`] | `spheight` |
 //! | [`canopy`], with [`height`], [`meshing`] and [`dem`] | `spcanopy` |
 //! | [`ground`], with [`height`] and [`meshing`] | `spground` |
@@ -16,6 +16,7 @@
 //! `flags`, with the feature of this name, has their command lines.
 
 mod accumulators;
+pub mod bends;
 pub mod canopy;
 pub mod constrain;
 pub mod contours;

@@ -20,7 +20,7 @@ fn grid(side: u32, elevation: impl Fn(u32, u32) -> f64) -> Mesh {
 }
 
 fn ring(elevation: f64, points: &[[f64; 2]]) -> Line {
-    Line { elevation, is_closed: true, points: points.to_vec() }
+    Line { elevation, is_closed: true, is_depression: false, points: points.to_vec() }
 }
 
 #[test]
@@ -41,7 +41,8 @@ fn plateaus_on_a_level_have_a_line_where_the_ground_falls() {
     let mut shore = border;
     shore[1..].reverse();
     // The line is nearer to the shore than a hundredth of a step.
-    assert_eq!(lines(&around(100.0), &options(10.0, 0.57001)), [ring(0.57001, &shore)]);
+    let shore = Line { is_depression: true, ..ring(0.57001, &shore) };
+    assert_eq!(lines(&around(100.0), &options(10.0, 0.57001)), [shore]);
 }
 
 #[test]
@@ -58,9 +59,8 @@ fn tops_on_a_level_are_no_lines() {
 fn one_triangle_and_none() {
     let mesh =
         Mesh { points: vec![[0.0, 0.0, 1.0], [8.0, 0.0, 3.0], [0.0, 8.0, 3.0]], triangles: vec![[0, 1, 2]] };
-    let line =
-        |elevation, points: [[f64; 2]; 2]| Line { elevation, is_closed: false, points: points.to_vec() };
-    let expected = [line(2.0, [[0.0, 4.0], [4.0, 0.0]]), line(3.0, [[0.0, 8.0], [8.0, 0.0]])];
+    let line = |elevation, points| Line { is_closed: false, ..ring(elevation, points) };
+    let expected = [line(2.0, &[[0.0, 4.0], [4.0, 0.0]]), line(3.0, &[[0.0, 8.0], [8.0, 0.0]])];
     for coordinates in [WHOLE, Coordinates::F64] {
         assert_eq!(lines(&mesh.stream(coordinates), &options(1.0, 0.0)), expected);
     }

@@ -116,6 +116,7 @@ fn follow(mesh: &Mesh, level: i64, next: &mut BTreeMap<Edge, Edge>, start: Edge)
         is_closed = edge == start;
         edges.push(edge);
     }
+    let is_depression = is_closed && surrounds_lower(mesh, &edges);
     let place = |[u, v]: Edge| place(mesh.points[u as usize], mesh.points[v as usize], level);
     let mut points: Vec<[i64; 2]> = edges.into_iter().map(place).collect();
     points.dedup();
@@ -128,7 +129,18 @@ fn follow(mesh: &Mesh, level: i64, next: &mut BTreeMap<Edge, Edge>, start: Edge)
         points = rotations.min()?;
     }
     let points = points.into_iter().map(|point| point.map(|value| value as f64)).collect();
-    Some(Line { elevation: level as f64 / 2.0, is_closed, points })
+    Some(Line { elevation: level as f64 / 2.0, is_closed, is_depression, points })
+}
+
+/// Whether a ring that passes edges of a mesh is clockwise, so that its left side, where it is higher, is
+/// outside. Crossings may be at one point, so it is the ring through the midpoints that is looked at.
+fn surrounds_lower(mesh: &Mesh, edges: &[Edge]) -> bool {
+    let at = |vertex: u32| mesh.points[vertex as usize];
+    let middle = |&[u, v]: &Edge| [0, 1].map(|axis| ((at(u)[axis] + at(v)[axis]) / 2.0) as i128);
+    let middles: Vec<[i128; 2]> = edges.iter().map(middle).collect();
+    let area: i128 = middles.windows(2).map(|pair| pair[0][0] * pair[1][1] - pair[1][0] * pair[0][1]).sum();
+    assert_ne!(area, 0);
+    area < 0
 }
 
 /// Intervals and bases of levels, and the levels in units of half an elevation.
@@ -142,16 +154,17 @@ fn choices() -> [([f64; 2], Vec<i64>); 4] {
 #[test]
 fn lines_are_those_of_whole_numbers() {
     let mut random = Random::new(1);
-    let mut found = 0;
+    let [mut found, mut depressions] = [0; 2];
     for (number, mesh) in meshes(&mut random).into_iter().enumerate() {
         for ([interval, base], levels) in choices() {
             let expected = expected(&mesh, levels.into_iter());
             let lines = lines(&mesh.stream(WHOLE), &options(interval, base));
             assert_eq!(lines, expected, "mesh {number}, every {interval} from {base}");
             found += lines.len();
+            depressions += lines.iter().filter(|line| line.is_depression).count();
         }
     }
-    assert!(found > 1000, "{found}");
+    assert!(found > 1000 && depressions > 100, "{found} {depressions}");
 }
 
 #[test]

@@ -21,6 +21,7 @@ const WHOLE: Coordinates = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] 
 struct Line {
     elevation: f64,
     is_closed: bool,
+    is_depression: bool,
     points: Vec<[f64; 2]>,
 }
 
@@ -34,14 +35,15 @@ impl Line {
         let points = feature["geometry"]["coordinates"].as_array().expect("points");
         let mut points: Vec<[f64; 2]> =
             points.iter().map(|point| [0, 1].map(|axis| number(&point[axis]))).collect();
-        let is_closed = feature["properties"]["is_closed"].as_bool().expect("a property");
+        let [is_closed, is_depression] = ["is_closed", "depression"]
+            .map(|name| feature["properties"][name].as_bool().expect("a property"));
         assert!(points.windows(2).all(|pair| pair[0] != pair[1]), "{points:?}");
         if is_closed {
             assert_eq!(points.first(), points.last());
             points.pop();
         }
         assert!(points.len() > 1);
-        Line { elevation: number(&feature["properties"]["elevation"]), is_closed, points }
+        Line { elevation: number(&feature["properties"]["elevation"]), is_closed, is_depression, points }
     }
 
     /// From each point to the next.

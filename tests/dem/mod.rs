@@ -72,6 +72,7 @@ fn options(quantity: Quantity) -> Options {
         memory: 1 << 30,
         natural: false,
         vertices_memory: None,
+        banks: None,
         raster: RasterOptions::default(),
         crs: None,
     }

@@ -122,14 +122,34 @@ fn tiles_have_the_names_of_a_pattern() {
     assert!(usual.len() > 1);
     assert_eq!(named.len(), usual.len());
     assert!(moved.iter().all(|name| named.contains(name)), "{named:?}, expected {moved:?}");
+    // A table names all squares but the first, and one that is elsewhere.
+    let row = |(number, name): (usize, &String)| {
+        let mut parts = name.trim_end_matches(".asc").rsplitn(3, '_');
+        let [y, x] = [0, 1].map(|_| parts.next().unwrap().to_string());
+        format!("{x},{y},blatt {number}\n")
+    };
+    let rows: String = usual.iter().enumerate().skip(1).map(row).collect();
+    let table = folder.write("names.csv", "x,y,name\n".to_string() + &rows + "-200000,0,nowhere\n");
+    let by_table = write(&["--tiles", "20000", "--full", "--tile-table", &table]);
+    let mut expected: Vec<String> = (1..usual.len()).map(|number| format!("blatt {number}.asc")).collect();
+    expected.sort_unstable();
+    assert_eq!(by_table, expected);
+    let with_pattern = ["--tiles", "20000", "--tile-name", "d_{sheet}", "--tile-table", &table];
+    assert_eq!(write(&with_pattern), expected.iter().map(|name| format!("d_{name}")).collect::<Vec<_>>());
     let refused = |flags: &[&str], part: &str| {
         let all: Vec<&str> = ["--step", "2000"].iter().chain(flags).copied().chain(["-o", &path]).collect();
         assert_outcome("spdem", &all, &mesh, 2, part);
     };
     refused(&["--tiles", "20000", "--tile-name", "a_{x}"], "two rasters would have the name");
-    refused(&["--tiles", "20000", "--tile-name", "a_{z}"], "there is no field {z}, but {name}, {x}");
+    refused(&["--tiles", "20000", "--tile-name", "a_{z}"], "there is no field {z}, but {name}, {sheet}, {x}");
     refused(&["--tiles", "20000", "--tile-name", "a/{x}_{y}"], "-o folder/name.tif");
     refused(&["--tiles", "1,2", "--tile-name", "{x}_{y}"], "take {column} and {row}");
+    refused(&["--tiles", "20000", "--tile-name", "{sheet}"], "give --tile-table FILE");
+    refused(
+        &["--tiles", "20000", "--tile-name", "{x}_{y}", "--tile-table", &table],
+        "add {sheet} to --tile-name",
+    );
+    refused(&["--tiles", "1,2", "--tile-table", &table], "--tile-table names squares");
     refused(&["--tile-name", "{x}_{y}"], "--tiles");
     refused(&["--full"], "--tiles");
     refused(&["--tiles", "1,2", "--full"], "full rasters are squares");

@@ -231,10 +231,19 @@ fn an_esri_grid_has_its_system_beside_it() {
     let flags = ["--step", "5000", "--crs", text];
     assert_outcome("spdem", &[&flags[..], &["-q", "-o", &path]].concat(), &mesh, 0, "");
     assert_eq!(fs::read_to_string(folder.path("a.prj")).unwrap().trim_end(), text);
-    // The text of the EPSG dataset is WKT 2, which programs do not read there.
+    // The text of the EPSG dataset is WKT 2, which programs do not read there: version 1 says the same.
+    let utm = folder.path("utm.asc");
+    assert_outcome("spdem", &["--step", "5000", "--crs", "EPSG:32610", "-q", "-o", &utm], &mesh, 0, "");
+    let text = fs::read_to_string(folder.path("utm.prj")).unwrap();
+    assert!(
+        text.starts_with("PROJCS[\"WGS 84 / UTM zone 10N\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\""),
+        "{text}"
+    );
+    assert!(text.contains("PARAMETER[\"central_meridian\",-123]"), "{text}");
+    // It has no name for this projection.
     let other = folder.path("b.asc");
-    let lost = "an ESRI grid cannot hold the coordinate reference system EPSG:32610";
-    assert_outcome("spdem", &["--step", "5000", "--crs", "EPSG:32610", "-o", &other], &mesh, 0, lost);
+    let lost = "an ESRI grid cannot hold the coordinate reference system EPSG:3857";
+    assert_outcome("spdem", &["--step", "5000", "--crs", "EPSG:3857", "-o", &other], &mesh, 0, lost);
     assert!(!folder.names("").contains(&"b.prj".to_string()));
     let input = folder.write("a.spm", &mesh);
     assert_outcome("spdem", &[&flags[..], &["--format", "asc", &input]].concat(), b"", 0, "with -o NAME.asc");

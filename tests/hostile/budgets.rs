@@ -8,6 +8,7 @@ use std::process::Command;
 use spmesh_reference::sets::Random;
 
 use crate::START_MAX;
+use crate::las_file::{LasFile, Record};
 use crate::measured::{Measured, tool};
 
 /// A command, the memory that it may take, and a part of the message if it must refuse.
@@ -32,7 +33,7 @@ const BESIDE: f64 = START_MAX + 8.0;
 
 /// A limit of the process is one of all; `spheight` has tables of its own size for the ground, and `dd4`
 /// takes about as much as it may.
-const RUNS: [Run; 26] = [
+const RUNS: [Run; 29] = [
     kept("tags of a plane", "spdelaunay2d --memory 32M --threads 1 tags.spm", 32.0),
     kept("tags, on threads", "spdelaunay2d --memory 32M --threads 2 tags.spm", 32.0),
     kept("tags of space", "spdelaunay3d --memory 32M --threads 1 tags3.spm", 32.0),
@@ -63,6 +64,24 @@ const RUNS: [Run; 26] = [
         "spdiff --level 3 --by squares.wkt --memory 1M mesh.spm",
         1.0 + BESIDE,
         "of lines so far",
+    ),
+    refused(
+        "points at shores",
+        "spfinalize --flatten lakes.geojson --shore-width 900 --memory 48M --threads 1 many.txt",
+        48.0,
+        "points at shores so far",
+    ),
+    refused(
+        "points of water",
+        "spfinalize --levels o.geojson --flatten sea.geojson --shore-width 0.1 --water-points 3 --memory 42M \
+         --threads 1 water.las",
+        42.0,
+        "points at shores so far",
+    ),
+    kept(
+        "points at shores with room",
+        "spfinalize --flatten lakes.geojson --shore-width 900 --memory 160M --threads 1 many.txt",
+        160.0,
     ),
     refused("leaves", "spfinalize --level 12 --memory 40M --threads 1 plane.txt", 40.0, "level 12"),
     refused("long edges", "spconstrain --kill 0.001 --memory 1M mesh.spm", 1.0 + BESIDE, "--kill"),
@@ -180,6 +199,25 @@ fn write_points(folder: &Path) {
         format!("POLYGON(({x} {y},{u} {y},{u} {v},{x} {v},{x} {y}))\n")
     };
     write("squares.wkt", (0..30_000).map(square).collect());
+    let lakes: Vec<String> = (0..20).map(|i| lake([490.0 + f64::from(i), 500.0], 0.5)).collect();
+    write("lakes.geojson", layer(&lakes));
+    write("sea.geojson", layer(&[lake([0.0, 0.0], 1e3)]));
+    let record =
+        |i: i32| Record { position: [i % 1000 * 99, i / 1000 * 99, 7], class: 9, ..Record::default() };
+    let water = LasFile { records: (0..72_000).map(record).collect(), ..LasFile::of(&[]) };
+    fs::write(folder.join("water.las"), water.bytes()).expect("a folder");
+}
+
+/// A square lake without a level, from its lower left corner.
+fn lake([x, y]: [f64; 2], side: f64) -> String {
+    let [u, v] = [x + side, y + side];
+    format!(
+        r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"Polygon","coordinates":[[[{x},{y}],[{u},{y}],[{u},{v}],[{x},{v}],[{x},{y}]]]}}}}"#
+    )
+}
+
+fn layer(features: &[String]) -> String {
+    format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(","))
 }
 
 /// A mesh of which no vertex is final before its end: the format does not say which are.

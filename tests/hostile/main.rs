@@ -9,6 +9,9 @@ mod budgets;
 mod cases;
 mod code;
 mod headers;
+#[path = "../sources/las_file.rs"]
+#[allow(dead_code, reason = "other test programs use more of it")]
+mod las_file;
 mod measured;
 mod nested;
 

@@ -1,7 +1,10 @@
 //! Filters keep the points that a count over the raw fields says, and count the others by their reason.
 
+use std::collections::BTreeSet;
+use std::num::NonZeroU32;
+
 use spmesh_base::error::ErrorKind;
-use spmesh_formats::source::{DropReason, Filters, Input, SourceOptions};
+use spmesh_formats::source::{DropReason, Filters, Input, Sample, SourceOptions};
 
 use super::las_file::{LasFile, Record};
 use super::{assert_fails, flat, pass, points, sample};
@@ -207,5 +210,56 @@ fn filters_that_a_file_cannot_serve_are_usage_errors() {
     {
         let flag = format!("--keep-intensity={text}");
         assert_outcome("spfinalize", &[&flag, las.to_str().expect("UTF-8")], &[], 2, part);
+    }
+}
+
+/// The places of the world that a sample has, in millimetres.
+fn sampled(paths: &[std::path::PathBuf], one_in: u32, is_complement: bool) -> BTreeSet<[i64; 2]> {
+    let sample = NonZeroU32::new(one_in).map(|one_in| Sample { one_in, is_complement });
+    let filters = Filters { sample, ..Filters::default() };
+    let input = Input::open(paths, &SourceOptions { filters, ..flat() }).expect("it opens");
+    let coordinates = input.description().coordinates;
+    let place = |&point| {
+        let [x, y, _] = coordinates.to_world(point);
+        [x, y].map(|at| (at * 1e3).round() as i64)
+    };
+    let found: BTreeSet<[i64; 2]> = pass(&input).expect("points").iter().map(place).collect();
+    let others: usize = 10_000 - found.len();
+    assert_eq!(input.dropped().of(DropReason::Sample), others as u64);
+    found
+}
+
+#[test]
+fn a_sample_depends_on_places_alone() {
+    let folder = Folder::new();
+    let las = |factor: i32, of: &[i32]| {
+        let record =
+            |&x: &i32| Record { position: [factor * x, factor * (x % 97), x % 5], ..Record::default() };
+        LasFile {
+            scale: [0.1 / f64::from(factor); 3],
+            records: of.iter().map(record).collect(),
+            ..LasFile::of(&[])
+        }
+    };
+    let numbers: Vec<i32> = (0..10_000).collect();
+    let reversed: Vec<i32> = numbers.iter().rev().copied().collect();
+    let (front, back) = reversed.split_at(3_000);
+    let text = |of: &[i32]| -> String {
+        of.iter().map(|&x| format!("{} {} 7\n", f64::from(x) / 10.0, f64::from(x % 97) / 10.0)).collect()
+    };
+    let whole = [folder.file("whole.las", las(1, &numbers).bytes())];
+    let parts = [
+        folder.file("front.laz", las(10, front).compressed(500)),
+        folder.file("back.las", las(1, back).bytes()),
+    ];
+    let texts = [folder.file("text.txt", text(&reversed).into_bytes())];
+    for one_in in [1, 2, 20, 1000] {
+        let expected = sampled(&whole, one_in, false);
+        assert_eq!(sampled(&parts, one_in, false), expected);
+        assert_eq!(sampled(&texts, one_in, false), expected);
+        let rest = sampled(&parts, one_in, true);
+        assert!(expected.is_disjoint(&rest) && expected.len() + rest.len() == 10_000);
+        let mean = 10_000.0 / f64::from(one_in);
+        assert!((expected.len() as f64 - mean).abs() <= 4.0 * mean.sqrt(), "{one_in}: {}", expected.len());
     }
 }

@@ -15,6 +15,7 @@ mod proj_string;
 mod request;
 mod system;
 mod to_keys;
+mod to_wkt1;
 mod units;
 mod wkt;
 
@@ -61,6 +62,15 @@ pub fn text(crs: &Crs) -> Option<String> {
                 None => epsg::text(horizontal).map(ToOwned::to_owned),
             }
         }
+    }
+}
+
+/// The definition of `crs` as well-known text of version 1, if this can hold it.
+pub fn text1(crs: &Crs) -> Option<String> {
+    const WORDS: [&str; 3] = ["PROJCS[", "GEOGCS[", "COMPD_CS["];
+    match crs {
+        Crs::Wkt(text) if WORDS.iter().any(|word| text.starts_with(word)) => Some(text.clone()),
+        _ => to_wkt1::text(&System::of(crs)),
     }
 }
 

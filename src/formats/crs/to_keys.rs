@@ -54,6 +54,7 @@ impl Writer {
             return;
         }
         self.keys.add_short(keys::RASTER_TYPE, PIXEL_IS_AREA);
+        self.citation(horizontal);
         if let Some(vertical) = vertical {
             self.vertical(vertical, horizontal);
         }
@@ -99,6 +100,14 @@ impl Writer {
             Kind::Geocentric(_) | Kind::Unresolved => {
                 self.lose(format!("a GeoTIFF cannot hold {name:?}, of which only the name is known"))
             }
+        }
+    }
+
+    /// What people call the system, for programs that show it.
+    fn citation(&mut self, system: &Horizontal) {
+        let is_there = self.keys.directory.as_chunks::<4>().0.iter().any(|own| own[0] == keys::CITATION);
+        if !is_there && !system.name.is_empty() {
+            self.keys.add_text(keys::CITATION, std::slice::from_ref(&system.name));
         }
     }
 

@@ -22,12 +22,9 @@ pub struct Reference {
     crs: Crs,
 }
 
-/// Text that programs read beside ESRI grids: WKT 1. They take no notice of WKT 2, which the EPSG dataset
-/// has.
-const READ_BESIDE: [&str; 3] = ["PROJCS[", "GEOGCS[", "COMPD_CS["];
-
-/// Writes the system of an ESRI grid to a file beside it, which ends in `.prj`. Returns what cannot be held,
-/// as a sentence for users: the system of a grid on its way to another program.
+/// Writes the system of an ESRI grid to a file beside it, which ends in `.prj`: as WKT 1, since programs take
+/// no notice of WKT 2 there. Returns what cannot be held, as a sentence for users: the system of a grid on
+/// its way to another program.
 ///
 /// # Errors
 /// If writing fails; usage, if the file is an input of this run.
@@ -35,18 +32,13 @@ pub fn write_prj(grid: &Path, crs: &Crs) -> Result<Option<String>> {
     let Some(name) = crs::name(crs) else { return Ok(None) };
     let lost = format!("an ESRI grid cannot hold the coordinate reference system {name}");
     // [`Reference::of_crs`] tells of systems without such text.
-    let Some(text) = beside(crs) else { return Ok(None) };
+    let Some(text) = crs::text1(crs) else { return Ok(None) };
     if grid == Path::new("-") || fs::metadata(grid).is_ok_and(|found| !found.is_file()) {
         return Ok(Some(format!("{lost}: with -o NAME.asc, NAME.prj does")));
     }
     let mut output = Output::create(&grid.with_extension("prj"), false)?;
     writeln!(output, "{text}").map_err(|e| Error::io("writing", e))?;
     output.commit().map(|()| None)
-}
-
-/// The text of a system that programs read beside ESRI grids, if there is one.
-fn beside(crs: &Crs) -> Option<String> {
-    crs::text(crs).filter(|text| READ_BESIDE.iter().any(|start| text.starts_with(start)))
 }
 
 impl Reference {
@@ -58,7 +50,7 @@ impl Reference {
             (reference.keys, reference.notices) = geotiff_keys(&system, are_elevations);
             let bare = system.vertical.as_ref().filter(|heights| are_elevations && heights.is_only_unit());
             reference.unit = bare.map(|heights| heights.unit.name.clone());
-        } else if let Some(name) = system.name().filter(|_| beside(crs).is_none()) {
+        } else if let Some(name) = system.name().filter(|_| crs::text1(crs).is_none()) {
             let loss = format!("an ESRI grid cannot hold the coordinate reference system {name}");
             reference.notices.push(loss);
         }

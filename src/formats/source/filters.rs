@@ -1,10 +1,13 @@
 //! Which points of an input are kept, and how many are dropped for which reason.
 
+use std::num::NonZeroU32;
 use std::str::FromStr;
 
+use spmesh_base::random::mixed;
 use spmesh_stream::model::bounds::Bounds;
 
-/// Which points to keep. Only LAS and LAZ files have the fields that all filters but `z` look at.
+/// Which points to keep. Only LAS and LAZ files have the fields that all filters but `z` and `sample` look
+/// at.
 ///
 /// Points that are withheld count as deleted, says the LAS specification: they are dropped by default.
 #[derive(Debug, Clone, Default)]
@@ -39,6 +42,27 @@ pub struct Filters {
     pub gps_time: Option<Interval>,
     /// Keep only points whose z in the world is in this interval.
     pub z: Option<Interval>,
+    /// Keep only points at these places.
+    pub sample: Option<Sample>,
+}
+
+/// A part of all places of the plane, which a hash of x and y in the world chooses. So it depends neither on
+/// the order of points nor on their files and grids, and points at one place stay together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// The hash chooses one of so many places on average.
+    pub one_in: NonZeroU32,
+    /// Whether these are not in the sample, and all others are.
+    pub is_complement: bool,
+}
+
+impl Sample {
+    /// Whether a place is in the sample.
+    pub(crate) fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        // -0 and 0 are one place.
+        let [x, y] = [x, y].map(|at| (at + 0.0).to_bits());
+        mixed(mixed(x) ^ y).is_multiple_of(self.one_in.get().into()) != self.is_complement
+    }
 }
 
 /// The classes of noise: low points, and high noise.
@@ -133,11 +157,13 @@ pub enum DropReason {
     Bounds,
     /// Its z is not wanted.
     Z,
+    /// It is not in the sample.
+    Sample,
 }
 
 impl DropReason {
     /// All reasons, in their order.
-    pub const ALL: [DropReason; 12] = [
+    pub const ALL: [DropReason; 13] = [
         DropReason::Withheld,
         DropReason::Synthetic,
         DropReason::Overlap,
@@ -150,6 +176,7 @@ impl DropReason {
         DropReason::GpsTime,
         DropReason::Bounds,
         DropReason::Z,
+        DropReason::Sample,
     ];
 
     /// Name in reports and in JSON.
@@ -167,6 +194,7 @@ impl DropReason {
             DropReason::GpsTime => "gps_time",
             DropReason::Bounds => "bounds",
             DropReason::Z => "z",
+            DropReason::Sample => "sample",
         }
     }
 }

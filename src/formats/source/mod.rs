@@ -59,7 +59,7 @@ pub use crate::text::words::{finite, for_each_line};
 pub use crate::twin::read::TwinSource;
 pub use events::EventSource;
 pub use fill_values::FillValues;
-pub use filters::{DropReason, Dropped, Filters, Interval};
+pub use filters::{DropReason, Dropped, Filters, Interval, Sample};
 pub use gzip::Plain;
 pub use input::Input;
 pub use labelled::{LabelledPoints, read_labelled};

@@ -1,6 +1,6 @@
 //! Moves points from the coordinates of their file to those of the whole input, and drops points by filters.
 
-use crate::source::filters::{DropReason, Dropped};
+use crate::source::filters::{DropReason, Dropped, Sample};
 use crate::source::options::{InvalidAdvice, SourceOptions};
 use spmesh_base::error::{Error, Result};
 use spmesh_stream::Coordinates;
@@ -24,6 +24,8 @@ pub(crate) struct Placement {
     step: Step,
     /// Boxes that keep points, in the file's stored coordinates, and why they drop others.
     windows: Vec<(DropReason, Bounds)>,
+    /// The places that are kept, and the file's coordinates, which say where they are.
+    sample: Option<(Sample, Coordinates)>,
     /// The part of the input that is wanted, in its coordinates; `None` if it has all points of the file.
     window: Option<Region<3>>,
     skip_invalid: bool,
@@ -67,11 +69,13 @@ impl Placement {
         let windows = options.windows().iter().map(stored).collect();
         let (skip_invalid, advice) = (options.skip_invalid, options.invalid_advice);
         let window = options.window;
-        Placement { step, windows, window, skip_invalid, advice, dropped: Dropped::default(), invalid: 0 }
+        let sample = options.filters.sample.map(|sample| (sample, *from));
+        let dropped = Dropped::default();
+        Placement { step, windows, sample, window, skip_invalid, advice, dropped, invalid: 0 }
     }
 
-    /// Says that all points of the file are in this box of its stored coordinates, so that none may have to be
-    /// looked at.
+    /// Says that all points of the file are in this box of its stored coordinates, so that none may have to
+    /// be looked at.
     pub(crate) fn within(self, stated: Option<Bounds>) -> Self {
         let contains = |window: &Region<3>, bounds: &Bounds| {
             [bounds.min, bounds.max].iter().all(|&corner| window.contains(self.place(corner)))
@@ -106,7 +110,8 @@ impl Placement {
 
     /// Whether all points with integer coordinates stay unchanged. Integer coordinates are finite.
     pub(crate) fn keeps_integers(&self) -> bool {
-        matches!(self.step, Step::Same) && self.windows.is_empty() && self.window.is_none()
+        let keeps_all = self.windows.is_empty() && self.window.is_none() && self.sample.is_none();
+        matches!(self.step, Step::Same) && keeps_all
     }
 
     /// Appends `stored`, a point in the coordinates of its file, to `batch`, unless filters drop it. Returns
@@ -120,10 +125,10 @@ impl Placement {
         if self.is_elsewhere(stored) {
             return Ok(false);
         }
-        if let Some((reason, _)) = self.windows.iter().find(|(_, bounds)| !bounds.contains(stored))
+        if let Some(reason) = self.reason(stored)
             && stored.iter().all(|value| value.is_finite())
         {
-            self.dropped.count(*reason);
+            self.dropped.count(reason);
             return Ok(false);
         }
         let placed = self.place(stored);
@@ -140,6 +145,18 @@ impl Placement {
         }
         batch.push(placed);
         Ok(true)
+    }
+
+    /// Why a point of the file is dropped, if it is.
+    #[inline]
+    fn reason(&self, stored: Point) -> Option<DropReason> {
+        let outside = self.windows.iter().find(|(_, bounds)| !bounds.contains(stored));
+        let is_left = |(sample, from): &(Sample, Coordinates)| {
+            let [x, y, _] = from.to_decimal(stored);
+            !sample.contains([x, y])
+        };
+        let sampled = || self.sample.as_ref().is_some_and(is_left).then_some(DropReason::Sample);
+        outside.map(|(reason, _)| *reason).or_else(sampled)
     }
 
     #[cold]

@@ -3,9 +3,10 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use super::budget::Budget;
 use super::passes::{Observer, Passes};
 use super::select::Selected;
-use super::shores::{Raise, Shores, collect_inside, extent, shore_width, with_points};
+use super::shores::{Raise, Room, Shores, collect_inside, extent, shore_width, with_points};
 use crate::lines::{Layer, Levels, Near, Shore, Target, Water};
 use spmesh_base::error::{Error, Result};
 use spmesh_delaunay::network::Network;
@@ -37,6 +38,8 @@ pub(super) struct Evidence<'a> {
     pub(super) points: &'a Selected<'a>,
     /// Points of the class of water.
     pub(super) in_water: Option<&'a Selected<'a>>,
+    /// Memory for those that count, and for shores.
+    pub(super) budget: Budget,
 }
 
 /// The box of points and their number, as far as they are known, and the width of shores in stored units.
@@ -70,10 +73,7 @@ impl Flatten {
         coordinates: Coordinates,
     ) -> Option<Raise> {
         let width = self.width.filter(|_| self.raise)?;
-        let segments = water.polygons.iter().flat_map(|polygon| &polygon.segments);
-        let level = |vertex: u32| levels.elevations.get(&vertex).copied().unwrap_or(f64::NEG_INFINITY);
-        let levels = segments.map(|&segment| network.segments[segment as usize].ends.map(level)).collect();
-        Some(Raise::new(water.edges(network), levels, stored(width, &coordinates), coordinates))
+        Some(Raise::of(network, water, levels, stored(width, &coordinates), coordinates))
     }
 
     /// Writes the layer of levels. Points near all shores are looked at, also where files state the level.
@@ -112,12 +112,18 @@ impl Flatten {
         if !needed.contains(&true) {
             return Ok(vec![Near::default(); needed.len()]);
         }
-        let shores = Shores::new(water.edges(network), needed, width).collect(points.points, observer)?;
-        let mut near: Vec<Near> =
-            shores.into_iter().map(|points| Near { points, ..Near::default() }).collect();
+        let mut near = vec![Near::default(); needed.len()];
+        let shores = Shores::new(water.edges(network), needed, width);
+        let (edges, bytes) = shores.size();
+        let what = format!("{edges} edges of water take");
+        let budget = points.budget.beside(bytes, &what, "give fewer lakes and rivers at once")?;
+        let mut room = Room::within(budget.bytes());
+        for (number, points) in shores.collect(points.points, &mut room, observer)? {
+            near[number as usize].points = points;
+        }
         if let (Some(input), Some(enough)) = (points.in_water, self.water_points) {
             let edges = water.edges(network).into_iter().filter(|&(number, _)| needed[number as usize]);
-            for (number, inside) in collect_inside(edges, input, observer)? {
+            for (number, inside) in collect_inside(edges, input, &mut room, observer)? {
                 near[number as usize].take_water(inside, enough);
             }
         }
@@ -137,7 +143,7 @@ impl Flatten {
         let far = if self.is_part {
             vec![false; needed.len()]
         } else {
-            far(network, water, needed, (near, extent), points.points, observer)?
+            far(network, water, needed, (near, extent), points, observer)?
         };
         if let Some(text) = water.about_far(&far) {
             observer.notice(&text);
@@ -182,7 +188,7 @@ fn far(
     water: &Water,
     needed: &[bool],
     (near, extent): (&[Near], &Extent),
-    points: &dyn Passes,
+    points: &Evidence,
     observer: &mut dyn Observer,
 ) -> Result<Vec<bool>> {
     let is_beyond = |number: usize| {
@@ -194,7 +200,7 @@ fn far(
     let is_doubtful = |number: usize| needed[number] && is_empty(number) && !far[number];
     if (0..needed.len()).any(is_doubtful) {
         let edges = water.edges(network).into_iter().filter(|(number, _)| is_doubtful(*number as usize));
-        let inside = with_points(edges, points, observer)?;
+        let inside = with_points(edges, points.points, Room::within(points.budget.bytes()), observer)?;
         let is_dry = |number: &usize| is_doubtful(*number) && !inside.contains(&(*number as u32));
         let dry: Vec<usize> = (0..needed.len()).filter(is_dry).collect();
         dry.into_iter().for_each(|number| far[number] = true);

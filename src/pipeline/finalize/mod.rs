@@ -19,6 +19,7 @@
 //! The result does not depend on how many points wait in memory or on disk. Counters have 64 bits.
 
 mod added;
+mod banks;
 mod batch;
 mod budget;
 mod buffer;
@@ -47,6 +48,7 @@ mod thin;
 mod weigh;
 mod work;
 
+pub use banks::Banks;
 pub use budget::Budget;
 pub use flatten::Flatten;
 pub use options::{CELL_POINTS, InRegions, Leaves, Options, Order, REGION_POINTS, WhenRegions};

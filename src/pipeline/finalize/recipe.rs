@@ -20,7 +20,7 @@ use spmesh_base::limits::LINE_VERTEX_BYTES;
 use spmesh_delaunay::network::Network;
 use spmesh_formats::source::{Dropped, Filters, Input, SourceOptions};
 use spmesh_stream::Coordinates;
-use spmesh_stream::model::bounds::Point;
+use spmesh_stream::model::bounds::{Bounds, Point};
 use spmesh_stream::model::points::Point2;
 
 /// The class of points of water, by the LAS specification.
@@ -144,7 +144,9 @@ impl Recipe {
         let (areas, Lines { network, mut water, .. }) = self.read_beside(&target, observer)?;
         let in_water = self.open_water_points()?;
         let in_water = in_water.as_ref().map(|input| Selected::new(input, &areas));
-        let points = Evidence { points: &Selected::new(&input, &areas), in_water: in_water.as_ref() };
+        let budget = self.budget_beside(&areas, network.vertices.len())?;
+        let points = &Selected::new(&input, &areas);
+        let points = Evidence { points, in_water: in_water.as_ref(), budget };
         self.flatten.write_levels(&network, &mut water, &points, observer, output)
     }
 
@@ -164,7 +166,9 @@ impl Recipe {
             let is_needed = water.need_points().contains(&true);
             let in_water = if is_needed { self.open_water_points()? } else { None };
             let in_water = in_water.as_ref().map(|input| Selected::new(input, &areas));
-            let points = Evidence { points: &Selected::new(input, &areas), in_water: in_water.as_ref() };
+            let budget = self.budget_beside(&areas, network.vertices.len())?;
+            let points = &Selected::new(input, &areas);
+            let points = Evidence { points, in_water: in_water.as_ref(), budget };
             let levels = self.flatten.levels(&network, &mut water, &points, observer)?;
             let raise = self.flatten.raising(&network, &water, &levels, target.coordinates);
             areas = areas.with_water(water.edges(&network), raise);
@@ -254,7 +258,7 @@ impl Recipe {
     /// say it.
     pub fn stated_water(&self, target: &Target, is_covered: impl Fn(Point2) -> bool) -> Result<[u64; 2]> {
         let Lines { network, water, .. } = self.read_lines(target)?;
-        if let Some(polygon) = water.polygons.iter().find(|polygon| polygon.needs_points(&water)) {
+        if let Some(polygon) = water.without_level() {
             return Err(Error::usage(format!(
                 "{}: no level is stated, and jobs see the points of their own boxes alone: write all levels first, with \
                  --levels, and flatten with that file",
@@ -265,6 +269,12 @@ impl Recipe {
         let uncovered =
             vertices.iter().filter(|&&vertex| !is_covered(network.vertices[vertex as usize].place));
         Ok([uncovered.count() as u64, vertices.len() as u64])
+    }
+
+    /// The box around one of points in which lines and water decide about them.
+    pub(crate) fn reach(&self, Bounds { min, max }: &Bounds) -> [Point2; 2] {
+        let width = self.flatten.width.filter(|_| self.flatten.raise).unwrap_or(0.0);
+        [[min[0] - width, min[1] - width], [max[0] + width, max[1] + width]]
     }
 
     /// Whether a stored point is in the boxes that limit the input.

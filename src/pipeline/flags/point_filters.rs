@@ -1,9 +1,11 @@
 //! Flags that say which points to keep.
 
+use std::num::NonZeroU32;
+
 use clap::Args;
 
 use crate::finalize::Thin;
-use spmesh_formats::source::{Filters, Interval};
+use spmesh_formats::source::{Filters, Interval, Sample};
 use spmesh_shell::parse_box;
 use spmesh_stream::model::bounds::Bounds;
 
@@ -73,13 +75,22 @@ pub struct PointFilters {
     #[arg(long, value_name = "MIN,MAX", allow_hyphen_values = true)]
     keep_z: Option<Interval>,
 
+    /// Keep one of N places, which a hash of x and y chooses whatever the order of the points: for check
+    /// points
+    #[arg(long, value_name = "N", conflicts_with = "drop_sample")]
+    keep_sample: Option<NonZeroU32>,
+
+    /// Drop the points that --keep-sample N keeps
+    #[arg(long, value_name = "N")]
+    drop_sample: Option<NonZeroU32>,
+
     /// Drop and count points with a coordinate that is not finite, instead of failing
     #[arg(long)]
     pub skip_invalid: bool,
 
-    /// Of the points that the filters keep, keep one per square cell of side CELL (with --octree, per cube), by
-    /// RULE: lowest, highest, first or nearest-centre; the first in input order of equal ones. Corners of cells
-    /// are at multiples of CELL, in world units [default rule: lowest]
+    /// Of the points that the filters keep, keep one per square cell of side CELL (with --octree, per cube),
+    /// by RULE: lowest, highest, first or nearest-centre; the first in input order of equal ones. Corners of
+    /// cells are at multiples of CELL, in world units [default rule: lowest]
     #[arg(long, value_name = "CELL[:RULE]")]
     pub thin: Option<Thin>,
 }
@@ -103,6 +114,13 @@ impl PointFilters {
             point_source: self.keep_point_source,
             gps_time: self.keep_gps_time,
             z: self.keep_z,
+            sample: self.sample(),
         }
+    }
+
+    fn sample(&self) -> Option<Sample> {
+        let sample = |one_in, is_complement| Sample { one_in, is_complement };
+        let kept = self.keep_sample.map(|one_in| sample(one_in, false));
+        kept.or(self.drop_sample.map(|one_in| sample(one_in, true)))
     }
 }

@@ -14,6 +14,7 @@ mod layer;
 mod levels;
 mod numbered;
 mod prepare;
+mod reach;
 mod report;
 mod rivers;
 mod sections;
@@ -38,11 +39,12 @@ use grid::Grid;
 pub(crate) use layer::Layer;
 pub use layer::Shore;
 pub use levels::Levels;
-pub(crate) use levels::Near;
+pub(crate) use levels::{MEDIAN, Near};
 use numbered::Bent;
 use numbered::numbered;
 pub use report::write_report;
 use spmesh_stream::model::bounds::Point;
+use spmesh_stream::model::points::Point2;
 pub use stated::{ABOUT_FAR, is_far};
 pub(crate) use stations::project;
 pub use water::{Water, WaterPolygon};
@@ -85,6 +87,8 @@ pub struct Options {
     pub takes_points: bool,
     /// So many vertices memory has room for, in all files.
     pub vertices_max: usize,
+    /// Only what decides the network and the water in this closed box is read. Units: those of the world.
+    pub reach: Option<[Point2; 2]>,
 }
 
 impl Options {
@@ -103,6 +107,7 @@ impl Default for Options {
             elevation: None,
             takes_points: false,
             vertices_max: usize::MAX,
+            reach: None,
         }
     }
 }
@@ -160,6 +165,9 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     banks::close(&mut files);
     let grid = Grid::of(target, files.iter().flat_map(|(_, _, file)| &file.lines));
     changes.notices.extend(grid.notice());
+    if let Some(reach) = options.reach {
+        reach::leave_out(&mut files, reach, world_step(target, &grid));
+    }
     let noting = |error| files.iter().fold(error, |error, (_, _, file)| file.noting_layers(error));
     let rings = areas::rings(&files).map_err(noting)?;
     let shores = areas::shores(&files);
@@ -181,6 +189,14 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     let (mut areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
     areas.shores = shores;
     Ok(Lines { network: network(noded, &grid), points, areas, water, changes })
+}
+
+/// The step of the grid in the world.
+fn world_step(target: &Target, grid: &Grid) -> f64 {
+    match target.coordinates {
+        Coordinates::I32 { scale, .. } => scale[0].max(scale[1]),
+        Coordinates::F64 => grid.step(),
+    }
 }
 
 /// Checks that some line has the property of elevations: its name may be misspelt.

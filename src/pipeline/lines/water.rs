@@ -157,6 +157,11 @@ impl Water {
         self.polygons.iter().map(|polygon| polygon.needs_points(self)).collect()
     }
 
+    /// A polygon whose level must be found from points.
+    pub(crate) fn without_level(&self) -> Option<&WaterPolygon> {
+        self.polygons.iter().find(|polygon| polygon.needs_points(self))
+    }
+
     /// The vertices of the network on shores whose elevations follow from what files state.
     pub(crate) fn stated_vertices(&self, network: &Network) -> BTreeSet<u32> {
         let stated = self.polygons.iter().filter(|polygon| !polygon.needs_points(self));

@@ -55,6 +55,7 @@ pub(super) fn write_leaf(
         temp_dir: work.temp_dir.clone(),
         ..recipe.source
     };
+    recipe.line_options.reach = Some(recipe.reach(&in_world(&window, &plan.coordinates())));
     recipe.options.budget = Budget::of_process(work.memory, work.threads.get())?;
     recipe.options.temp_dir.clone_from(&work.temp_dir);
     // A part of a mesh has a residual, which regions do not.

@@ -1,5 +1,6 @@
 //! A checksum of whether walls are the border of the final simplices, without holding a facet.
 
+use spmesh_base::random::mixed;
 use spmesh_stream::Patch;
 
 /// The border of simplices of D + 1 corners, less the walls around them, as one number.
@@ -54,15 +55,6 @@ fn number_of<const D: usize>(mut corners: [u64; D]) -> u64 {
     }
     let number = corners.iter().fold(0, |number, &id| mixed(number ^ id));
     if is_odd { number.wrapping_neg() } else { number }
-}
-
-/// A permutation of the 64-bit integers in which every output bit depends on every input bit (the finalizer
-/// of SplitMix64).
-fn mixed(value: u64) -> u64 {
-    let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let value = (value ^ value >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let value = (value ^ value >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    value ^ value >> 31
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The edges of a triangle that the lines through it pass.
 
 use super::places::Vertex;
+use spmesh_delaunay::predicates::Point2;
 
 /// A level on an edge, given by the ids of its ends, the lesser first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -32,6 +33,30 @@ pub(super) fn piece(corners: [&Vertex; 3], level: i64) -> Piece {
     let is_above = corners.map(|corner| corner.rank >= level);
     let edge = |is_from: bool| (0..3).find(|&i| is_above[i] == is_from && is_above[(i + 1) % 3] != is_from);
     Piece { level, from: edge(true).unwrap_or(0), to: edge(false).unwrap_or(0) }
+}
+
+/// A corner of a triangle that a line passes, and the side of the line where it is.
+///
+/// Every corner of the triangles along a ring is an end of an edge that the ring crosses. So the least of all
+/// of them, by x and then y, is outside: the least place inside of the ring is on an edge, one end of which
+/// is less.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Side {
+    at: Point2,
+    pub(super) is_above: bool,
+}
+
+impl Side {
+    /// The least corner of a triangle.
+    pub(super) fn least(corners: [&Vertex; 3], level: i64) -> Side {
+        let [a, b, c] = corners.map(|corner| Side { at: corner.at, is_above: corner.rank >= level });
+        a.min(b).min(c)
+    }
+
+    /// The lesser one.
+    pub(super) fn min(self, other: Side) -> Side {
+        if other.at < self.at { other } else { self }
+    }
 }
 
 /// The ends of an edge of a triangle.

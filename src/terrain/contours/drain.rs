@@ -39,7 +39,7 @@ impl<'a, W: Write> Drain<'a, W> {
 
     /// Writes lines, and takes them from the list.
     pub(super) fn write<P: Place>(&mut self, complete: &mut Vec<Contour<P>>) -> Result<()> {
-        for Contour { level, points, is_closed } in complete.drain(..) {
+        for Contour { level, points, is_closed, is_depression } in complete.drain(..) {
             let mut points = P::line(points, is_closed, &self.plane);
             if !canonical::tidy(&mut points, is_closed) {
                 self.stats.single_points += 1;
@@ -47,10 +47,10 @@ impl<'a, W: Write> Drain<'a, W> {
             }
             points.iter_mut().for_each(|place| *place = self.plane.to_world(*place));
             match &self.clipper {
-                None => self.line(level, &points, is_closed)?,
+                None => self.line(level, &points, [is_closed, is_depression])?,
                 Some(clipper) => {
                     for (part, is_closed) in clipper.clip(&points, is_closed) {
-                        self.line(level, &part, is_closed)?;
+                        self.line(level, &part, [is_closed, is_depression])?;
                     }
                 }
             }
@@ -58,8 +58,8 @@ impl<'a, W: Write> Drain<'a, W> {
         Ok(())
     }
 
-    /// Writes a line in world coordinates, unless it is short.
-    fn line(&mut self, level: i64, points: &[Point2], is_closed: bool) -> Result<()> {
+    /// Writes a line in world coordinates, unless it is short. It is closed or not, and a depression or not.
+    fn line(&mut self, level: i64, points: &[Point2], [is_closed, is_depression]: [bool; 2]) -> Result<()> {
         if self.options.min_length.is_some_and(|least| length(points, is_closed) < least) {
             self.stats.short += 1;
             return Ok(());
@@ -67,11 +67,13 @@ impl<'a, W: Write> Drain<'a, W> {
         self.levels_with_lines.insert(level);
         self.stats.lines += 1;
         self.stats.rings += u64::from(is_closed);
+        self.stats.depressions += u64::from(is_depression);
         self.stats.points += points.len() as u64;
         let is_index = level.rem_euclid(i64::from(self.options.index.max(1))) == 0;
         let again = is_closed.then(|| points[0]);
         let places = points.iter().copied().chain(again);
-        self.writer.line(self.options.levels.elevation(level), is_closed, is_index, places)
+        let truths = [("is_closed", is_closed), ("index", is_index), ("depression", is_depression)];
+        self.writer.line(self.options.levels.elevation(level), truths, places)
     }
 }
 

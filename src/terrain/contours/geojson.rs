@@ -44,13 +44,12 @@ impl<W: Write> LineWriter<W> {
         LineWriter { output, format, text, unit, features: 0 }
     }
 
-    /// Writes a line of at least two points, in world coordinates. A ring repeats its first point at the end. An
-    /// index line is one that maps draw thicker.
+    /// Writes a line of at least two points, in world coordinates, and what is true of it. A ring repeats its
+    /// first point at the end.
     pub(super) fn line(
         &mut self,
         elevation: f64,
-        is_closed: bool,
-        is_index: bool,
+        truths: [(&str, bool); 3],
         points: impl Iterator<Item = Point2>,
     ) -> Result<()> {
         if self.format == LineFormat::GeoJson {
@@ -60,10 +59,9 @@ impl<W: Write> LineWriter<W> {
         self.text.extend_from_slice(br#"{"type":"Feature","properties":{"elevation":"#);
         self.number(elevation)?;
         self.text.extend_from_slice(self.unit.as_bytes());
-        self.text.extend_from_slice(br#","is_closed":"#);
-        self.truth(is_closed);
-        self.text.extend_from_slice(br#","index":"#);
-        self.truth(is_index);
+        for (name, is_true) in truths {
+            write!(self.text, ",\"{name}\":{is_true}").map_err(write_error)?;
+        }
         self.text.extend_from_slice(br#"},"geometry":{"type":"LineString","coordinates":["#);
         for (count, [x, y]) in points.enumerate() {
             self.text.extend_from_slice(if count > 0 { b",[" } else { b"[" });
@@ -98,10 +96,6 @@ impl<W: Write> LineWriter<W> {
             self.text.truncate(self.text.len() - 2);
         }
         Ok(())
-    }
-
-    fn truth(&mut self, is_true: bool) {
-        self.text.extend_from_slice(if is_true { b"true" } else { b"false" });
     }
 
     fn hand_over(&mut self, len: usize) -> Result<()> {

@@ -2,9 +2,9 @@
 //!
 //! `levels` numbers the elevations that have lines, and ranks each vertex among them. From the ranks,
 //! `crossings` finds the edges of a triangle that a line passes, in integers; `places` computes where.
-//! `open_lines` joins the pieces of adjacent triangles. `smooth` smooths complete lines on demand. A complete line
-//! gets its canonical form from `canonical`; `clip` cuts it at a mask, and `geojson` writes it. `drain` does
-//! all this. `decimals` computes with numbers as people write them.
+//! `open_lines` joins the pieces of adjacent triangles. `smooth` smooths complete lines on demand. A complete
+//! line gets its canonical form from `canonical`; `clip` cuts it at a mask, and `geojson` writes it. `drain`
+//! does all this. `decimals` computes with numbers as people write them.
 
 mod canonical;
 mod clip;
@@ -25,6 +25,7 @@ pub use geojson::LineFormat;
 pub use levels::Levels;
 
 use crate::surface::{check_input, is_counterclockwise};
+use crossings::Side;
 use drain::Drain;
 use geojson::LineWriter;
 use open_lines::OpenLines;
@@ -115,6 +116,8 @@ pub struct Stats {
     pub lines: u64,
     /// Closed lines.
     pub rings: u64,
+    /// Lines around lower ground, parts that a mask cuts off included.
+    pub depressions: u64,
     /// Points of lines; the point at which a ring starts and ends counts once.
     pub points: u64,
     /// Lines left out because all of their points coincide.
@@ -356,6 +359,7 @@ impl<P: Place> Tracer<P> {
         let edges = [piece.from, piece.to].map(|edge| crossings::ends(corners, edge));
         let elevation = self.levels.elevation(level);
         let place = |side: usize| P::of(&self.plane, edges[side], elevation, self.levels.interval());
-        self.lines.add(edges.map(|edge| crossings::crossing(edge, level)), place)
+        let least = Side::least(corners, level);
+        self.lines.add(edges.map(|edge| crossings::crossing(edge, level)), least, place)
     }
 }

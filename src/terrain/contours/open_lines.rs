@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use foldhash::{HashMap, HashMapExt};
 
-use super::crossings::Crossing;
+use super::crossings::{Crossing, Side};
 use spmesh_base::error::{Error, Result};
 
 /// Sweep again when held > 2 x (held after the last sweep) + `SLACK`, in open ends and points.
@@ -20,6 +20,8 @@ pub(super) struct Contour<P> {
     /// Places. A ring does not repeat its first one at the end.
     pub(super) points: Vec<P>,
     pub(super) is_closed: bool,
+    /// Of a ring: whether the ground along it is lower inside than outside.
+    pub(super) is_depression: bool,
 }
 
 /// One of the ends of a line.
@@ -34,6 +36,8 @@ struct Line<P> {
     points: VecDeque<P>,
     /// The crossings where it may grow, at its first and its last point.
     ends: [Option<Crossing>; 2],
+    /// The least corner of its triangles: outside of it, if it is a ring.
+    least: Side,
 }
 
 /// All open lines.
@@ -82,7 +86,7 @@ impl<P: Copy> OpenLines<P> {
     }
 
     /// Adds the piece of a line in a triangle, from one crossing to another of the same level; `place`
-    /// computes the place of the first (0) or the second (1).
+    /// computes the place of the first (0) or the second (1), and `least` is the least corner.
     ///
     /// # Errors
     /// [`spmesh_base::error::ErrorKind::Malformed`], if another triangle is on the same side of one of the
@@ -90,6 +94,7 @@ impl<P: Copy> OpenLines<P> {
     pub(super) fn add(
         &mut self,
         [from, to]: [Crossing; 2],
+        least: Side,
         place: impl Fn(usize) -> Result<P>,
     ) -> Result<()> {
         let line = match (self.take(from, End::Last)?, self.take(to, End::First)?) {
@@ -97,7 +102,7 @@ impl<P: Copy> OpenLines<P> {
                 let mut points = VecDeque::with_capacity(POINTS_FIRST);
                 points.extend([place(0)?, place(1)?]);
                 self.points += 2;
-                let line = self.insert(Line { points, ends: [None; 2] });
+                let line = self.insert(Line { points, ends: [None; 2], least });
                 self.wait(line, End::First, from);
                 self.wait(line, End::Last, to);
                 line
@@ -115,11 +120,13 @@ impl<P: Copy> OpenLines<P> {
                 line
             }
             (Some(before), Some(after)) if before == after => {
+                self.lines[before].least = self.lines[before].least.min(least);
                 self.finish(before, from.level, true);
                 return Ok(());
             }
             (Some(before), Some(after)) => self.join(before, after),
         };
+        self.lines[line].least = self.lines[line].least.min(least);
         self.points_max = self.points_max.max(self.points);
         self.ends_max = self.ends_max.max(self.waiting.len());
         if self.lines[line].ends == [None; 2] {
@@ -192,7 +199,8 @@ impl<P: Copy> OpenLines<P> {
 
     fn remove(&mut self, line: usize) -> Line<P> {
         self.free.push(line);
-        std::mem::replace(&mut self.lines[line], Line { points: VecDeque::new(), ends: [None; 2] })
+        let Line { least, .. } = self.lines[line];
+        std::mem::replace(&mut self.lines[line], Line { points: VecDeque::new(), ends: [None; 2], least })
     }
 
     /// Joins two lines; the second one starts where the first one ends. Moves the shorter one.
@@ -208,6 +216,7 @@ impl<P: Copy> OpenLines<P> {
             End::Last => points.extend(moved.points),
             End::First => moved.points.into_iter().rev().for_each(|point| points.push_front(point)),
         }
+        self.lines[kept].least = self.lines[kept].least.min(moved.least);
         if let Some(crossing) = moved.ends[end as usize] {
             self.wait(kept, end, crossing);
         }
@@ -216,16 +225,17 @@ impl<P: Copy> OpenLines<P> {
 
     /// Completes a line as it is. Pieces that come at its ends start new lines from the points there.
     fn cut(&mut self, line: usize, level: i64) {
-        let Line { points, ends } = self.remove(line);
+        let Line { points, ends, least } = self.remove(line);
         let corners = [points.front().copied(), points.back().copied()];
         self.points -= points.len();
         self.cuts += 1;
-        self.complete.push(Contour { level, points: points.into(), is_closed: false });
+        let points = points.into();
+        self.complete.push(Contour { level, points, is_closed: false, is_depression: false });
         for (end, (crossing, corner)) in
             [End::First, End::Last].into_iter().zip(ends.into_iter().zip(corners))
         {
             if let (Some(crossing), Some(corner)) = (crossing, corner) {
-                let rest = self.insert(Line { points: VecDeque::from([corner]), ends: [None; 2] });
+                let rest = self.insert(Line { points: VecDeque::from([corner]), ends: [None; 2], least });
                 self.points += 1;
                 self.wait(rest, end, crossing);
             }
@@ -233,11 +243,12 @@ impl<P: Copy> OpenLines<P> {
     }
 
     fn finish(&mut self, line: usize, level: i64, is_closed: bool) {
-        let Line { points, .. } = self.remove(line);
+        let Line { points, least, .. } = self.remove(line);
         self.points -= points.len();
+        let is_depression = is_closed && least.is_above;
         // A single point is left over from a cut, and already in the other part.
         if points.len() > 1 {
-            self.complete.push(Contour { level, points: points.into(), is_closed });
+            self.complete.push(Contour { level, points: points.into(), is_closed, is_depression });
         }
     }
 }

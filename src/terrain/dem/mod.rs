@@ -210,7 +210,7 @@ impl Run<'_> {
         let is_written_early = rasterizer.heights.is_none()
             && rasterizer.natural.is_none()
             && (neighbours.is_none() || options.fill.is_none());
-        let mut stages = Stages::new(neighbours, target, self.around);
+        let mut stages = Stages::new(neighbours, target, self.around, options.banks.as_deref());
         let mut complete = |at: TilePlace, values: &[f32]| stages.take(at, values);
         let sink: Option<&mut TileSink> = if is_written_early { Some(&mut complete) } else { None };
         let width =

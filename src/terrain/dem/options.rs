@@ -11,6 +11,7 @@ use spmesh_formats::raster::{
     self, Differences, Gradient, Grid, RasterFile, RasterOptions, Reduction, Reference, Samples, Shading,
 };
 use spmesh_formats::source::Mask;
+use spmesh_pipeline::finalize::Banks;
 use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Crs, Header};
 
@@ -98,6 +99,8 @@ pub struct Options {
     pub concave: Option<f64>,
     /// Cells with centres outside of these polygons have no data.
     pub mask: Option<Arc<Mask>>,
+    /// Cells hold how far the ground on shores is below the water, and not its elevation.
+    pub banks: Option<Arc<Banks>>,
     /// Cells without data inside of the outline and the mask are filled from data at most this many cells
     /// away.
     pub fill: Option<u32>,

@@ -2,12 +2,15 @@
 
 use super::neighbours::Neighbours;
 use super::surroundings::Surroundings;
-use crate::files::{TilePlace, TileSource, TileTarget};
+use crate::files::{CELLS, TilePlace, TileSource, TileTarget};
 use spmesh_base::error::Result;
+use spmesh_formats::raster::{Grid, TILE};
+use spmesh_pipeline::finalize::Banks;
 
 /// Takes complete tiles in any order, each once.
 pub(super) struct Stages<'t> {
     neighbours: Option<Neighbours>,
+    banks: Option<&'t Banks>,
     counted: Counted<'t>,
 }
 
@@ -38,20 +41,25 @@ impl TileSource for Counted<'_> {
 }
 
 impl<'t> Stages<'t> {
-    /// The way to a target; through `neighbours`, if there are any.
+    /// The way to a target; through `neighbours` or `banks`, if there are any.
     pub(super) fn new(
         neighbours: Option<Neighbours>,
         target: &'t mut dyn TileTarget,
         around: &'t Surroundings,
+        banks: Option<&'t Banks>,
     ) -> Stages<'t> {
-        Stages { neighbours, counted: Counted { target, around, known: 0 } }
+        Stages { neighbours, banks, counted: Counted { target, around, known: 0 } }
     }
 
     /// Takes the values of a tile; NaN marks cells without data.
     pub(super) fn take(&mut self, at: TilePlace, values: &[f32]) -> Result<()> {
-        match &mut self.neighbours {
-            Some(neighbours) => neighbours.take(at, values, &mut self.counted),
-            None => self.counted.put(at, values),
+        match (&mut self.neighbours, self.banks) {
+            (Some(neighbours), _) => neighbours.take(at, values, &mut self.counted),
+            (None, Some(banks)) => {
+                let depths = depths(banks, &self.counted.around.drawn, at, values);
+                self.counted.put(at, &depths)
+            }
+            (None, None) => self.counted.put(at, values),
         }
     }
 
@@ -70,4 +78,14 @@ impl<'t> Stages<'t> {
         }
         Ok([self.counted.known, spilled[0], spilled[1]])
     }
+}
+
+/// How far the cells of a tile are below the water, where they are on a shore.
+fn depths(banks: &Banks, grid: &Grid, [column, row]: TilePlace, values: &[f32]) -> Vec<f32> {
+    let depth = |(cell, &elevation): (usize, &f32)| {
+        let [x, y] = [column * TILE + cell % TILE, row * TILE + cell / TILE];
+        let depth = || banks.depth(grid.center(x as u32, y as u32), elevation);
+        (!elevation.is_nan()).then(depth).flatten().unwrap_or(f32::NAN)
+    };
+    values[..CELLS].iter().enumerate().map(depth).collect()
 }

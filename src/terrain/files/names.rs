@@ -4,18 +4,25 @@ use std::ffi::{OsStr, OsString};
 use std::str::FromStr;
 
 use super::division::{Division, SheetSize, Strips};
+use super::sheet_table::SheetTable;
 use super::tiles::TilePlace;
 use spmesh_base::error::{Error, Result};
 
 /// Names of sheets, as text with fields in braces; without their folder and ending.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pattern(Vec<Piece>);
+pub struct Pattern {
+    pieces: Vec<Piece>,
+    /// Names that a field stands for. Sheets without one are not written.
+    table: Option<SheetTable>,
+}
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Piece {
     Text(String),
     /// The name of the raster.
     Name,
+    /// The name in the table.
+    Sheet,
     /// A number, with zeros in front up to this many characters.
     Number(Field, usize),
 }
@@ -66,7 +73,26 @@ impl Pattern {
         };
         let number = |axis: usize| Piece::Number(Field { axis, kind }, 0);
         let gap = || Piece::Text("_".to_string());
-        Pattern(vec![Piece::Name, gap(), number(0), gap(), number(1)])
+        Pattern { pieces: vec![Piece::Name, gap(), number(0), gap(), number(1)], table: None }
+    }
+
+    /// The names of a table, as they are.
+    pub fn of_table() -> Pattern {
+        Pattern { pieces: vec![Piece::Sheet], table: None }
+    }
+
+    /// The same with a table.
+    ///
+    /// # Errors
+    /// Usage, if a field needs a table and there is none, or the other way round.
+    pub fn with_table(self, table: Option<SheetTable>) -> Result<Pattern> {
+        match (self.pieces.contains(&Piece::Sheet), &table) {
+            (true, None) => Err(Error::usage("{sheet} stands for names of a table: give --tile-table FILE")),
+            (false, Some(_)) => {
+                Err(Error::usage("no name is taken from --tile-table: add {sheet} to --tile-name"))
+            }
+            _ => Ok(Pattern { table, ..self }),
+        }
     }
 
     /// Refuses corners for sheets that are counted.
@@ -74,30 +100,33 @@ impl Pattern {
         let is_corner =
             |piece: &Piece| matches!(piece, Piece::Number(Field { kind: Kind::Corner { .. }, .. }, _));
         match size {
-            SheetSize::Counts(_) if self.0.iter().any(is_corner) => Err(Error::usage(
+            SheetSize::Counts(_) if self.pieces.iter().any(is_corner) => Err(Error::usage(
                 "names by corners are for squares: give --tiles the length of their side, or take {column} and {row}",
             )),
             _ => Ok(()),
         }
     }
 
-    /// The name of a sheet of the raster `name`.
+    /// The name of a sheet of the raster `name`; `None` if the table has none for it.
     pub(super) fn name(
         &self,
         name: &OsStr,
         division: &Division,
         strips: &[Strips; 2],
         at: TilePlace,
-    ) -> OsString {
+    ) -> Option<OsString> {
         let mut all = OsString::new();
-        for piece in &self.0 {
+        let numbers = [0, 1].map(|axis| strips[axis][at[axis]].number);
+        let sheet = self.table.as_ref().map(|table| table.name(numbers));
+        for piece in &self.pieces {
             match piece {
                 Piece::Text(text) => all.push(text),
                 Piece::Name => all.push(name),
+                Piece::Sheet => all.push(sheet.flatten()?),
                 Piece::Number(field, width) => all.push(field.text(division, strips, at, *width)),
             }
         }
-        all
+        Some(all)
     }
 }
 
@@ -148,7 +177,7 @@ impl FromStr for Pattern {
         if pieces.is_empty() || [".", ".."].contains(&text) {
             return Err("expected a name such as dem_{x}_{y}".into());
         }
-        Ok(Pattern(pieces))
+        Ok(Pattern { pieces, table: None })
     }
 }
 
@@ -159,13 +188,15 @@ fn plain(text: &str) -> std::result::Result<Piece, String> {
 
 /// What stands in braces: a field, with a width behind a colon if numbers are filled up.
 fn piece(text: &str) -> std::result::Result<Piece, String> {
-    if text == "name" {
-        return Ok(Piece::Name);
+    match text {
+        "name" => return Ok(Piece::Name),
+        "sheet" => return Ok(Piece::Sheet),
+        _ => {}
     }
     let (name, width) = text.split_once(':').map_or((text, None), |(name, width)| (name, Some(width)));
     let Some((_, field)) = FIELDS.iter().find(|(known, _)| *known == name) else {
         let known: Vec<String> = FIELDS.iter().map(|(known, _)| format!("{{{known}}}")).collect();
-        return Err(format!("there is no field {{{text}}}, but {{name}}, {}", known.join(", ")));
+        return Err(format!("there is no field {{{text}}}, but {{name}}, {{sheet}}, {}", known.join(", ")));
     };
     let width = width.map_or(Some(0), |width| width.parse().ok().filter(|&width| width <= WIDTH_MAX));
     let width = width.ok_or_else(|| {
@@ -198,7 +229,7 @@ mod tests {
             let (pattern, division) = (pattern.parse::<Pattern>().unwrap(), division(size));
             pattern.check(size).map_err(|error| error.to_string())?;
             let strips = division.strips(&grid).unwrap();
-            Ok(pattern.name(OsStr::new("dem"), &division, &strips, at).into_string().unwrap())
+            Ok(pattern.name(OsStr::new("dem"), &division, &strips, at).unwrap().into_string().unwrap())
         };
         let square = SheetSize::Side(1000.0);
         for (pattern, expected) in [
@@ -222,7 +253,7 @@ mod tests {
             ("a/{x}_{y}", "-o folder/name.tif"),
             ("a\\{x}", "-o folder/name.tif"),
             ("a\n{x}", "control characters"),
-            ("{z}", "there is no field {z}, but {name}, {x}, {y}"),
+            ("{z}", "there is no field {z}, but {name}, {sheet}, {x}, {y}"),
             ("{x:}", "a number of characters up to 20"),
             ("{x:21}", "a number of characters up to 20"),
             ("{x", "lacks its }"),

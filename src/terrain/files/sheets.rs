@@ -33,6 +33,8 @@ pub struct Sheets {
     pub written: u64,
     /// Number of sheets without data.
     pub blank: u64,
+    /// Number of sheets that a table has no name for.
+    pub unnamed: u64,
     /// Length of all files. Units: bytes.
     pub bytes: u64,
 }
@@ -59,27 +61,36 @@ impl Sheets {
         path.parent().map_or(Ok(()), create_folder)?;
         // Fails now rather than after the work; it leaves no file.
         Output::create(path, format == RasterFormat::GeoTiff)?;
-        Ok(Sheets { path: path.to_path_buf(), division, names, index, written: 0, blank: 0, bytes: 0 })
+        Ok(Sheets {
+            path: path.to_path_buf(),
+            division,
+            names,
+            index,
+            written: 0,
+            blank: 0,
+            unnamed: 0,
+            bytes: 0,
+        })
     }
 
-    /// The name of a sheet, without its ending.
-    fn name_of(&self, strips: &[Strips; 2], at: TilePlace) -> OsString {
+    /// The name of a sheet, without its ending, if it has one.
+    fn name_of(&self, strips: &[Strips; 2], at: TilePlace) -> Option<OsString> {
         self.names.name(self.path.file_stem().unwrap_or_default(), &self.division, strips, at)
     }
 
-    /// The path of a sheet.
-    fn path_of(&self, strips: &[Strips; 2], at: TilePlace) -> PathBuf {
-        let (mut name, ending) = (self.name_of(strips, at), self.path.extension().unwrap_or_default());
+    /// The path of a sheet, if it has a name.
+    fn path_of(&self, strips: &[Strips; 2], at: TilePlace) -> Option<PathBuf> {
+        let (mut name, ending) = (self.name_of(strips, at)?, self.path.extension().unwrap_or_default());
         if !ending.is_empty() {
             name.push(".");
             name.push(ending);
         }
-        self.path.with_file_name(name)
+        Some(self.path.with_file_name(name))
     }
 
     /// The path of the item of a sheet, if there are items.
     fn item_of(&self, strips: &[Strips; 2], at: TilePlace) -> Option<PathBuf> {
-        self.index.item_of(&self.path, &self.name_of(strips, at))
+        self.index.item_of(&self.path, &self.name_of(strips, at)?)
     }
 
     /// Refuses sheets that would replace inputs or each other.
@@ -88,11 +99,11 @@ impl Sheets {
         let (hasher, mut seen) = (foldhash::fast::RandomState::default(), HashMap::new());
         self.index.paths(&self.path).try_for_each(|(_, path)| inputs::check_output(&path))?;
         for at in places([strips[0].len(), strips[1].len()]) {
-            let path = self.path_of(strips, at);
+            let Some(path) = self.path_of(strips, at) else { continue };
             inputs::check_output(&path)?;
             self.item_of(strips, at).map_or(Ok(()), |item| inputs::check_output(&item))?;
             if let Some(other) = seen.insert(hasher.hash_one(&path), at)
-                && self.path_of(strips, other) == path
+                && self.path_of(strips, other).as_ref() == Some(&path)
             {
                 return Err(Error::usage(format!(
                     "two rasters would have the name {}: give --tile-name a pattern that tells them apart, such as \
@@ -168,7 +179,10 @@ impl<'s> Cutter<'s> {
 
     /// Writes a sheet, or removes the file that has its name if it has no data.
     fn write(&mut self, [column, row]: TilePlace) -> Result<()> {
-        let path = self.sheets.path_of(&self.strips, [column, row]);
+        let Some(path) = self.sheets.path_of(&self.strips, [column, row]) else {
+            self.sheets.unnamed += 1;
+            return Ok(());
+        };
         let cells = [self.strips[0][column].cells.clone(), self.strips[1][row].cells.clone()];
         // Most sheets without data have no tiles either, and a file takes much longer than this test.
         let drawn = self.drawn(&cells);
@@ -193,9 +207,10 @@ impl<'s> Cutter<'s> {
         let Cutter { sheets, strips, written, .. } = &*self;
         let sheet = |number: usize| {
             let [column, row] = written[number];
-            let path = sheets.path_of(strips, [column, row]);
+            let name = sheets.name_of(strips, [column, row]).unwrap_or_default();
+            let path = sheets.path_of(strips, [column, row]).unwrap_or_default();
             Sheet {
-                name: sheets.name_of(strips, [column, row]).to_string_lossy().into_owned(),
+                name: name.to_string_lossy().into_owned(),
                 file_name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
                 cells: [strips[0][column].cells.clone(), strips[1][row].cells.clone()],
             }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::files::{Destination, Division, Index, Pattern, SheetSize, Sheets};
+use crate::files::{Destination, Division, Index, Pattern, SheetSize, SheetTable, Sheets};
 use spmesh_base::error::{Error, Result};
 use spmesh_base::output::Output;
 use spmesh_formats::raster::{IndexKind, RasterFormat, write_prj};
@@ -33,10 +33,17 @@ pub(super) struct SheetFlags {
 
     /// Names of rasters of --tiles, without their ending: {x} and {y} stand for the lower left corner of a
     /// square, {x_nw} and {y_nw} for the upper left one, {x_km}, {y_km}, {x_nw_km} and {y_nw_km} for these in
-    /// thousands of units, {column} and {row} for numbers, {name} for that of -o. {x_km:4} is filled up to 4
-    /// digits [default: {name}_{x}_{y}, for NX,NY {name}_{column}_{row}]
+    /// thousands of units, {column} and {row} for numbers, {name} for that of -o, {sheet} for that of
+    /// --tile-table. {x_km:4} is filled up to 4 digits [default: {name}_{x}_{y}, for NX,NY
+    /// {name}_{column}_{row}]
     #[arg(long, value_name = "PATTERN", requires = "tiles")]
     tile_name: Option<Pattern>,
+
+    /// Names of squares of --tiles, for the field {sheet} of --tile-name, which is the default then: text
+    /// with x and y of the lower left corner and the name on each line. Squares without a name are not
+    /// written
+    #[arg(long, value_name = "FILE", requires = "tiles")]
+    tile_table: Option<PathBuf>,
 
     /// Describe the rasters of --tiles in files beside them, named as that of -o: vrt and gti, which GDAL
     /// reads as one raster (gti for very many, with its geojson), geojson with their outlines, stac with a
@@ -76,9 +83,26 @@ impl SheetFlags {
             return Err(Error::usage(format!("--buffer takes a length from 0 on, not {buffer}")));
         }
         let division = Division { size, anchor: flags.anchor(), buffer, is_full: self.full };
-        let names = self.tile_name.clone().unwrap_or_else(|| Pattern::usual(size));
+        let names = self.names(size, &division)?;
         let index = Index::new(&self.tile_index, raster.date())?;
         Ok(RasterOutput::Many(Sheets::new(path, division, names, index, format)?))
+    }
+}
+
+impl SheetFlags {
+    /// How rasters are named.
+    fn names(&self, size: SheetSize, division: &Division) -> Result<Pattern> {
+        let table = match (&self.tile_table, size) {
+            (None, _) => None,
+            (Some(path), SheetSize::Side(side)) => Some(SheetTable::read(path, side, division.anchor)?),
+            (Some(_), SheetSize::Counts(_)) => {
+                return Err(Error::usage(
+                    "--tile-table names squares: give --tiles the length of their side",
+                ));
+            }
+        };
+        let usual = || if table.is_some() { Pattern::of_table() } else { Pattern::usual(size) };
+        self.tile_name.clone().unwrap_or_else(usual).with_table(table)
     }
 }
 
@@ -101,8 +125,8 @@ impl RasterOutput {
                 output.commit()?;
                 Ok(Committed { bytes, sheets: None, lost })
             }
-            RasterOutput::Many(Sheets { bytes, written, blank, .. }) => {
-                Ok(Committed { bytes, sheets: Some([written, blank]), lost: None })
+            RasterOutput::Many(Sheets { bytes, written, blank, unnamed, .. }) => {
+                Ok(Committed { bytes, sheets: Some([written, blank, unnamed]), lost: None })
             }
         }
     }
@@ -112,8 +136,8 @@ impl RasterOutput {
 pub(super) struct Committed {
     /// Length of all files.
     pub(super) bytes: u64,
-    /// Rasters of `--tiles`, and those without data.
-    sheets: Option<[u64; 2]>,
+    /// Rasters of `--tiles`, those without data, and those without a name.
+    sheets: Option<[u64; 3]>,
     /// What the file cannot hold.
     lost: Option<String>,
 }
@@ -121,8 +145,12 @@ pub(super) struct Committed {
 impl Committed {
     /// The number of rasters, or what the one cannot hold, for a notice; `None` if there is nothing to say.
     pub(super) fn notice(&self) -> Option<String> {
-        let Some([written, blank]) = self.sheets else { return self.lost.clone() };
-        let rest = if blank > 0 { format!("; {blank} without data were not written") } else { String::new() };
+        let Some([written, blank, unnamed]) = self.sheets else { return self.lost.clone() };
+        let mut rest =
+            if blank > 0 { format!("; {blank} without data were not written") } else { String::new() };
+        if unnamed > 0 {
+            rest += &format!("; {unnamed} squares without a name in --tile-table were not written");
+        }
         let rasters = if written == 1 { "raster" } else { "rasters" };
         Some(format!("{written} {rasters}{rest}"))
     }

@@ -270,6 +270,7 @@ impl Flags {
             memory: self.memory / 2,
             natural: false,
             vertices_memory: None,
+            banks: None,
             raster: self.raster.options(format)?,
             crs: None,
         })

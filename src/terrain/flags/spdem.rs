@@ -1,22 +1,28 @@
 //! `spdem`: flags, and the counts of `--stats`.
 
+mod bends;
 mod contours;
 mod points;
 mod quantity;
 
 use std::path::PathBuf;
+use std::slice;
+use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Parser;
 
 use super::sheets::SheetFlags;
+use super::spreport::parse_positive;
 use crate::contours::LineFormat;
 use crate::dem::{self, Options, Quantity, Stats};
 use crate::points::Options as PointOptions;
+use bends::BendFlags;
 use contours::{ContourFlags, Job};
 use quantity::QuantityFlags;
 use spmesh_base::error::Error;
 use spmesh_formats::raster::RasterFormat;
+use spmesh_pipeline::finalize::Banks;
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
 use spmesh_shell::crs::CrsFlag;
 use spmesh_shell::endings;
@@ -27,6 +33,7 @@ use spmesh_shell::{
     Common, Mesh, Names, Needs, Report, StatsFlag, advise_on_memory, named, notice, of_ending, parse_size,
     peak_memory,
 };
+use spmesh_stream::Crs;
 
 const TOOL: &str = "spdem";
 
@@ -109,15 +116,15 @@ complete. One without data is not written, and a file of its name is removed. ST
 degrees on WGS 84 have no geometry, since no coordinates are transformed; all state their own system.
 
 With --type, values are rounded to integers times --scale, plus --offset. A value that does not fit, or that would be \
-taken for no data, is an error. An ESRI grid gets a .prj file beside it where its coordinate reference system is WKT 1.
+taken for no data, is an error. An ESRI grid gets a .prj file beside it, as WKT 1.
 
 --points draws points without a mesh: how many are in each cell, how dense they are, or the least, the \
 greatest, the range, the mean and the standard deviation of their elevations or of an attribute. A point on a \
 border is in the right or upper cell. Sums are exact.
 
 --contours D writes lines instead of a raster, at all multiples of D (starting at --contour-base), as \
-GeoJSON features with the properties elevation, unit (if it is known), is_closed and index (true for every fifth line from the base, \
-or every N-th with --index N). --mask cuts lines at the polygons. --smooth smooths them; they stay within 0.45 D of \
+GeoJSON features with the properties elevation, unit (if it is known), is_closed, index (true for every fifth line from \
+the base, or every N-th with --index N) and depression (true for closed lines around lower ground). --mask cuts lines at the polygons. --smooth smooths them; they stay within 0.45 D of \
 their level and never cross. --min-length drops short lines. Higher ground is on the left of a line; a \
 vertex on a level counts as above it. Open lines are held in memory, 16 bytes for each point. \
 --contour-points bounds that: a line with that many points is cut and continued from its last point. \
@@ -151,6 +158,16 @@ pub struct Flags {
     #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=256))]
     fill: Option<u32>,
 
+    /// Write how far the ground is below the water, where it is on the shore of this layer, and no data
+    /// elsewhere: a layer of lakes and rivers whose levels are stated, as spfinalize --levels writes it.
+    /// --stats counts the cells
+    #[arg(long, value_name = "FILE", requires = "shore_width", conflicts_with_all = ["kind", "attribute", "points", "sample", "fill", "contours"])]
+    below_water: Option<PathBuf>,
+
+    /// Ground is on a shore up to this distance from the water, in world units
+    #[arg(long, value_name = "W", requires = "below_water", value_parser = parse_positive)]
+    shore_width: Option<f64>,
+
     /// GeoTIFF or ESRI ASCII grid; for lines, GeoJSON as one collection, or one feature a line [default: by
     /// the extension of the output, else tif or geojson]
     #[arg(long, value_name = "FORMAT", value_parser = named(FORMATS))]
@@ -182,6 +199,9 @@ pub struct Flags {
 
     #[command(flatten)]
     contours: ContourFlags,
+
+    #[command(flatten)]
+    bends: BendFlags,
 
     #[command(flatten)]
     raster: RasterFlags,
@@ -225,6 +245,18 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         };
         return contours::run(&job, options, started, |message| notice(TOOL, &flags.common, message));
     }
+    if flags.bends.bends {
+        advise_on_memory(TOOL, "give less --memory");
+        let job = bends::Job {
+            input: &flags.input,
+            output: &flags.output,
+            crs: flags.crs.system()?,
+            memory: flags.memory.unwrap_or(bends::MEMORY),
+            stats: flags.stats,
+            common: &flags.common,
+        };
+        return bends::run(&job, started, |message| notice(TOOL, &flags.common, message));
+    }
     if flags.quantity.points {
         advise_on_memory(TOOL, "give less --memory");
         let job = points::Job {
@@ -248,6 +280,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let crs = options.crs.as_ref().unwrap_or(&mesh.header().crs);
     let grid = flags.cells.grid(crs, window)?;
     options.mask = flags.outline.mask(crs, flags.memory, |text| notice(TOOL, &flags.common, text))?;
+    options.banks = flags.banks(crs)?;
     let needs = Needs { window: options.window(&grid, mesh.header()), beyond: options.beyond() };
     let mut reader = mesh.read(&needs)?.reader;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
@@ -302,12 +335,22 @@ impl Flags {
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,
             mask: None,
+            banks: None,
             fill: self.fill,
             memory: self.memory.unwrap_or(MEMORY) - vertices_memory.unwrap_or(0),
             vertices_memory,
             raster: self.raster.options(format)?,
             crs: self.crs.system()?,
         })
+    }
+
+    /// The shores of `--below-water`.
+    fn banks(&self, crs: &Crs) -> Result<Option<Arc<Banks>>, Error> {
+        let Some((path, width)) = self.below_water.as_ref().zip(self.shore_width) else { return Ok(None) };
+        let (banks, notices) =
+            Banks::read(slice::from_ref(path), width, crs, self.memory.unwrap_or(u64::MAX))?;
+        notices.iter().for_each(|text| notice(TOOL, &self.common, text));
+        Ok(Some(Arc::new(banks)))
     }
 
     /// The format of `--format`, or of the ending of the output.

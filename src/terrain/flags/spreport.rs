@@ -145,7 +145,7 @@ fn parse_length(text: &str) -> std::result::Result<f64, String> {
 }
 
 /// Parses a length above 0.
-fn parse_positive(text: &str) -> std::result::Result<f64, String> {
+pub(super) fn parse_positive(text: &str) -> std::result::Result<f64, String> {
     parse_length(text)
         .and_then(|length| if length > 0.0 { Ok(length) } else { Err("expected a length above 0".into()) })
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::figures::percentile;
+use spmesh_base::random::mixed;
 
 /// Bytes of a difference in the sample, and of the free place beside it while it grows.
 const ITEM_LEN: u64 = 48;
@@ -108,13 +109,9 @@ impl Sample {
     }
 }
 
-/// Scatters the bits of a cell. Source: splitmix64 of Steele, Lea and Flood (2014).
+/// Scatters the bits of a cell.
 fn hash([column, row]: [usize; 2]) -> u64 {
-    let mut bits = (column as u64) << 32 ^ row as u64;
-    for factor in [0xbf58_476d_1ce4_e5b9, 0x94d0_49bb_1331_11eb] {
-        bits = (bits ^ bits >> 30).wrapping_mul(factor);
-    }
-    bits ^ bits >> 31
+    mixed((column as u64) << 32 ^ row as u64)
 }
 
 #[cfg(test)]

@@ -179,7 +179,7 @@ fn about_crs(format: LineFormat, crs: &Crs) -> String {
     }
 }
 
-fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 17] {
+fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 18] {
     [
         ("input (bytes)", "input_bytes", stats.input_bytes),
         ("vertices", "vertices", stats.vertices),
@@ -190,6 +190,7 @@ fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 17] {
         ("levels with lines", "levels", stats.levels),
         ("lines", "lines", stats.lines),
         ("lines that are rings", "rings", stats.rings),
+        ("lines around lower ground", "depressions", stats.depressions),
         ("points of lines", "points", stats.points),
         ("single points, left out", "single_points", stats.single_points),
         ("short lines, left out", "short", stats.short),
