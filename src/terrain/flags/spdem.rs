@@ -16,6 +16,7 @@ use crate::points::Options as PointOptions;
 use contours::{ContourFlags, Job};
 use quantity::QuantityFlags;
 use spmesh_base::error::Error;
+use spmesh_base::limits::LINE_VERTEX_BYTES;
 use spmesh_formats::raster::RasterFormat;
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
 use spmesh_shell::crs::CrsFlag;
@@ -119,8 +120,8 @@ border is in the right or upper cell. Sums are exact.
 GeoJSON features with the properties elevation, unit (if it is known), is_closed and index (true for every fifth line from the base, \
 or every N-th with --index N). --mask cuts lines at the polygons. --smooth smooths them; they stay within 0.45 D of \
 their level and never cross. --min-length drops short lines. Higher ground is on the left of a line; a \
-vertex on a level counts as above it. Open lines are held in memory, 16 bytes for each point. \
---contour-points bounds that: a line with that many points is cut and continued from its last point. \
+vertex on a level counts as above it. Open lines are held in memory, 16 bytes for each point; if --memory has no room for them, spdem fails. \
+--contour-points bounds them: a line with that many points is cut and continued from its last point. \
 Coordinates are those of the mesh, not degrees as RFC 7946 requires; .geojson states their EPSG code as GDAL \
 and QGIS read it.
 
@@ -158,7 +159,7 @@ pub struct Flags {
 
     /// Memory for tiles, and for triangles that wait for the outline of --concave; others wait in temporary
     /// files (see --temp-dir). A quarter of it is for vertices that are not final [default: 32M, beside
-    /// these]
+    /// these]. For contour lines, memory for open lines, too, which have no limit without it
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory: Option<u64>,
 
@@ -248,6 +249,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let crs = options.crs.as_ref().unwrap_or(&mesh.header().crs);
     let grid = flags.cells.grid(crs, window)?;
     options.mask = flags.outline.mask(crs, flags.memory, |text| notice(TOOL, &flags.common, text))?;
+    if let Some(mask) = options.mask.as_ref().filter(|_| flags.memory.is_some()) {
+        options.memory = options.memory.saturating_sub(LINE_VERTEX_BYTES * mask.edges().count() as u64);
+    }
     let needs = Needs { window: options.window(&grid, mesh.header()), beyond: options.beyond() };
     let mut reader = mesh.read(&needs)?.reader;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
