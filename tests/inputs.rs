@@ -6,8 +6,17 @@ use std::path::Path;
 use crate::programs::{Folder, cloud, outcome, run, sample};
 
 /// Flags that name outputs, as programs may have them.
-const OUTPUTS: [&str; 7] =
-    ["--output", "--report", "--plan", "--residuals", "--rejected", "--summary", "--json"];
+const OUTPUTS: [&str; 9] = [
+    "--output",
+    "--report",
+    "--plan",
+    "--levels",
+    "--skip-bad",
+    "--residuals",
+    "--rejected",
+    "--summary",
+    "--json",
+];
 
 /// Flags that take any text, and name no file.
 const TEXTS: [&str; 5] = ["--comment", "--attributes", "--altloc", "--assembly", "--chain"];
@@ -38,7 +47,7 @@ fn flags(command: &[&str]) -> Vec<String> {
 }
 
 /// A command of every program, and arguments with which it runs in a folder that has the files.
-const COMMANDS: [(&[&str], &[&str]); 23] = [
+const COMMANDS: [(&[&str], &[&str]); 27] = [
     (&["spfinalize"], &["points.txt"]),
     (&["spdelaunay2d"], &["points.spm"]),
     (&["spdelaunay3d"], &["points3.spm"]),
@@ -47,6 +56,7 @@ const COMMANDS: [(&[&str], &[&str]); 23] = [
     (&["spconstrain"], &["--kill", "90000", "mesh.spm"]),
     (&["spheight"], &["--ground", "mesh.spm", "tile.las"]),
     (&["spcanopy"], &["--ground", "mesh.spm", "--step", "50", "tile.las"]),
+    (&["spground"], &["tile.las"]),
     (&["spreport"], &["tile.las"]),
     (&["spdiff"], &["mesh.spm", "--level", "1"]),
     (&["spsimplify"], &["--tolerance", "9", "mesh.spm"]),
@@ -54,6 +64,8 @@ const COMMANDS: [(&[&str], &[&str]); 23] = [
     (&["spview"], &["mesh.spm"]),
     (&["spinfo"], &["mesh.spm"]),
     (&["spconvert"], &["--to", "text", "mesh.spm"]),
+    (&["spnode", "list"], &["plan.json"]),
+    (&["spnode", "run"], &["plan.json", "0", "-d", "parts"]),
     (&["spnode", "collect"], &["plan.json", "-d", "parts"]),
     (&["tess3"], &["--sasa", "atoms.pdb"]),
     (&["tess3"], &["--out-dir", "out", "atoms.pdb"]),
@@ -62,6 +74,7 @@ const COMMANDS: [(&[&str], &[&str]); 23] = [
     (&["splinefit", "fit"], &["--robust", "huber", "points.txt"]),
     (&["splinefit", "eval"], &["--columns", "9", "spline.spm"]),
     (&["splinefit", "mesh"], &["spline.spm"]),
+    (&["splinefit", "info"], &["spline.spm"]),
 ];
 
 /// Makes the files of [`COMMANDS`].
@@ -93,6 +106,15 @@ fn run_in(folder: &Path, command: &[&str], arguments: &[&str]) -> (Option<i32>, 
     outcome(&tool.args(&command[1..]).args(arguments).current_dir(folder).output().unwrap())
 }
 
+#[test]
+fn no_program_is_forgotten() {
+    let programs = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("bin")).unwrap();
+    for file in programs.map(|entry| entry.unwrap().path()) {
+        let name = file.file_stem().unwrap().to_str().unwrap();
+        assert!(COMMANDS.iter().any(|(command, _)| command[0] == name), "{name}");
+    }
+}
+
 /// The help lists the flags: a new one cannot be forgotten.
 #[test]
 fn no_flag_names_a_file_that_an_output_may_replace() {
@@ -117,6 +139,7 @@ fn no_flag_names_a_file_that_an_output_may_replace() {
             refused += usize::from(message.contains("would replace the input"));
         }
     }
+    println!("{} commands, {pairs} pairs of flags, {refused} refused, {} lost", COMMANDS.len(), lost.len());
     assert!(lost.is_empty(), "{lost:#?}");
     // The others name no file, or do not go with what the command does.
     assert!(pairs > 300 && refused > 60, "{refused} of {pairs}");

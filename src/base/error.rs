@@ -96,12 +96,14 @@ impl Error {
     }
 
     /// A computation on points or lines that was refused, by a crate that knows nothing of inputs and exit
-    /// codes. Too much of a request is [`ErrorKind::Usage`], malformed data are [`ErrorKind::Malformed`].
+    /// codes. Too much of a request is [`ErrorKind::Usage`], malformed data are [`ErrorKind::Malformed`], and a
+    /// budget that is exceeded is [`ErrorKind::Memory`].
     pub fn of_computation(cause: impl Into<io::Error>) -> Self {
         let cause = cause.into();
         let kind = match cause.kind() {
             io::ErrorKind::InvalidInput => ErrorKind::Usage,
             io::ErrorKind::InvalidData => ErrorKind::Malformed,
+            io::ErrorKind::OutOfMemory => ErrorKind::Memory,
             _ => ErrorKind::Io,
         };
         Error::new(kind, cause.to_string())

@@ -13,6 +13,7 @@ use spmesh_formats::detect::{SPCONVERT, detect, read_head};
 use spmesh_formats::drivers::{Events, Format};
 use spmesh_formats::sink::SinkOptions;
 use spmesh_formats::source::{AttributeChoice, Input, PointEvents, SourceOptions};
+use spmesh_stream::model::bounds::Bounds;
 use spmesh_stream::{Crs, Event, Header};
 
 /// What a conversion may choose.
@@ -26,6 +27,8 @@ pub struct Options {
     pub attributes: AttributeChoice,
     /// The coordinate reference system, if not that of the input.
     pub crs: Option<Crs>,
+    /// The bounding box, if the input does not state it: see [`bounds`].
+    pub bounds: Option<Bounds>,
     /// The file of the input, compressed or not, if the input is a file. Points are read from it directly;
     /// without it, they are read from a copy.
     pub path: Option<PathBuf>,
@@ -54,7 +57,8 @@ pub fn convert(
     let mut source = open_source(input, name, options)?;
     let header = source.header().clone();
     let crs = options.crs.clone().unwrap_or(header.crs);
-    let mut sink = to.open_sink(output, &Header { crs, ..header }, &options.sink)?;
+    let bounds = header.bounds.or(options.bounds);
+    let mut sink = to.open_sink(output, &Header { crs, bounds, ..header }, &options.sink)?;
     while let Some(event) = source.next_event()? {
         sink.event(&event, source.rows()).map_err(|error| match error.kind() {
             ErrorKind::Malformed | ErrorKind::Usage => source.locate(error),
@@ -73,11 +77,40 @@ pub fn convert(
     Ok(notices)
 }
 
+/// The bounding box of an input of another program, whose format does not state it; `None` if the header of the
+/// input may, or if it is empty. Reads the whole input. Memory: as [`convert`].
+///
+/// # Errors
+/// As [`convert`].
+pub fn bounds(input: impl Read + Send + 'static, name: &str, options: &Options) -> Result<Option<Bounds>> {
+    let (format, mut source) = open(input, name, options)?;
+    if matches!(format, Format::Stream | Format::Twin) || format.events().is_none() {
+        return Ok(None);
+    }
+    let mut bounds: Option<Bounds> = None;
+    while let Some(event) = source.next_event()? {
+        let points = match &event {
+            Event::Points(points) => points,
+            Event::Patch(patch) => &patch.new,
+            _ => continue,
+        };
+        for &point in points {
+            bounds.get_or_insert(Bounds::of_point(point)).extend(point);
+        }
+    }
+    Ok(bounds)
+}
+
 /// Opens an input as a source of events.
 ///
 /// # Errors
 /// Usage, if the format is not recognized or cannot be read; malformed, if the header is.
-pub fn open_source(mut input: impl Read + Send + 'static, name: &str, options: &Options) -> Result<Events> {
+pub fn open_source(input: impl Read + Send + 'static, name: &str, options: &Options) -> Result<Events> {
+    open(input, name, options).map(|(_, source)| source)
+}
+
+/// An input of some format as a source of events.
+fn open(mut input: impl Read + Send + 'static, name: &str, options: &Options) -> Result<(Format, Events)> {
     let in_input = |error: Error| error.of_input(name);
     let (format, head) = match options.from {
         Some(format) if !format.is_read() => {
@@ -91,10 +124,11 @@ pub fn open_source(mut input: impl Read + Send + 'static, name: &str, options: &
         }
     };
     let input = Box::new(Cursor::new(head).chain(input));
-    match format.events() {
+    let source = match format.events() {
         Some(open) => open(input, name, options.dims.unwrap_or(2)),
         None => open_points(input, name, options),
-    }
+    };
+    Ok((format, source?))
 }
 
 /// The format of an input that starts with `head`: by its content, and by the name of the file where that

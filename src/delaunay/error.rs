@@ -45,6 +45,13 @@ pub enum Error {
         /// How many may be.
         most: usize,
     },
+    /// Crossings and bends of lines need more memory than allowed.
+    LinesBeyondMemory {
+        /// How many crossings were found so far.
+        crossings: usize,
+        /// How many bends of segments.
+        bends: usize,
+    },
     /// A segment has an end that is no point.
     NoSuchPoint {
         /// Index of the segment.
@@ -78,6 +85,12 @@ impl fmt::Display for Error {
             Error::TooManyOfLines { what, most } => {
                 write!(f, "the lines have more than {most} {what}: divide them, or leave lines out")
             }
+            Error::LinesBeyondMemory { crossings, bends } => {
+                write!(
+                    f,
+                    "the lines have {crossings} crossings and {bends} bends so far, more than memory has room for"
+                )
+            }
             Error::NoSuchPoint { segment, ends } => {
                 write!(f, "segment {segment} is between points {ends:?}, of which one is missing")
             }
@@ -90,10 +103,11 @@ impl std::error::Error for Error {}
 
 impl From<Error> for io::Error {
     /// `InvalidInput`: the request is too large for a kernel. `InvalidData`: points or lines are wrong, or
-    /// lines cross too often. `Other`: the work has become too large, or was stopped.
+    /// lines cross too often. `OutOfMemory`: lines cross too often for the memory allowed. `Other`: the work has become too large, or was stopped.
     fn from(error: Error) -> io::Error {
         let kind = match error {
             Error::TooManyPoints { .. } => io::ErrorKind::InvalidInput,
+            Error::LinesBeyondMemory { .. } => io::ErrorKind::OutOfMemory,
             Error::TooManyTetrahedra(_) | Error::Stopped => io::ErrorKind::Other,
             _ => io::ErrorKind::InvalidData,
         };

@@ -124,6 +124,11 @@ impl<T: Copy> LiveVertices<T> {
         self.live.len()
     }
 
+    /// What they take in memory.
+    pub fn bytes(&self) -> u64 {
+        self.len() as u64 * Self::BYTES
+    }
+
     /// Whether no vertex is live.
     pub fn is_empty(&self) -> bool {
         self.live.is_empty()

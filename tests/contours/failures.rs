@@ -35,7 +35,8 @@ fn each_failure_has_its_exit_code() {
         lines(&flags, 2, "cannot be used with");
     }
     lines(&["--cog"], 2, "cannot be used with");
-    lines(&["--memory", "1G"], 2, "--memory is for rasters, or for lines with --concave");
+    lines(&["--memory", "1G"], 0, "levels");
+    lines(&["--memory", "1K"], 5, "open contour lines have");
     lines(&["--memory", "1G", "--concave", "5000"], 0, "levels");
     lines(&["--concave", "-1"], 2, "--concave takes a length above zero");
     lines(&["--min-length", "0"], 2, "--min-length takes a length above zero");

@@ -3,7 +3,11 @@
 use std::path::Path;
 use std::process::Output;
 
+use spmesh_stream::StreamReader;
+use spmesh_stream::model::bounds::Bounds;
+
 use super::samples;
+use crate::programs::{Folder, assert_outcome};
 
 fn spconvert(arguments: &[&str], input: &[u8]) -> Output {
     crate::programs::run("spconvert", arguments, input)
@@ -67,4 +71,30 @@ fn wrong_requests_are_told_apart() {
         assert_eq!(result.status.code(), Some(code), "{message}");
         assert!(message.contains(expected), "{message}");
     }
+}
+
+/// A stream has its bounds before its vertices, which other formats do not state.
+#[test]
+fn files_of_other_programs_are_read_twice_for_their_bounds() {
+    let folder = Folder::new();
+    let mesh = "v 3 -1 7\nv 0 2 5\nv 9 9 -4\nf 1 2 3\n";
+    folder.write("a.obj", mesh);
+    let bounds = |stream: &[u8]| {
+        let header = StreamReader::new(stream, "stream").unwrap().header().clone();
+        header.bounds.map(|Bounds { min, max }| [min, max])
+    };
+    for ending in ["obj", "ply", "sma", "smb"] {
+        let file = folder.path(&format!("a.{ending}"));
+        if ending != "obj" {
+            assert_outcome("spconvert", &[&folder.path("a.obj"), "-o", &file], &[], 0, "");
+        }
+        let stream = spconvert(&["--to", "spm", &file], &[]).stdout;
+        assert_eq!(bounds(&stream), Some([[0.0, -1.0, -4.0], [9.0, 9.0, 7.0]]), "{ending}");
+        let piped = spconvert(&["--from", ending, "--to", "spm", "-"], &std::fs::read(&file).unwrap()).stdout;
+        assert_eq!(bounds(&piped), None, "{ending}");
+        let local = spconvert(&["--to", "obj", "--local-origin", &file], &[]).stdout;
+        assert!(String::from_utf8(local).unwrap().contains("# origin"), "{ending}");
+    }
+    let empty = folder.write("empty.obj", "# nothing\n");
+    assert_eq!(bounds(&spconvert(&["--from", "obj", "--to", "spm", &empty], &[]).stdout), None);
 }

@@ -4,10 +4,13 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use spmesh_base::random::Random;
-use spmesh_delaunay::noding::{COORDINATE_MAX, LineVertex, Noded, NodingChange, NodingOptions, node_lines};
+use spmesh_delaunay::noding::{
+    BEND_BYTES, COORDINATE_MAX, CROSSING_BYTES, LineVertex, Noded, NodingChange, NodingOptions, node_lines,
+};
 use spmesh_reference::noding::{Place, are_noded, snap_round};
 
-const OPTIONS: NodingOptions = NodingOptions { round_elevations: false, crossings_max: 1 << 20 };
+const OPTIONS: NodingOptions =
+    NodingOptions { round_elevations: false, crossings_max: 1 << 20, bytes_max: u64::MAX };
 
 type Changes = BTreeMap<String, usize>;
 
@@ -212,6 +215,14 @@ fn too_many_crossings_are_refused() {
     assert_eq!(node(10_000).unwrap().vertices.len(), 10_000 + 400);
     let error = node(9_999).unwrap_err();
     assert!(error.to_string().contains("more than 9999 crossings"), "{error}");
+    // Each crossing bends two lines.
+    let within = |bytes_max| {
+        let options = NodingOptions { bytes_max, ..OPTIONS };
+        node_lines(Cow::Borrowed(&vertices), &starts, &options, &mut |_, _, _| {})
+    };
+    let most = 10_000 * (CROSSING_BYTES + 2 * BEND_BYTES);
+    assert!(within(most).is_ok());
+    assert!(within(most - 1).unwrap_err().to_string().contains("10000 crossings and 20000 bends so far"));
     let options = OPTIONS;
     let far = [LineVertex { place: [COORDINATE_MAX + 1, 0], z: None }];
     assert!(node_lines(Cow::Borrowed(&far), &[0], &options, &mut |_, _, _| {}).is_err());

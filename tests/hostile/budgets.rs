@@ -33,7 +33,7 @@ const BESIDE: f64 = START_MAX + 8.0;
 
 /// A limit of the process is one of all; `spheight` has tables of its own size for the ground, and `dd4`
 /// takes about as much as it may.
-const RUNS: [Run; 29] = [
+const RUNS: [Run; 38] = [
     kept("tags of a plane", "spdelaunay2d --memory 32M --threads 1 tags.spm", 32.0),
     kept("tags, on threads", "spdelaunay2d --memory 32M --threads 2 tags.spm", 32.0),
     kept("tags of space", "spdelaunay3d --memory 32M --threads 1 tags3.spm", 32.0),
@@ -82,6 +82,58 @@ const RUNS: [Run; 29] = [
         "points at shores with room",
         "spfinalize --flatten lakes.geojson --shore-width 900 --memory 160M --threads 1 many.txt",
         160.0,
+    ),
+    refused(
+        "contour lines",
+        "spdem --contours 0.003 --memory 1M mesh.spm -o o.geojson",
+        1.0 + BESIDE,
+        "open contour lines have",
+    ),
+    kept(
+        "contour lines with room",
+        "spdem --contours 0.2 --memory 16M --smooth mesh.spm -o o.geojson",
+        16.0 + BESIDE,
+    ),
+    refused(
+        "contour lines in any order",
+        "spdem --contours 1 --memory 1M soup.spm -o o.geojson",
+        1.0 + BESIDE,
+        "not final so far",
+    ),
+    refused(
+        "crossings",
+        "spconstrain --lines grid.txt --memory 4M mesh.spm -o c.spm",
+        4.0 + BESIDE,
+        "crossings and",
+    ),
+    refused(
+        "crossings of lines of points",
+        "spfinalize --lines grid.txt --memory 40M --threads 1 plane.txt",
+        40.0,
+        "crossings and",
+    ),
+    refused(
+        "new vertices in one part",
+        "spconstrain --lines grid.txt --memory 88M mesh.spm -o c.spm",
+        88.0 + BESIDE,
+        "wait for others",
+    ),
+    refused(
+        "lines through a pixel",
+        "spconstrain --lines star.txt --memory 4M mesh.spm -o c.spm",
+        4.0 + BESIDE,
+        "wait for others",
+    ),
+    kept(
+        "a mask with room",
+        "spdem --mask squares.wkt --columns 2000 --memory 24M mesh.spm -o o.tif",
+        24.0 + BESIDE,
+    ),
+    refused(
+        "a mask of contour lines",
+        "spdem --mask squares.wkt --contours 0.01 --memory 24M mesh.spm -o o.geojson",
+        24.0 + BESIDE,
+        "edges of polygons take",
     ),
     refused("leaves", "spfinalize --level 12 --memory 40M --threads 1 plane.txt", 40.0, "level 12"),
     refused("long edges", "spconstrain --kill 0.001 --memory 1M mesh.spm", 1.0 + BESIDE, "--kill"),
@@ -190,6 +242,11 @@ fn write_points(folder: &Path) {
     write("lines.txt", line(20_000, 7));
     write("zigzag.txt", line(2_000, 2));
     write("line.txt", line(2, 2));
+    let grid = |i: usize| format!("soft {i} -1 {i} 600 soft -1 {i} 600 {i}\n");
+    write("grid.txt", (0..600).map(grid).collect());
+    // All pass between the same places, where none ends.
+    let star = |i: usize| format!("soft {} {i} {} {}\n", -1_000 - i as i64, 3_000 + i, 1_000 - i as i64);
+    write("star.txt", (0..1_000).map(star).collect());
     write("soup.obj", soup());
     let tile = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lareunion.laz");
     fs::copy(tile, folder.join("tile.laz")).expect("a sample");

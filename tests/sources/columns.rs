@@ -40,7 +40,7 @@ fn tables_whose_comment_names_other_columns_are_refused() {
     assert_fails(read(LVIS, columns("GLON,GLAT,ZG")), ErrorKind::Usage, &["\"GLON\"", "names LVIS_LFID"]);
     assert_fails(read(LVIS, columns("4,5,8")), ErrorKind::Usage, &["no column 8", "7 columns"]);
     assert_fails(read(LVIS, columns("4,4,6")), ErrorKind::Usage, &["twice"]);
-    assert_fails(read(LVIS, columns("4")), ErrorKind::Usage, &["1 columns are chosen"]);
+    assert_fails(read(LVIS, columns("4")), ErrorKind::Usage, &["1 column is chosen"]);
     // Without the comments, a notice tells of the constant column.
     let bare: String = LVIS.lines().skip(2).map(|line| format!("{line}\n")).collect();
     let (found, notices) = read(&bare, TextOptions::default()).unwrap();
@@ -117,6 +117,11 @@ fn the_third_of_three_columns_is_the_value_where_one_is_needed() {
     for text in ["x,y,lead,zinc\n1,2,3,4\n", "id,x,y\n1,2,3\n"] {
         assert_fails(read(text, needed()), ErrorKind::Usage, &["line 1 names", "which one is the value"]);
     }
+    let (points, notices) = read("x,y,lead,zinc\n1,2,3,4\n", TextOptions::default()).unwrap();
+    assert!(
+        points == [[1.0, 2.0, 0.0]] && notices[0].contains("--columns x,y,NAME takes one"),
+        "{notices:?}"
+    );
     let (points, notices) = read("x,y,z,zinc\n1,2,3,4\n", needed()).unwrap();
     assert!(points == [[1.0, 2.0, 3.0]] && notices.is_empty());
     let chosen = TextOptions { needs_z: true, ..columns("x,y,zinc") };

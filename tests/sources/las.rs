@@ -375,6 +375,19 @@ fn the_common_system_is_the_one_that_states_most() {
         assert_eq!(name_of(&files.map(|file| &file[..])).as_deref(), Some("EPSG:32617+5703"), "{files:?}");
     }
     assert_eq!(name_of(&[&bare, &unit]).as_deref(), Some("EPSG:32617"));
+    // Files that say nothing of x and y may still say what heights are.
+    let heights = |name: &str, code: u16| {
+        let keys = [1, 1, 0, 1, 4096, 0, 1, code].iter().flat_map(|key: &u16| key.to_le_bytes()).collect();
+        folder.write(name, LasFile { projection: vec![(34735, keys)], ..LasFile::of(&[[0, 0, 0]]) }.bytes())
+    };
+    let nothing = folder.write("nothing.las", LasFile::of(&[[0, 0, 0]]).bytes());
+    let (navd, egm) = (heights("navd.las", 5703), heights("egm.las", 5773));
+    for files in [[&nothing, &navd], [&navd, &nothing]] {
+        assert_eq!(name_of(&files.map(|file| &file[..])).as_deref(), Some("EPSG:5703"), "{files:?}");
+    }
+    for files in [[&egm, &navd], [&navd, &egm], [&whole, &egm], [&egm, &whole]] {
+        assert_fails(Input::open(&files.map(Into::into), &flat()), ErrorKind::Usage, &["heights: "]);
+    }
     let mesh = run("spdelaunay2d", &[], &run("spfinalize", &[&unit], &[]).stdout).stdout;
     let raster = run("spdem", &["--step", "0.01", "-o", "-"], &mesh);
     assert_eq!(outcome(&raster).0, Some(0), "{:?}", outcome(&raster));

@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use crate::{Options, convert};
+use crate::{Options, bounds, convert};
 use spmesh_base::error::{Error, ErrorKind};
 use spmesh_base::output::Output;
 use spmesh_base::system;
@@ -48,7 +48,8 @@ the CRS as QGIS reads it. A notice says what is lost. Of tetrahedra, OBJ, PLY, S
 labels of vertices as point data, Medit as references. Of a constrained mesh, DXF has the edges on lines as \
 lines of a layer of their own, and LandXML has them as breaklines. Coordinates on a grid become the shortest decimals that \
 stand for them: 28016 steps of 0.001 are 28.016. A text twin with a number off its grid is refused. Meshes of OBJ and PLY do not say when vertices are \
-final: all of them are at the end.
+final: all of them are at the end. Files of OBJ, PLY, SPA, SPB, SMA and SMB are read twice for a stream, whose header \
+states their bounds; through a pipe, it states none.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
 5 not enough memory, 6 input of another version of spmesh, 141 output closed by its reader.";
@@ -128,11 +129,12 @@ pub fn run(flags: Flags) -> Result<()> {
     // Fail before the work if the output cannot be created.
     let mut output = Output::create(&flags.output, is_binary)?;
     let (input, name) = open_input(&flags.input)?;
-    let options = Options {
+    let mut options = Options {
         from: flags.from,
         dims: flags.dims,
         attributes: AttributeChoice::of_names(&flags.attributes),
         crs: flags.crs.system()?,
+        bounds: None,
         path: flags.input.is_file().then(|| flags.input.clone()),
         sink: SinkOptions {
             ascii: flags.ascii,
@@ -141,6 +143,12 @@ pub fn run(flags: Flags) -> Result<()> {
             temp_dir: flags.temp_dir,
         },
     };
+    if matches!(to, Format::Stream | Format::Twin) || flags.local_origin {
+        options.bounds = match &options.path {
+            Some(path) => bounds(open_input(path)?.0, &name, &options)?,
+            None => None,
+        };
+    }
     let mut progress = Progress::new(&flags.common, "converting", None);
     let notices = convert(input, &name, to, &mut output, &options, |points| progress.set(points))?;
     drop(progress);

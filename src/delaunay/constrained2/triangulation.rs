@@ -106,7 +106,7 @@ impl ConstrainedTriangulation {
         // Points are lines of one place.
         starts.extend((vertices.len() as u32..).take(places.len()));
         vertices.extend(places.iter().map(|&place| LineVertex { place, z: None }));
-        let options = NodingOptions { round_elevations: false, crossings_max };
+        let options = NodingOptions { round_elevations: false, crossings_max, bytes_max: u64::MAX };
         let noded = node_lines(vertices.into(), &starts, &options, &mut |_, _, _| ())?;
         let points: Vec<Point2> =
             noded.vertices.iter().map(|vertex| vertex.place.map(|c| c as f64)).collect();

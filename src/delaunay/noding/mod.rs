@@ -78,7 +78,15 @@ pub struct NodingOptions {
     pub round_elevations: bool,
     /// Most crossings.
     pub crossings_max: usize,
+    /// Bytes for crossings and bends: [`CROSSING_BYTES`] and [`BEND_BYTES`] for each.
+    pub bytes_max: u64,
 }
+
+/// Memory of a crossing: its place, elevation and vertex.
+pub const CROSSING_BYTES: u64 = 64;
+
+/// Memory of each place where a segment bends: its pieces, before and after they are sorted.
+pub const BEND_BYTES: u64 = 40;
 
 /// Nodes polylines: `starts` are the numbers of the first vertices of each, in increasing order. `note` is
 /// told each change with the number of a line and a place.
@@ -89,10 +97,11 @@ pub struct NodingOptions {
 /// interpolated between the next vertices before and behind that have one, along each segment with an
 /// elevation at both of its ends that passes; the lowest counts.
 ///
-/// Memory: about 75 bytes per vertex, in which the result has room. Vertices that are owned are freed early.
+/// Memory: about 75 bytes per vertex, in which the result has room, and that of crossings and bends. Vertices
+/// that are owned are freed early.
 ///
 /// # Errors
-/// If a coordinate exceeds [`COORDINATE_MAX`], or there are more crossings than `options` allow.
+/// If a coordinate exceeds [`COORDINATE_MAX`], or there are more crossings than `options` allow, or have memory for.
 ///
 /// Cost: O(n log n) steps for n vertices, plus O(log) of the extent for each crossing and each bend; more
 /// where many segments that are not parallel run close beside each other.
@@ -107,7 +116,7 @@ pub fn node_lines(
     let parts = Parts::of(&places, &vertices, starts, note);
     drop(vertices);
     let segments = collinear::merge(&places.places, parts);
-    let found = search::search(&places.places, &segments, options.crossings_max)?;
+    let found = search::search(&places.places, &segments, options)?;
     Ok(bend::bend(places, starts, segments, found, options, note))
 }
 

@@ -9,6 +9,7 @@
 use super::chords::Chords;
 use super::collinear::Segments;
 use super::exact::{Place, crossing_pixel, meets_pixel};
+use super::{BEND_BYTES, CROSSING_BYTES, NodingOptions};
 use crate::cell_tree::{CellTree, Fineness, Grid, Item};
 use crate::error::{Error, Result};
 
@@ -111,14 +112,14 @@ impl Cell {
 }
 
 /// Finds the crossings of segments, and the hot pixels that they pass through.
-pub(super) fn search(places: &[Place], segments: &Segments, crossings_max: usize) -> Result<Found> {
+pub(super) fn search(places: &[Place], segments: &Segments, options: &NodingOptions) -> Result<Found> {
     let mut search = Search {
         places,
         numbers: Vec::new(),
         geometry: Vec::new(),
         cells: Vec::new(),
         found: Found { crossings: Vec::new(), touches: Vec::new() },
-        crossings_max,
+        options: *options,
         chords: Chords::default(),
         pixels: Vec::new(),
     };
@@ -159,7 +160,7 @@ struct Search<'a> {
     /// ones.
     cells: Vec<u32>,
     found: Found,
-    crossings_max: usize,
+    options: NodingOptions,
     chords: Chords,
     /// A buffer.
     pixels: Vec<Place>,
@@ -281,8 +282,8 @@ impl Search<'_> {
 
     /// Enters a crossing that has no vertex.
     fn cross(&mut self, start: usize, pixel: Place) -> Result<()> {
-        if self.found.crossings.len() >= self.crossings_max {
-            return Err(too_many(self.crossings_max, "crossings"));
+        if self.found.crossings.len() >= self.options.crossings_max {
+            return Err(too_many(self.options.crossings_max, "crossings"));
         }
         let number = (self.places.len() + self.found.crossings.len()) as u32;
         self.found.crossings.push(pixel);
@@ -302,8 +303,18 @@ impl Search<'_> {
             }
         }
         // Crossings of two segments bend four times at most, the vertices of lines once each in good lines.
-        let most = 4 * self.crossings_max + 4 * self.places.len();
-        if self.found.touches.len() > most { Err(too_many(most, "bends")) } else { Ok(()) }
+        let most = 4 * self.options.crossings_max + 4 * self.places.len();
+        if self.found.touches.len() > most { Err(too_many(most, "bends")) } else { self.check_memory() }
+    }
+
+    fn check_memory(&self) -> Result<()> {
+        let [crossings, bends] = [self.found.crossings.len(), self.found.touches.len()];
+        let bytes = crossings as u64 * CROSSING_BYTES + bends as u64 * BEND_BYTES;
+        if bytes > self.options.bytes_max {
+            Err(Error::LinesBeyondMemory { crossings, bends })
+        } else {
+            Ok(())
+        }
     }
 }
 

@@ -78,7 +78,10 @@ pub(crate) fn common<'s>(
         }
         let member = Member { name, crs, system: System::of(crs) };
         if !member.is_stated() {
-            silent = silent.or(Some(member));
+            if let Some(first) = &silent {
+                first.check_heights(&member)?;
+            }
+            silent = silent.filter(|first| first.heights() >= member.heights()).or(Some(member));
             continue;
         }
         let Some(first) = &found else {
@@ -97,6 +100,7 @@ pub(crate) fn common<'s>(
     }
     let Some(member) = found.as_ref().or(silent.as_ref()) else { return Ok(Crs::Unknown) };
     if let (Some(first), Some(silent)) = (&found, &silent) {
+        first.check_heights(silent)?;
         notices.push(taken(silent.name, "", first.name));
     }
     notices.extend(without_heights.map(|without| taken(without, " for heights", member.name)));
@@ -142,8 +146,19 @@ impl Member<'_> {
         let is_known = self.system.horizontal.is_some() && other.system.horizontal.is_some();
         let found = differences(&self.system, &other.system);
         if self.crs == other.crs || is_known && found.is_empty() {
-            return Ok(());
+            Ok(())
+        } else {
+            self.refuse(other, &found)
         }
+    }
+
+    /// The same, where one of them does not say what x and y are.
+    fn check_heights(&self, other: &Member) -> Result<()> {
+        let found = differences(&self.system, &other.system);
+        if found.is_empty() { Ok(()) } else { self.refuse(other, &found) }
+    }
+
+    fn refuse(&self, other: &Member, found: &[String]) -> Result<()> {
         let name = |member: &Member| member.system.name().unwrap_or_else(|| "unnamed".to_string());
         let what = if found.is_empty() { String::new() } else { format!(" ({})", found.join("; ")) };
         Err(Error::usage(format!(

@@ -6,7 +6,7 @@ use crate::source::row_plan::offers_of;
 use crate::text::lines::{Lines, number};
 use crate::text::options::{Column, TextOptions};
 use crate::text::read::{Delimiter, delimiter_of, fields};
-use spmesh_base::error::{Error, Result};
+use spmesh_base::error::{Error, Result, counted};
 use spmesh_stream::model::attributes::{Attribute, NumberType, with_usable_names};
 use spmesh_stream::{Coordinates, Crs};
 
@@ -222,15 +222,19 @@ fn value_of(columns: &mut Columns, names: &Names) -> Result<Option<String>> {
             names.line,
             names.list()
         ))),
-        _ => Ok(None),
+        [_, ..] => Ok(Some(format!(
+            "points have no elevation, as no column of {} is called z: --columns {x},{y},NAME takes one",
+            names.list()
+        ))),
+        [] => Ok(None),
     }
 }
 
 /// The columns that the user chose, of `count`.
 fn chosen_axes(chosen: &[Column], names: Option<&Names>, count: usize) -> Result<Vec<usize>> {
     if !matches!(chosen.len(), 2 | 3) {
-        let message =
-            format!("{} columns are chosen (--columns), expected those of x, y and z", chosen.len());
+        let found = counted(chosen.len() as u64, "column is", "columns are");
+        let message = format!("{found} chosen (--columns), expected those of x, y and z");
         return Err(Error::usage(message));
     }
     let mut axes = Vec::with_capacity(3);

@@ -25,8 +25,8 @@ mod water;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use spmesh_base::error::{Error, Result};
-use spmesh_base::limits::{LINE_CROSSINGS_MAX, check_line_vertices};
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::limits::{LINE_CROSSINGS_MAX, LINE_VERTEX_BYTES, check_line_vertices};
 use spmesh_delaunay::network::{Network, NetworkVertex};
 use spmesh_delaunay::noding::{LineVertex, Noded, NodingOptions, node_lines};
 use spmesh_formats::source::{Breaklines, Description, Reading, name_of, read_breaklines};
@@ -175,16 +175,14 @@ pub fn read(sources: &Sources, target: &Target, options: &Options) -> Result<Lin
     let points = if options.takes_points { mass_points(&files, &grid, &mut changes)? } else { Vec::new() };
     let files = files.into_iter().map(|(_, name, file)| (name, file)).collect();
     let (vertices, starts) = stored(files, &grid, options, &mut changes)?;
-    let noding = noding(target);
+    let noding = noding(target, options.vertices_max.saturating_sub(vertices.len()));
     let mut note = |change, line, place| changes.note(ChangeKind::of(change), line, || grid.world(place));
     if rings.is_empty() && features.is_empty() {
-        let noded =
-            node_lines(Cow::Owned(vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
+        let noded = node_lines(Cow::Owned(vertices), &starts, &noding, &mut note).map_err(refused)?;
         let areas = Areas { shores, ..Areas::default() };
         return Ok(Lines { network: network(noded, &grid), points, areas, changes, ..Lines::default() });
     }
-    let noded =
-        node_lines(Cow::Borrowed(&vertices), &starts, &noding, &mut note).map_err(Error::of_computation)?;
+    let noded = node_lines(Cow::Borrowed(&vertices), &starts, &noding, &mut note).map_err(refused)?;
     let bent = Bent::new(&noded, &vertices, &starts);
     let (mut areas, water) = (areas::areas(&rings, &bent)?, water::water(&features, &bent, &grid)?);
     areas.shores = shores;
@@ -232,10 +230,22 @@ fn mass_points(
     Ok(points)
 }
 
-fn noding(target: &Target) -> NodingOptions {
+/// How lines are noded, in memory that has room for so many more vertices.
+fn noding(target: &Target, vertices_left: usize) -> NodingOptions {
     NodingOptions {
         round_elevations: matches!(target.coordinates, Coordinates::I32 { .. }),
         crossings_max: LINE_CROSSINGS_MAX,
+        bytes_max: LINE_VERTEX_BYTES.saturating_mul(vertices_left as u64),
+    }
+}
+
+/// Lines that cannot be noded.
+fn refused(cause: spmesh_delaunay::Error) -> Error {
+    let error = Error::of_computation(cause);
+    if error.kind() == ErrorKind::Memory {
+        error.noting("raise --memory, or give fewer lines at once")
+    } else {
+        error
     }
 }
 
@@ -282,13 +292,12 @@ fn network(noded: Noded, grid: &Grid) -> Network {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spmesh_base::limits::LINE_VERTEX_BYTES;
 
     /// Noding itself is tested with fewer crossings, at both sides.
     #[test]
     fn crossings_are_limited() {
         let target = Target { coordinates: Coordinates::F64, crs: Crs::Unknown, has_elevation: true };
-        assert_eq!(noding(&target).crossings_max, LINE_CROSSINGS_MAX);
+        assert_eq!(noding(&target, 0).crossings_max, LINE_CROSSINGS_MAX);
     }
 
     #[test]

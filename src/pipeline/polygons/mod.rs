@@ -74,7 +74,12 @@ impl Polygons {
     /// Number of edges, and the bytes that they take.
     pub fn size(&self) -> (usize, u64) {
         let (edges, polygons) = (self.rows.edges.len(), self.rows.polygons());
-        (edges, (EDGE_BYTES * edges + POLYGON_BYTES * polygons + self.cells.len()) as u64)
+        (edges, Polygons::bytes(edges, polygons) + self.cells.len() as u64)
+    }
+
+    /// Bytes for so many edges and polygons, beside those of cells.
+    pub fn bytes(edges: usize, polygons: usize) -> u64 {
+        (EDGE_BYTES * edges + POLYGON_BYTES * polygons) as u64
     }
 
     /// Where a place lies. Exact for all finite coordinates.

@@ -14,6 +14,12 @@ use super::near::Meeting;
 use foldhash::HashMap;
 use spmesh_stream::model::bounds::Point;
 
+/// Bytes of a triangle that waits, with its part of corners and of what is open at them.
+const TRIANGLE_BYTES: u64 = 400;
+
+/// Bytes of a number in a list, whose allocation may double.
+const LISTED_BYTES: u64 = 8;
+
 /// A triangle that waits.
 #[derive(Debug)]
 pub(super) struct Held {
@@ -23,6 +29,22 @@ pub(super) struct Held {
     pub(super) vertices: Vec<u32>,
     is_hit: bool,
     component: u32,
+}
+
+impl Held {
+    /// Numbers of segments and vertices that it lists.
+    fn listed(&self) -> usize {
+        self.segments.len() + self.vertices.len()
+    }
+
+    /// What it takes alone.
+    pub(super) fn bytes(&self) -> u64 {
+        bytes(1, self.listed())
+    }
+}
+
+fn bytes(triangles: usize, listed: usize) -> u64 {
+    TRIANGLE_BYTES * triangles as u64 + LISTED_BYTES * listed as u64
 }
 
 /// A vertex of triangles that wait.
@@ -56,6 +78,8 @@ pub(super) struct Holding {
     /// Edges with one triangle, which may get a neighbour in the same component.
     open: HashMap<[u32; 2], u32>,
     whole: Vec<u32>,
+    /// Numbers of segments and vertices that waiting triangles list.
+    listed: usize,
     /// The most triangles that waited at once.
     pub(super) triangles_max: usize,
 }
@@ -107,6 +131,11 @@ impl Holding {
         self.by_id.get(&id).copied()
     }
 
+    /// What waiting triangles take, with what is open at them.
+    pub(super) fn bytes(&self) -> u64 {
+        bytes(self.len(), self.listed)
+    }
+
     /// Number of triangles that wait.
     pub(super) fn len(&self) -> usize {
         self.triangles.len()
@@ -130,6 +159,7 @@ impl Holding {
         let component = self.components.add(Component::default());
         let is_hit = meeting.is_hit();
         let Meeting { segments, vertices, is_crossed, .. } = meeting;
+        self.listed += segments.len() + vertices.len();
         let number = self.triangles.add(Held { corners, segments, vertices, is_hit, component });
         self.components.get_mut(component).triangles.push(number);
         for (place, is_crossed) in is_crossed.into_iter().enumerate() {
@@ -211,7 +241,10 @@ impl Holding {
     /// Takes a component that is whole out, if there is one: its triangles.
     pub(super) fn take_whole(&mut self) -> Option<Vec<Held>> {
         let component = self.components.take(self.whole.pop()?);
-        Some(component.triangles.into_iter().map(|triangle| self.triangles.take(triangle)).collect())
+        let triangles: Vec<Held> =
+            component.triangles.into_iter().map(|triangle| self.triangles.take(triangle)).collect();
+        self.listed -= triangles.iter().map(Held::listed).sum::<usize>();
+        Some(triangles)
     }
 
     /// A vertex of triangles that wait or were just taken out.

@@ -29,7 +29,6 @@ use held::{Held, Holding};
 use leaving::Rings;
 use near::Lines;
 use spmesh_base::error::{Error, ErrorKind, Result, counted};
-use spmesh_base::limits::LINE_VERTEX_BYTES;
 use spmesh_delaunay::network::Network;
 use spmesh_pipeline::lines::{Areas, is_far};
 use spmesh_stream::model::bounds::Point;
@@ -109,7 +108,8 @@ pub fn constrain<R: Read, W: Write>(
 ) -> Result<(W, Stats)> {
     check(reader.header())?;
     let coordinates = reader.header().coordinates;
-    let of_lines = LINE_VERTEX_BYTES * network.vertices.len() as u64;
+    let of_lines =
+        VERTEX_BYTES * network.vertices.len() as u64 + SEGMENT_BYTES * network.segments.len() as u64;
     let memory = options.memory.map_or(u64::MAX, |memory| memory.saturating_sub(of_lines));
     let cut = Cut::new(network, areas, &coordinates, &options.cut);
     let (is_cut, kill) = cut.claim();
@@ -121,7 +121,7 @@ pub fn constrain<R: Read, W: Write>(
         lines: Lines::new(network, &rings, &areas.shores),
         holding: Holding::default(),
         live: LiveVertices::within(memory),
-        waiting_max: memory / WAITING_BYTES,
+        memory,
         writing: Writing::new(StreamWriter::new(output, header)?, network, cut)?,
         coordinates,
         numbers: Vec::new(),
@@ -166,15 +166,19 @@ fn header_of(header: &Header, network: &Network) -> Header {
     Header { bounds, points: None, tree: None, ..header.clone() }
 }
 
-/// A triangle that waits, with its part of corners and of what is open at them.
-const WAITING_BYTES: u64 = 400;
+/// A vertex of the network, and a segment with the cells that list it.
+const VERTEX_BYTES: u64 = 40;
+const SEGMENT_BYTES: u64 = 80;
+
+/// A new vertex of a component that is triangulated anew, with its triangles and parts of segments.
+const NEW_BYTES: u64 = 400;
 
 struct Filter<'n, W: Write> {
     lines: Lines<'n>,
     holding: Holding,
     live: LiveVertices<Point>,
-    /// Most triangles that may wait.
-    waiting_max: u64,
+    /// For live vertices, and for triangles that wait. Units: bytes.
+    memory: u64,
     writing: Writing<W>,
     coordinates: Coordinates,
     stats: Stats,
@@ -256,8 +260,8 @@ impl<W: Write> Filter<'_, W> {
                     });
                     self.holding.hold(numbers, meeting);
                     self.stats.held += 1;
-                    if self.holding.len() as u64 > self.waiting_max {
-                        return Err(self.too_many());
+                    if self.holding.bytes() > self.memory {
+                        return Err(self.too_many(&[], 0));
                     }
                     continue;
                 }
@@ -278,15 +282,31 @@ impl<W: Write> Filter<'_, W> {
         Ok(())
     }
 
-    fn too_many(&self) -> Error {
-        let waiting = counted(self.holding.len() as u64, "triangle waits", "triangles wait");
+    /// Triangles that wait, and a component of these that is triangulated, take too much.
+    fn too_many(&self, component: &[Held], new: u64) -> Error {
+        let waiting = (self.holding.len() + component.len()) as u64;
+        let waiting = counted(waiting, "triangle waits", "triangles wait");
+        let new = counted(new, "vertex of lines is", "vertices of lines are");
+        let new =
+            if component.is_empty() { String::new() } else { format!(" {new} new in one part of the mesh,") };
+        let room = self.memory >> 10;
         let message =
-            format!("{waiting} for others that lines change, and --memory has room for {}", self.waiting_max);
-        Error::new(ErrorKind::Memory, format!("{message}: raise it, or give spfinalize the same lines"))
+            format!("{waiting} for others that lines change,{new} and --memory has room for {room} KiB");
+        Error::new(
+            ErrorKind::Memory,
+            format!("{message} of them: raise it, or give spfinalize the same lines"),
+        )
     }
 
     /// Triangulates a component anew.
     fn strip(&mut self, triangles: &[Held]) -> Result<()> {
+        // A vertex is listed by all triangles whose circles contain it.
+        let listed: usize = triangles.iter().map(|held| held.vertices.len()).sum();
+        let new = listed.min(self.lines.network.vertices.len()) as u64;
+        let waiting = self.holding.bytes() + triangles.iter().map(Held::bytes).sum::<u64>();
+        if waiting + NEW_BYTES * new > self.memory {
+            return Err(self.too_many(triangles, new));
+        }
         let first_clipped = (self.stats.segments + self.stats.clipped) as u32;
         let (lines, coordinates) = (&mut self.lines, &self.coordinates);
         let strip = strip::triangulate(triangles, &self.holding, lines, coordinates, first_clipped)?;

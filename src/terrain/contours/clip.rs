@@ -1,5 +1,7 @@
 //! Cuts lines at the border of polygons.
 
+use spmesh_base::error::{Error, ErrorKind, Result};
+use spmesh_base::limits::LINE_VERTEX_BYTES;
 use spmesh_delaunay::cell_tree::{CellTree, Fineness, Item};
 use spmesh_delaunay::predicates::Point2;
 use spmesh_formats::source::Mask;
@@ -15,6 +17,9 @@ const FINENESS: Fineness = Fineness {
     is_whole: false,
 };
 
+/// Bytes of an edge, and of its entries in cells.
+const EDGE_BYTES: u64 = 60;
+
 /// Crossings this near to the end of a segment count as being there. Units: lengths of the segment.
 const NEAR: f64 = 1e-9;
 
@@ -29,6 +34,22 @@ pub(super) struct Clipper {
 }
 
 impl Clipper {
+    /// Checks that a mask fits `memory`, in bytes.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Memory`], if it does not.
+    pub(super) fn check(mask: &Mask, memory: u64) -> Result<()> {
+        let edges = mask.edges().count();
+        let bytes =
+            (LINE_VERTEX_BYTES + EDGE_BYTES) * edges as u64 + Polygons::bytes(edges, mask.polygons.len());
+        if bytes <= memory {
+            return Ok(());
+        }
+        let (needed, left) = (bytes.div_ceil(1 << 20), memory >> 20);
+        let message = format!("{edges} edges of polygons take {needed} MiB, and --memory leaves {left}");
+        Err(Error::new(ErrorKind::Memory, format!("{message}: raise it, or give simpler polygons")))
+    }
+
     pub(super) fn new(mask: &Mask) -> Clipper {
         let of_polygons: Vec<(u32, [Point2; 2])> = mask.edges().filter(|(_, [p, q])| p != q).collect();
         let edges: Vec<[Point2; 2]> = of_polygons.iter().map(|(_, edge)| *edge).collect();
@@ -36,6 +57,11 @@ impl Clipper {
         let item = |edge: u32| Item::Segment(edges[edge as usize]);
         let cells = CellTree::new(edges.len() as u32, item, &FINENESS);
         Clipper { edges, cells, polygons }
+    }
+
+    /// What it takes in memory with its mask.
+    pub(super) fn bytes(&self) -> u64 {
+        (LINE_VERTEX_BYTES + EDGE_BYTES) * self.edges.len() as u64 + self.polygons.size().1
     }
 
     /// The parts of a line inside of the polygons, and whether they are closed. A ring does not repeat its first

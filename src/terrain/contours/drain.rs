@@ -37,6 +37,12 @@ impl<'a, W: Write> Drain<'a, W> {
         }
     }
 
+    /// The memory of the mask, and of levels that have lines.
+    pub(super) fn bytes(&self) -> u64 {
+        let of_mask = self.clipper.as_ref().map_or(0, Clipper::bytes);
+        of_mask + 10 * self.levels_with_lines.capacity() as u64
+    }
+
     /// Writes lines, and takes them from the list.
     pub(super) fn write<P: Place>(&mut self, complete: &mut Vec<Contour<P>>) -> Result<()> {
         for Contour { level, points, is_closed, is_depression } in complete.drain(..) {

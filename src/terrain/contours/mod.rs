@@ -25,6 +25,7 @@ pub use geojson::LineFormat;
 pub use levels::Levels;
 
 use crate::surface::{check_input, is_counterclockwise};
+use clip::Clipper;
 use crossings::Side;
 use drain::Drain;
 use geojson::LineWriter;
@@ -55,6 +56,8 @@ pub struct Options {
     pub concave: Option<f64>,
     /// Bytes for triangles that wait for the outline; further ones wait in a temporary file.
     pub memory: u64,
+    /// Bytes for live vertices and open lines, if there is a limit.
+    pub lines_memory: Option<u64>,
     /// The folder of the temporary file.
     pub temp_dir: Option<PathBuf>,
     /// Lines are clipped to these polygons.
@@ -76,6 +79,7 @@ impl Options {
             points: None,
             concave: None,
             memory: 1 << 28,
+            lines_memory: None,
             temp_dir: None,
             mask: None,
             min_length: None,
@@ -154,7 +158,7 @@ pub struct Stats {
 ///
 /// # Errors
 /// If the input is not a triangle mesh with elevations, is malformed or truncated; if levels are too close to
-/// each other; if writing fails.
+/// each other; if vertices and lines exceed their memory; if writing fails.
 pub fn contour<R: Read, W: Write>(
     reader: &mut StreamReader<R>,
     output: W,
@@ -179,12 +183,15 @@ fn contour_with<P: Place, R: Read, W: Write>(
 ) -> Result<Stats> {
     let header = reader.header().clone();
     check_input(&header, true).map_err(|e| e.of_input(reader.name()))?;
+    let lines_memory = options.lines_memory.unwrap_or(u64::MAX);
+    options.mask.as_ref().map_or(Ok(()), |mask| Clipper::check(mask, lines_memory))?;
     let mut tracer = Tracer::<P>::new(&header, options);
     let crs = options.crs.as_ref().unwrap_or(&header.crs);
     let mut drain = Drain::new(&header, LineWriter::new(output, format, crs), options);
-    let mut live = LiveVertices::new();
+    let mut live = LiveVertices::within(lines_memory);
     while let Some(event) = reader.next_event()? {
         if let Event::Patch(patch) = event {
+            tracer.lines.bytes_max = lines_memory.saturating_sub(live.bytes() + drain.bytes());
             let triangles = tracer.corners(&patch, &mut live).map_err(|error| reader.locate(error))?;
             for triangle in triangles {
                 tracer.take(triangle).map_err(|error| reader.locate(error))?;

@@ -5,10 +5,17 @@ use std::collections::VecDeque;
 use foldhash::{HashMap, HashMapExt};
 
 use super::crossings::{Crossing, Side};
-use spmesh_base::error::{Error, Result};
+use super::smooth::Place;
+use spmesh_base::error::{Error, ErrorKind, Result, counted};
 
-/// Sweep again when held > 2 x (held after the last sweep) + `SLACK`, in open ends and points.
+/// Sweep again when held > 2 x (held after the last sweep) + a slack of at most `SLACK`, in open ends and points.
 const SLACK: usize = 1 << 16;
+
+/// Memory has room for so many slacks, for small budgets. Units: bytes.
+const SLACK_BYTES: u64 = 256;
+
+/// Bytes of an end in the hash table with its free neighbours, whose old half is freed after it has grown.
+const END_LEN: u64 = (size_of::<(Crossing, (usize, End))>() as u64 + 1) * 8 / 7 * 3 / 2;
 
 /// Points that a new line has room for.
 const POINTS_FIRST: usize = 8;
@@ -62,13 +69,17 @@ pub(super) struct OpenLines<P> {
     pub(super) ends_max: usize,
     /// Number of cuts.
     pub(super) cuts: u64,
+    /// Bytes that lines may take.
+    pub(super) bytes_max: u64,
+    /// The most points of a line so far.
+    longest: usize,
     /// Open ends and points held after the last sweep.
     held_after_sweep: usize,
     /// Complete lines that the caller has not taken yet.
     pub(super) complete: Vec<Contour<P>>,
 }
 
-impl<P: Copy> OpenLines<P> {
+impl<P: Place> OpenLines<P> {
     /// No lines. Lines with `points_limit` points, at least two, will be cut.
     pub(super) fn new(points_limit: usize) -> OpenLines<P> {
         OpenLines {
@@ -80,6 +91,8 @@ impl<P: Copy> OpenLines<P> {
             points_max: 0,
             ends_max: 0,
             cuts: 0,
+            bytes_max: u64::MAX,
+            longest: 0,
             held_after_sweep: 0,
             complete: Vec::new(),
         }
@@ -89,8 +102,8 @@ impl<P: Copy> OpenLines<P> {
     /// computes the place of the first (0) or the second (1), and `least` is the least corner.
     ///
     /// # Errors
-    /// [`spmesh_base::error::ErrorKind::Malformed`], if another triangle is on the same side of one of the
-    /// edges; those of `place`.
+    /// [`ErrorKind::Malformed`], if another triangle is on the same side of one of the
+    /// edges; [`ErrorKind::Memory`], if lines exceed theirs; those of `place`.
     pub(super) fn add(
         &mut self,
         [from, to]: [Crossing; 2],
@@ -129,6 +142,10 @@ impl<P: Copy> OpenLines<P> {
         self.lines[line].least = self.lines[line].least.min(least);
         self.points_max = self.points_max.max(self.points);
         self.ends_max = self.ends_max.max(self.waiting.len());
+        self.longest = self.longest.max(self.lines[line].points.len());
+        if self.bytes() > self.bytes_max {
+            return Err(self.too_many());
+        }
         if self.lines[line].ends == [None; 2] {
             // A line between two cuts, or between a cut and the border.
             self.finish(line, from.level, false);
@@ -138,9 +155,28 @@ impl<P: Copy> OpenLines<P> {
         Ok(())
     }
 
+    /// What all lines take, at most: room for points doubles, and the longest line is smoothed alone.
+    fn bytes(&self) -> u64 {
+        let of_line = size_of::<Line<P>>() + size_of::<usize>() + POINTS_FIRST * size_of::<P>();
+        let of_points = 2 * self.points * size_of::<P>() + self.longest * P::SMOOTHED_BYTES;
+        (self.lines.capacity() * of_line + of_points) as u64 + self.waiting.capacity() as u64 * END_LEN
+    }
+
+    fn too_many(&self) -> Error {
+        let points = counted(self.points as u64, "point", "points");
+        let ends = counted(self.waiting.len() as u64, "end", "ends");
+        let message =
+            format!("open contour lines have {points} and {ends} so far, which --memory has no room for");
+        Error::new(
+            ErrorKind::Memory,
+            format!("{message}: raise it, take a larger distance, or cut lines with --contour-points"),
+        )
+    }
+
     /// Whether enough is held to make [`OpenLines::finish_ended`] worth its time.
     pub(super) fn is_sweep_due(&self) -> bool {
-        self.waiting.len() + self.points > 2 * self.held_after_sweep + SLACK
+        let slack = SLACK.min((self.bytes_max / SLACK_BYTES) as usize);
+        self.waiting.len() + self.points > 2 * self.held_after_sweep + slack
     }
 
     /// Completes lines whose ends no later triangle can meet, because a vertex of the edge is not live.

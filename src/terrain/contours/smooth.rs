@@ -31,6 +31,9 @@ const CUT: f64 = 0.25;
 
 /// A point of a line on an edge.
 pub(super) trait Place: Copy {
+    /// What [`Place::line`] takes for each point, beside the points.
+    const SMOOTHED_BYTES: usize;
+
     /// The point of a level on an edge; `interval` is the distance between levels.
     fn of(plane: &Plane, edge: [&Vertex; 2], elevation: f64, interval: f64) -> Result<Self>;
 
@@ -40,6 +43,8 @@ pub(super) trait Place: Copy {
 
 /// A point that stays where it is.
 impl Place for Point2 {
+    const SMOOTHED_BYTES: usize = 0;
+
     #[inline]
     fn of(plane: &Plane, [p, q]: [&Vertex; 2], elevation: f64, _: f64) -> Result<Point2> {
         plane.place(p, q, elevation)
@@ -59,6 +64,9 @@ pub(super) struct Slide {
 }
 
 impl Place for Slide {
+    /// The next place of each, and three of the smoothed line, whose room may double from two.
+    const SMOOTHED_BYTES: usize = 5 * size_of::<Point2>();
+
     fn of(plane: &Plane, [p, q]: [&Vertex; 2], elevation: f64, interval: f64) -> Result<Slide> {
         let [low, high] = if p.elevation < q.elevation { [p, q] } else { [q, p] };
         let range = [

@@ -252,7 +252,7 @@ fn check(rings: &[Vec<Place>]) -> std::result::Result<(), String> {
         return Err("is too large for the grid of the mesh".into());
     }
     let mut problem = None;
-    let options = NodingOptions { round_elevations: false, crossings_max: 1000 };
+    let options = NodingOptions { round_elevations: false, crossings_max: 1000, bytes_max: u64::MAX };
     let mut note = |change, _, _: Place| {
         if matches!(change, NodingChange::Crossing | NodingChange::Overlap | NodingChange::Spike) {
             problem = Some("has edges that cross or cover each other");

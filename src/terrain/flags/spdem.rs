@@ -21,6 +21,7 @@ use bends::BendFlags;
 use contours::{ContourFlags, Job};
 use quantity::QuantityFlags;
 use spmesh_base::error::Error;
+use spmesh_base::limits::LINE_VERTEX_BYTES;
 use spmesh_formats::raster::RasterFormat;
 use spmesh_pipeline::finalize::Banks;
 use spmesh_shell::cells::{self, CellFlags, RasterFlags};
@@ -126,8 +127,8 @@ border is in the right or upper cell. Sums are exact.
 GeoJSON features with the properties elevation, unit (if it is known), is_closed, index (true for every fifth line from \
 the base, or every N-th with --index N) and depression (true for closed lines around lower ground). --mask cuts lines at the polygons. --smooth smooths them; they stay within 0.45 D of \
 their level and never cross. --min-length drops short lines. Higher ground is on the left of a line; a \
-vertex on a level counts as above it. Open lines are held in memory, 16 bytes for each point. \
---contour-points bounds that: a line with that many points is cut and continued from its last point. \
+vertex on a level counts as above it. Open lines are held in memory, 16 bytes for each point; if --memory has no room for them, spdem fails. \
+--contour-points bounds them: a line with that many points is cut and continued from its last point. \
 Coordinates are those of the mesh, not degrees as RFC 7946 requires; .geojson states their EPSG code as GDAL \
 and QGIS read it.
 
@@ -175,7 +176,7 @@ pub struct Flags {
 
     /// Memory for tiles, and for triangles that wait for the outline of --concave; others wait in temporary
     /// files (see --temp-dir). A quarter of it is for vertices that are not final [default: 32M, beside
-    /// these]
+    /// these]. For contour lines, memory for open lines, too, which have no limit without it
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory: Option<u64>,
 
@@ -281,6 +282,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let grid = flags.cells.grid(crs, window)?;
     options.mask = flags.outline.mask(crs, flags.memory, |text| notice(TOOL, &flags.common, text))?;
     options.banks = flags.banks(crs)?;
+    if let Some(mask) = options.mask.as_ref().filter(|_| flags.memory.is_some()) {
+        options.memory = options.memory.saturating_sub(LINE_VERTEX_BYTES * mask.edges().count() as u64);
+    }
     let needs = Needs { window: options.window(&grid, mesh.header()), beyond: options.beyond() };
     let mut reader = mesh.read(&needs)?.reader;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);

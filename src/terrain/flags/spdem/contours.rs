@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 
 use crate::contours::{self, Levels, LineFormat, Options, Stats};
-use spmesh_base::error::{Error, Result, counted};
+use spmesh_base::error::{Result, counted};
 use spmesh_base::output::Output;
 use spmesh_formats::source::epsg_code;
 use spmesh_shell::outline::{OutlineFlags, length};
@@ -71,7 +71,8 @@ pub(super) struct ContourFlags {
 }
 
 impl ContourFlags {
-    /// The lines to write, if any. Memory is for triangles that wait for the outline.
+    /// The lines to write, if any. Half of the memory is for triangles that wait for the outline, if there is
+    /// one.
     pub(super) fn options(
         &self,
         outline: &OutlineFlags,
@@ -81,13 +82,13 @@ impl ContourFlags {
         let Some(interval) = self.contours else { return Ok(None) };
         let defaults = Options::new(Levels::new(interval, self.contour_base)?);
         let concave = outline.concave()?;
-        if memory.is_some() && concave.is_none() {
-            return Err(Error::usage("--memory is for rasters, or for lines with --concave: leave it out"));
-        }
+        let for_outline =
+            if concave.is_some() { memory.map_or(defaults.memory, |memory| memory / 2) } else { 0 };
         Ok(Some(Options {
             kill: outline.kill()?,
             concave,
-            memory: memory.unwrap_or(defaults.memory),
+            memory: for_outline,
+            lines_memory: memory.map(|memory| memory - for_outline),
             points: self.contour_points.map(|points| points as usize),
             min_length: length("--min-length", self.min_length)?,
             index: self.index,
