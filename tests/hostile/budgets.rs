@@ -242,7 +242,7 @@ fn write_points(folder: &Path) {
     write("lines.txt", line(20_000, 7));
     write("zigzag.txt", line(2_000, 2));
     write("line.txt", line(2, 2));
-    let grid = |i: usize| format!("soft {i} -1 {i} 600 soft -1 {i} 600 {i}\n");
+    let grid = |i: usize| format!("soft {i} -1 {i} 600\nsoft -1 {i} 600 {i}\n");
     write("grid.txt", (0..600).map(grid).collect());
     // All pass between the same places, where none ends.
     let star = |i: usize| format!("soft {} {i} {} {}\n", -1_000 - i as i64, 3_000 + i, 1_000 - i as i64);
