@@ -75,7 +75,13 @@ fn assert_reads_compressed(tool: &str, arguments: &[&str], name: &str, content: 
     let expected = output(tool, &[arguments, &[&plain_path]].concat(), &[]);
     assert!(!expected.is_empty(), "{tool} {name}");
     assert!(expected == output(tool, &[arguments, &[&path]].concat(), &[]), "{tool} {name}.gz");
-    assert!(expected == output(tool, &[arguments, &["-"]].concat(), &compressed), "{tool} of {name}.gz");
+    let [piped, of_plain] =
+        [&compressed[..], content].map(|input| output(tool, &[arguments, &["-"]].concat(), input));
+    assert!(piped == of_plain, "{tool} of {name}.gz");
+    // Formats without a bounding box get one by reading a file twice, so that streams through a pipe have none.
+    let has_box = tool != "spconvert"
+        || !["ply", "spa", "spb", "obj", "sma", "smb"].iter().any(|it| name.ends_with(it));
+    assert!(piped == expected || !has_box, "{tool} of {name}");
     if str::from_utf8(content).is_ok_and(|text| !text.contains('\0')) {
         let marked = folder.write(name, [b"\xef\xbb\xbf", content].concat());
         assert!(expected == output(tool, &[arguments, &[&marked]].concat(), &[]), "{tool} of marked {name}");

@@ -56,7 +56,8 @@ impl<'a, W: Write> Drain<'a, W> {
                 None => self.line(level, &points, [is_closed, is_depression])?,
                 Some(clipper) => {
                     for (part, is_closed) in clipper.clip(&points, is_closed) {
-                        self.line(level, &part, [is_closed, is_depression])?;
+                        // Of a part, a mesh of its surroundings would not tell.
+                        self.line(level, &part, [is_closed, is_closed && is_depression])?;
                     }
                 }
             }

@@ -120,7 +120,7 @@ pub struct Stats {
     pub lines: u64,
     /// Closed lines.
     pub rings: u64,
-    /// Lines around lower ground, parts that a mask cuts off included.
+    /// Closed lines around lower ground.
     pub depressions: u64,
     /// Points of lines; the point at which a ring starts and ends counts once.
     pub points: u64,
