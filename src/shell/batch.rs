@@ -28,16 +28,16 @@ pub struct BatchFlags {
 
     /// Where the summary goes, a line per output: a table, JSON Lines if the name ends in .jsonl, or Parquet
     /// if it ends in .parquet; - is stdout
-    #[arg(long, value_name = "FILE", requires = "out_dir")]
+    #[arg(long, value_name = "FILE", requires = "out_dir", conflicts_with = "output")]
     pub summary: Option<PathBuf>,
 
     /// Skip the files that an earlier run to the same folder has done with the same flags, and that are the
     /// same still by size, and by time or content
-    #[arg(long, requires = "out_dir", visible_alias = "skip-existing")]
+    #[arg(long, requires = "out_dir", conflicts_with = "output", visible_alias = "skip-existing")]
     pub resume: bool,
 
     /// Go on with the other files when one fails
-    #[arg(long, requires = "out_dir")]
+    #[arg(long, requires = "out_dir", conflicts_with = "output")]
     pub keep_going: bool,
 }
 

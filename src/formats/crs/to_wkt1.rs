@@ -110,7 +110,8 @@ fn geographic(base: &Geographic, code: Option<u32>) -> String {
         ellipsoid.inverse_flattening,
         authority(base.datum_code),
         if base.meridian == 0.0 { "Greenwich" } else { "unknown" },
-        base.unit.of_degrees(base.meridian),
+        // In degrees, whatever the unit of the system is: so do GDAL and ESRI.
+        base.meridian,
         unit(&base.unit),
         authority(code)
     )
