@@ -28,16 +28,16 @@ pub struct BatchFlags {
 
     /// Where the summary goes, a line per output: a table, JSON Lines if the name ends in .jsonl, or Parquet
     /// if it ends in .parquet; - is stdout
-    #[arg(long, value_name = "FILE", requires = "out_dir", conflicts_with = "output")]
+    #[arg(long, value_name = "FILE", requires = "out_dir")]
     pub summary: Option<PathBuf>,
 
     /// Skip the files that an earlier run to the same folder has done with the same flags, and that are the
     /// same still by size, and by time or content
-    #[arg(long, requires = "out_dir", conflicts_with = "output", visible_alias = "skip-existing")]
+    #[arg(long, requires = "out_dir", visible_alias = "skip-existing")]
     pub resume: bool,
 
     /// Go on with the other files when one fails
-    #[arg(long, requires = "out_dir", conflicts_with = "output")]
+    #[arg(long, requires = "out_dir")]
     pub keep_going: bool,
 }
 
@@ -62,9 +62,15 @@ impl BatchFlags {
     }
 
     /// The folder of outputs, if a summary is wanted, or is needed for what is.
-    pub fn with_summary(&self) -> Option<&Path> {
+    ///
+    /// # Errors
+    /// Usage, if there is no folder for it. Beside a flag that excludes --out-dir, clap does not ask for it.
+    pub fn with_summary(&self) -> Result<Option<&Path>> {
         let is_wanted = self.keep_going || self.resume || self.summary.is_some();
-        self.out_dir.as_deref().filter(|_| is_wanted)
+        if is_wanted && self.out_dir.is_none() {
+            return Err(Error::usage("--summary, --resume and --keep-going go with --out-dir"));
+        }
+        Ok(self.out_dir.as_deref().filter(|_| is_wanted))
     }
 
     /// Where the summary goes: by default, to `name` in the folder of outputs.

@@ -22,10 +22,16 @@ fn wrong_usage_is_refused() {
         (&[&tile, "-o", &out, "--rise", "nan"], "--rise"),
         (&[&tile, "-o", &folder.path("out.tif")], "out.tif"),
         (&["/dev/zero", "-o", &out], "pipe"),
+        (&[&tile, "-o", &out, "--summary", &folder.path("summary.tsv")], "go with --out-dir"),
+        (&[&tile, "-o", &out, "--resume"], "go with --out-dir"),
+        (&[&tile, "-o", &folder.path("out.spm"), "--keep-going"], "go with --out-dir"),
     ] {
         let (code, message) = outcome(&run("spground", arguments, &[]));
         assert!(code == Some(2) && message.contains(word), "{arguments:?}: {message}");
     }
+    let heights = ["--ground", "none.spm", &tile, "-o", &out, "--resume"];
+    let (code, message) = outcome(&run("spheight", &heights, &[]));
+    assert!(code == Some(2) && message.contains("go with --out-dir"), "{message}");
     let (code, message) = outcome(&run("spground", &[&tile, "-o", &out, "--memory", "20M"], &[]));
     assert!(code == Some(5) && message.contains("--memory"), "{message}");
     assert!(folder.names("").is_empty());

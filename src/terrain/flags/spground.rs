@@ -71,7 +71,7 @@ whether it failed and why, points of each class, seconds, and what the output de
 damaged while it is read counts no more, and the others are read again without it.
 
 Lengths are in metres, whatever the unit of the points, if their coordinate reference system states it. Points in degrees \
-are refused. Files are read twice, so they cannot come from a pipe. All tiles are needed together: a tile alone lacks what \
+are refused. Points that get classes are read twice, so they cannot come from a pipe; those of a mesh (-o ground.spm) may: name - as the file. All tiles are needed together: a tile alone lacks what \
 is around it.
 
 Exit codes: 0 success, 1 I/O or runtime failure, or a file failed with --keep-going, 2 usage, 3 malformed or truncated \
@@ -197,7 +197,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let report = flags.report.as_deref().map(|path| ("--report", path));
     check_apart([], &named.chain(others).chain(summary).chain(report).collect::<Vec<_>>())?;
     let report = flags.report.as_deref().map(|path| Output::create(path, false)).transpose()?;
-    let finished = match flags.batch.with_summary() {
+    let finished = match flags.batch.with_summary()? {
         Some(folder) => batch::run(&flags, around.as_ref(), folder, paths, outputs)?,
         None => run_plain(&flags, around.as_ref(), &paths, &outputs)?,
     };

@@ -192,7 +192,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let paths = flags.inputs()?;
     let outputs = flags.names().of(&paths)?;
     outputs.iter().take(1).try_for_each(|output| flags.options(output).map(drop))?;
-    let finished = match flags.batch.with_summary() {
+    let finished = match flags.batch.with_summary()? {
         Some(folder) => batch::run(&flags, folder, paths, outputs)?,
         None => run_plain(&flags, &paths, &outputs)?,
     };
